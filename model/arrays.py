@@ -1,4 +1,4 @@
-"""Types of arrays by content: numbers, truth values, whole numbers."""
+"""Array types by content: real numbers, truth values, integers."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ IntArray = NDArray[np.int64]
 
 
 def distinct(values: IntArray, axis: int | None = None) -> IntArray:
-    """Return whole numbers, or rows of them along axis 0, each once, ascending.
+    """Return the unique integers, or unique rows along axis 0, in ascending order.
 
-    Like `np.unique`, which without counts first loads `numpy.ma`: a thirtieth of a command's time.
+    Unlike `np.unique`, it does not load `numpy.ma`, which would take a thirtieth of a command's time.
     """
     return np.unique(values, axis=axis, return_counts=True)[0]
 

@@ -1,4 +1,4 @@
-"""Checks of a machine's fields, and of other individual values."""
+"""Checks of a machine's fields, and of other single values."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ _REMEDY = "text with a unit belongs in the tables of a job"
 def require_numbers(
     owner: object, *names: str, phrase: str = "", least: float = -math.inf, above: float = -math.inf, unit: str = ""
 ) -> None:
-    """Raise an error for fields that are not finite numbers, below `least` or not above `above`; None passes.
+    """Raise an error for fields that are not finite numbers, are less than `least` or do not exceed `above`.
 
-    phrase: the number in words, with {} for the field's name. unit: unit, shown after the number.
+    None passes.
+
+    phrase: the number in words, with {} for the field name. unit: unit, shown after the number.
     """
     for name in names:
         value = getattr(owner, name)
@@ -32,7 +34,7 @@ def require_numbers(
 
 
 def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") -> None:
-    """Raise an error if one of the numbers is not finite, or not a number."""
+    """Raise an error if any of the numbers is not finite, or is not a number."""
     for value in values:
         try:
             finite = math.isfinite(value)
@@ -45,7 +47,10 @@ def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") 
 def require_kinds(
     owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, item_by_item: bool = False
 ) -> None:
-    """Raise an error for fields of another kind than annotated. item_by_item: whether to check the items of tuples."""
+    """Raise an error for fields whose type differs from their annotation.
+
+    item_by_item: whether to check the items of tuples.
+    """
     for name, kind in kinds.items():
         field = getattr(owner, name)
         for value in field if item_by_item and isinstance(field, tuple) else (field,):
@@ -58,7 +63,7 @@ def require_kinds(
 
 
 def keep_tuples(owner: object, *names: str) -> None:
-    """Turn fields given as lists or arrays into tuples: machines and problems are compared and hashed."""
+    """Turn fields given as lists or arrays into tuples, because machines and problems are compared and hashed."""
     for name in names:
         value = getattr(owner, name)
         value = value.tolist() if hasattr(value, "tolist") else value

@@ -36,7 +36,7 @@ class AssemblyError(InputError):
 
 
 class ForeignRecords(InputError):
-    """Records of another search, or of other versions, from which this one cannot continue."""
+    """Records from another search, or from other versions, with which this search cannot continue."""
 
 
 class JobError(InputError):
@@ -55,11 +55,11 @@ class InfeasibleError(JobError):
 
 
 class NotFound(InputError):
-    """The object with this name or number does not exist."""
+    """No object has this name or number."""
 
 
 class MissingExtra(SlidercrankError, ImportError):
-    """An optional part of the software that is not installed; see the extras of pyproject.toml."""
+    """An optional part of the software is not installed; see the extras in pyproject.toml."""
 
 
 class OutputLost(SlidercrankError):
@@ -67,7 +67,7 @@ class OutputLost(SlidercrankError):
 
 
 class EngineError(SlidercrankError):
-    """The processes or the cluster that evaluate designs cannot be used, or are lost."""
+    """The processes or the cluster for evaluating designs cannot be used, or are lost."""
 
 
 class RunError(SlidercrankError):
@@ -75,20 +75,20 @@ class RunError(SlidercrankError):
 
 
 class StoreError(RunError):
-    """The database of jobs refuses, or cannot be reached."""
+    """The job database refuses a request, or cannot be reached."""
 
 
 class LeaseLost(RunError):
-    """A job that now belongs, or may belong, to another worker: nothing was written for it."""
+    """A job that now belongs, or may belong, to another worker; nothing was written for it."""
 
 
 class QueueFull(RunError):
-    """The queue already holds the greatest allowed number of jobs."""
+    """The queue already contains the maximum number of jobs."""
 
 
 class ServiceError(RunError):
-    """A service elsewhere refuses, or does not answer."""
+    """An external service refuses a request, or does not answer."""
 
 
 class InputWarning(UserWarning):
-    """A valid input that probably describes another machine than the one meant."""
+    """A valid input that probably describes a different machine than intended."""

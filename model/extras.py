@@ -1,6 +1,6 @@
-"""Optional parts of the software: packages that come with an extra, `pip install "slidercrank[EXTRA]"`.
+"""Optional parts of the software: packages that an extra installs, `pip install "slidercrank[EXTRA]"`.
 
-The metadata of the installation, hence pyproject.toml, says which extra installs a package.
+The installed metadata, derived from pyproject.toml, says which extra installs a package.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _SEPARATORS = re.compile(r"[-_.]")  # python-json-logger is imported as pythonjs
 
 
 class NamingExtra:
-    """Context of an import that needs an extra; without it the import raises `MissingExtra`, which names the extra."""
+    """Context for an import that needs an extra; a failed import raises `MissingExtra` with the extra's name."""
 
     def __init__(self, use: str) -> None:
         """Take the beginning of the message: "figures need"."""
@@ -39,7 +39,7 @@ class NamingExtra:
 
 
 def required(module: str, use: str) -> Any:
-    """Import a module that comes with an extra, and return it untyped. use: as of `NamingExtra`."""
+    """Import a module that an extra installs, and return it untyped. use: as in `NamingExtra`."""
     with NamingExtra(use):
         return import_module(module)
 
@@ -48,12 +48,12 @@ def is_installed(package: str) -> bool:
     """Whether a package can be imported."""
     try:
         return find_spec(package) is not None
-    except (ModuleNotFoundError, ValueError):  # the latter where its import is in progress or forbidden
+    except (ModuleNotFoundError, ValueError):  # the latter if its import is in progress or forbidden
         return False
 
 
 def extra_of(package: str) -> str | None:
-    """Return the extra that installs a package, by the package's import name; None if there is none."""
+    """Return the extra that installs a package, from the package's import name; None if there is none."""
     from importlib.metadata import PackageNotFoundError, requires
 
     try:

@@ -1,7 +1,7 @@
 """File names as text and back: UTF-8 in every locale, as in job files, databases and pages.
 
-Python turns each byte of a path that the locale's encoding cannot decode into a lone surrogate, which UTF-8 cannot
-encode, and in an ASCII locale it finds no file with an umlaut in its name.
+Python turns each byte in a path that the locale's encoding cannot decode into a lone surrogate, which UTF-8 cannot
+encode. In an ASCII locale it does not find a file with an umlaut in its name.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ def path_text(path: str | PathLike[str]) -> str:
 
 
 def path_from_text(name: str | PathLike[str]) -> Path:
-    """Return the path for a file name, encoded as the locale says, or in UTF-8 if that lacks a character."""
+    """Return the path for a file name, encoded in the locale's encoding, or in UTF-8 if that lacks a character."""
     text = os.fspath(name)
     try:
         os.fsencode(text)

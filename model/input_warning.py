@@ -1,4 +1,4 @@
-"""Warnings about inputs in Python, in the name of the user's line."""
+"""Warnings about inputs in Python, attributed to the user's line."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ import warnings
 from .errors import InputWarning
 
 LONGEST = 10.0
-"""m. A longer link whose length has no unit was probably meant in mm."""
+"""m. A longer link, given without a unit, was probably meant in mm."""
 _OURS = __name__.partition(".")[0]
 _MAKERS = ("dataclasses", "copy")
-"""Modules of Python that create objects again on behalf of callers."""
+"""Python modules that create objects again on behalf of callers."""
 
 
 def warn_user(sentence: str, *, through_callers: bool = False) -> None:
-    """Warn with `InputWarning` at the line that calls the caller's module, if that line is a user's.
+    """Issue an `InputWarning` at the line that calls the caller's module, if that line is in user code.
 
-    There is no warning if this software itself calls: its numbers come from values with units, or have already been
-    checked. through_callers: whether its modules may only pass on what the user's line states.
+    No warning is issued if this software itself is the caller: its numbers come from values with units, or have already
+    been checked. through_callers: whether to look past its modules, which may only pass on the user's values.
     """
     frame, modules = inspect.currentframe(), list[str]()
     while frame is not None:
@@ -33,7 +33,7 @@ def warn_user(sentence: str, *, through_callers: bool = False) -> None:
 
 
 def both_readings(name: str, number: float, unit: str, usual: str, factor: float) -> str:
-    """Return a number in SI as read, and as probably meant in a usual unit.
+    """Return a number as read in SI, and as probably meant in a usual unit.
 
     unit: SI unit. usual: usual unit for such values. factor: one SI unit in the usual unit.
 

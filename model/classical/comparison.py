@@ -1,4 +1,4 @@
-"""The approximate models against the exact one, over crank angle and over offset."""
+"""Comparison of the approximate models with the exact one, over the crank angle and over the offset."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .series import series_acceleration, series_torque, tangent_torque
 
 ACCELERATION = ("series",)
 TORQUE = ("two masses by mass centre", "two masses, half and half", "series", "k F tan(alpha)")
-"""The approximations, in the order of every table and figure."""
+"""The approximations in the order used in every table and figure."""
 _ANGLES = 1440
 
 
@@ -29,8 +29,8 @@ _ANGLES = 1440
 class Comparison:
     """Exact and approximate curves of one design at constant speed; each (n,), SI.
 
-    accelerations: slider acceleration, by the names in `ACCELERATION`. torques: inertia torque from the drive, by the
-    names in `TORQUE`.
+    accelerations: slider acceleration, by the names in `ACCELERATION`. torques: inertia torque that the drive supplies,
+    by the names in `TORQUE`.
     """
 
     crank_angle: Array
@@ -41,10 +41,10 @@ class Comparison:
 
 
 def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Comparison:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad: inertia alone, at constant speed.
+    """Return the curves of one fully rotating linkage at crank angles (n,), rad: inertia alone, at constant speed.
 
-    Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass by its mass centre.
-    Raises `InputError` without a crank speed, and for a mass centre that is not between the pins.
+    Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass at its mass centre.
+    Raises `InputError` if the crank speed is zero, and for a mass centre that is not between the pins.
     """
     linkage = single(mechanism, linkage)
     inert = _inertia_alone(mechanism)
@@ -68,7 +68,7 @@ def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> C
 
 @dataclass(frozen=True)
 class Errors:
-    """Greatest error of each approximation over the cycle as a fraction of the exact peak; each (offsets,).
+    """Maximum error of each approximation over the cycle as a fraction of the exact peak; each (offsets,).
 
     peak_acceleration, peak_torque: exact, m/s^2 and N m. Errors of a torque that is zero throughout are `nan`.
     """
@@ -81,9 +81,9 @@ class Errors:
 
 
 def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLike) -> Errors:
-    """Return the errors for each offset (n,), m, with crank and rod of one linkage; 1440 crank angles each.
+    """Return the errors for offsets (n,), m, with one linkage's crank and rod; 1440 crank angles each.
 
-    Raises `AssemblyError` for an offset with which the linkage does not rotate fully.
+    Raises `AssemblyError` for an offset at which the linkage does not rotate fully.
     """
     values = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
@@ -101,7 +101,7 @@ def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLik
 
 
 def relative_error(approximate: Array, exact: Array) -> float:
-    """Return the greatest difference as a fraction of the greatest exact size; `nan` if that is zero."""
+    """Return the maximum difference as a fraction of the maximum exact magnitude; `nan` if that is zero."""
     peak = float(np.abs(exact).max())
     return float(np.abs(approximate - exact).max()) / peak if peak > 0.0 else math.nan
 

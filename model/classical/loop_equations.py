@@ -1,9 +1,9 @@
-r"""The two loop equations solved by Newton's and Raphson's iteration: an independent check of the closed form.
+r"""The two loop equations solved by Newton-Raphson iteration: an independent check of the closed form.
 
     f_1 = r cos(theta) + l cos(phi) - x = 0        J = d(f_1, f_2) / d(x, phi) = | -1   -l sin(phi) |
     f_2 = r sin(theta) + l sin(phi) - e = 0                                      |  0    l cos(phi) |
 
-The rates follow from the same matrix by linear solves: J (x', phi') = -df/dtheta, and once more for the second ones.
+Linear solves with the same matrix give the rates: J (x', phi') = -df/dtheta, and again for the second derivatives.
 Source of the approach: J. Gupta, "Offset-Slider Crank Mechanism", course report ME748, section 3.1, whose rod points
 the other way and whose offset is the mirror image.
 """
@@ -22,13 +22,16 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 
 _LAST_STEP = 1e-10
-"""A step that ends the iteration, rad and fractions of the rod: the remaining error is half its square times
+"""A step that ends the iteration, in rad and fractions of the rod: the remaining error is half its square times
 tan(phi)."""
 
 
 @dataclass(frozen=True)
 class LoopSolution:
-    """Motion by iteration; arrays of the broadcast shape, SI and radians. iterations: steps taken at each angle."""
+    """Motion found by iteration; arrays of the broadcast shape, SI and radians.
+
+    iterations: steps taken at each angle.
+    """
 
     crank_angle: Array
     slider_position: Array
@@ -51,12 +54,12 @@ def solve_loop(
 ) -> LoopSolution:
     """Return the motion at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2); all broadcast.
 
-    start: slider position (m) and rod angle (rad) to start from. By default the rod lies along the slider line on the
-    linkage's branch; from there the rod angle approaches the solution without overshooting, because the sine is concave
-    up to a quarter turn. From another start the iteration may converge to the other branch. iteration_limit: iterations
-    allowed.
+    start: initial slider position (m) and rod angle (rad). By default the rod lies along the slider line on the
+    linkage's branch. From there the rod angle converges without overshooting, because the sine is concave up to a
+    quarter turn. From another start the iteration may converge to the other branch. iteration_limit: maximum number of
+    iterations.
 
-    Raises `AssemblyError` where the linkage cannot be assembled, `InputError` where the iteration does not end.
+    Raises `AssemblyError` where the linkage cannot be assembled, `InputError` where the iteration does not converge.
     """
     linkage.at(crank_angle, speed=speed, acceleration=acceleration)  # rejects linkages that cannot be assembled
     theta, w, alpha, r, l, e = np.broadcast_arrays(
@@ -100,7 +103,7 @@ def solve_loop(
 
 
 def _derivatives(theta: Array, pin: Array, l: Array, phi: Array, w: Array, alpha: Array) -> tuple[Array, Array]:
-    """Return the first and second derivatives by time of slider position and rod angle, (..., 2) each."""
+    """Return the first and second time derivatives of slider position and rod angle, (..., 2) each."""
     jacobian = _jacobian(l, phi)
     everywhere = np.ones(theta.shape, dtype=np.bool_)
     turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
@@ -117,7 +120,7 @@ def _jacobian(l: Array, phi: Array) -> Array:
 
 
 def _solve(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
-    """Solve at the requested angles; zero elsewhere."""
+    """Solve at the active angles; zero elsewhere."""
     singular = active & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
         raise InputError(

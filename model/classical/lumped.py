@@ -1,10 +1,10 @@
-"""Two-mass model of the rod: a point mass at the crank pin, and one at the slider pin.
+"""Two-mass model of the rod: one point mass at the crank pin and one at the slider pin.
 
 With the mass centre at distance a from the crank pin and b = l - a from the slider pin: m b / l at the crank pin, m a /
 l at the slider pin. Mass and mass centre are preserved. The inertia about the mass centre becomes m a b, so the model
-is exact for a rod with exactly that inertia. Any other split (half and half, as in Eqs. 31 to 36 of M. Obaseki and P.
+is exact for a rod whose inertia equals m a b. Any other split (half and half, as in Eqs. 31 to 36 of M. Obaseki and P.
 B. Alfred, "Modeling and Investigating the Effect of Offset Distance on Slider-Crank Mechanism", 2020) also moves the
-mass centre, unless it matches the rod's.
+mass centre, unless it happens to match.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class MassProperties:
 
 
 def mass_properties(link: Link, length: float) -> MassProperties:
-    """Return the mass properties of a link for its length between pin centres, m."""
+    """Return the mass properties of a link with a given length between pin centres, m."""
     if isinstance(link, Bar):
         return MassProperties(link.mass(length), 0.5 * length, 0.0, link.principal_inertias(length)[0])
     centre = 0.5 * length if link.centre is None else link.centre
@@ -37,7 +37,7 @@ def mass_properties(link: Link, length: float) -> MassProperties:
 
 
 def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
-    """Return the fraction of the rod's mass that its mass centre assigns to the crank pin, b / l.
+    """Return the fraction of the rod's mass lumped at the crank pin, b / l.
 
     Raises `InputError` for a mass centre that is not between the pins: one mass would be negative.
     """
@@ -53,10 +53,10 @@ def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
 
 
 def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None) -> Mechanism:
-    """Return the mechanism of one linkage with a massless rod, its mass on crank pin and slider.
+    """Return one linkage's mechanism with a massless rod, the rod's mass being lumped at crank pin and slider.
 
-    crank_pin_share: fraction of the rod's mass at the crank pin; b / l if None. The distance of the mass centre from
-    the rod's axis is lost.
+    crank_pin_share: fraction of the rod's mass lumped at the crank pin; b / l if None. The distance of the mass centre
+    from the rod axis is lost.
     """
     share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
     if not 0.0 <= share <= 1.0:
@@ -83,9 +83,9 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
 def rotating_and_reciprocating(
     mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
 ) -> tuple[float, float]:
-    """Return the rotating mass at the crank pin, including the crank's, and the reciprocating mass, kg.
+    """Return the rotating mass at the crank pin, crank included, and the reciprocating mass, kg.
 
-    The crank counts by its first moment, m centre / r (Eq. 35 of the paper); its counterweight does not.
+    The crank contributes its first moment, m centre / r (Eq. 35 of the paper); its counterweight does not count.
     """
     length, radius = float(linkage.rod), float(linkage.crank)
     share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share

@@ -7,7 +7,7 @@
                                       normal one of B relative to A; b1 on the slider's line and on the normal to the
                                       rod through b11
 
-No equation of `kinematics` is used: slider and rod motion are read off the polygons. Source: W. P. Boyle and K. Liu,
+No equation from `kinematics` is used: slider and rod motion are read off the polygons. Source: W. P. Boyle and K. Liu,
 "The Offset Slider Crank: Kinematic Pseudographic Analysis", IJEE 13(3), Fig. 2 and Fig. 6; names of vertices as there.
 """
 
@@ -25,7 +25,7 @@ from ..linkage.linkage import Linkage
 
 @dataclass(frozen=True)
 class Polygons:
-    """Vertices (..., vertex, 2), x and y, and values read off them, (...). SI and radians.
+    """Vertices (..., vertex, 2), x and y, and values read from them, (...). SI and radians.
 
     position: O, A, B, m. velocity: o, a, b, m/s. acceleration: o1, a11, a1, b11, b1, m/s^2.
     rod_velocity, rod_acceleration: rad/s and rad/s^2, from a-b and b11-b1.
@@ -79,12 +79,12 @@ def polygons(
 
 
 def _quarter_turned(vector: Array) -> Array:
-    """Return vectors (..., 2) turned by a quarter counter-clockwise."""
+    """Return vectors (..., 2) rotated by a quarter turn counter-clockwise."""
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
 
 
 def _meet_slider_line(start: Array, rod: Array) -> tuple[Array, Array]:
-    """Return where the normal to the rod through `start` meets y = 0, and its signed distance in rods."""
+    """Return where the normal to the rod through `start` meets y = 0, and its signed distance in rod lengths."""
     turns = -start[..., 1] / rod[..., 0]
     x = start[..., 0] - turns * rod[..., 1]
     return np.stack([x, np.zeros_like(x)], axis=-1), turns

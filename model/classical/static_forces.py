@@ -1,6 +1,6 @@
 """Static forces of the massless linkage under a load on the slider, without friction.
 
-Equilibrium of slider, rod and crank for a load P along the slider line, positive outward as all loads are:
+Equilibrium of slider, rod and crank under a load P along the slider line, positive outward as for all loads:
 
     rod force (compression)      F = -P / |cos(phi)|
     guide on the slider (+y)     N = P tan(phi) on the open branch, -P tan(phi) on the crossed one
@@ -10,8 +10,8 @@ T is the required drive torque, counter-clockwise. Without offset, with phi' = -
 p = -P towards the crank, F = p / cos(phi'), N = p tan(phi') and T = -p r (sin(theta) + cos(theta) tan(phi')): Eqs. 12
 and 13 of the report "In-line Slider Crank Mechanism" (Amrita School of Engineering, 2021).
 
-Mechanical advantage: load on the slider over the tangential force at the crank pin that holds it, r / |x'|. It grows
-without bound towards the dead centres; at them no crank torque is needed, and the advantage is infinite.
+Mechanical advantage: load on the slider divided by the tangential crank pin force that balances it, r / |x'|. It grows
+without bound towards the dead centres, where no crank torque is needed and the advantage is infinite.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from ..linkage.linkage import Linkage
 class StaticForces:
     """Arrays of the broadcast shape; SI and radians.
 
-    rod_force: force along the rod, N, positive in compression. guide_reaction: force of the guide on the slider along
+    rod_force: force along the rod, N, positive in compression. guide_reaction: force from the guide on the slider along
     +y, N. crank_torque: required drive torque, N m, counter-clockwise. tangential_force: crank_torque / crank, N.
-    mechanical_advantage: size of the load over that of the tangential force; `inf` on a dead centre.
-    slider_force_per_torque: size of the load over that of the crank torque, 1/m; `inf` on a dead centre.
+    mechanical_advantage: magnitude of the load divided by that of the tangential force; `inf` at a dead centre.
+    slider_force_per_torque: magnitude of the load divided by that of the crank torque, 1/m; `inf` at a dead centre.
     """
 
     crank_angle: Array
@@ -47,9 +47,9 @@ class StaticForces:
 
 
 def static_forces(linkage: Linkage, crank_angle: ArrayLike, *, load: ArrayLike) -> StaticForces:
-    """Return the forces at crank angles, rad, that balance a load on the slider, N outward; all broadcast.
+    """Return the forces at crank angles, rad, in equilibrium with a load on the slider, N outward; all broadcast.
 
-    The advantage does not depend on the load and is given for a zero load, too. Raises `AssemblyError` where the
+    The advantage does not depend on the load and is also returned for a zero load. Raises `AssemblyError` where the
     linkage cannot be assembled, `InputError` for a load that is not finite.
     """
     p = np.asarray(load, dtype=np.float64)
@@ -61,7 +61,7 @@ def static_forces(linkage: Linkage, crank_angle: ArrayLike, *, load: ArrayLike) 
     outward = linkage.sign * p
     arm = linkage.crank * (np.cos(theta) * tangent - np.sin(theta))  # x'
     torque = -outward * arm
-    # Closer to a dead centre than the rounding of the crank angle: treated as on it.
+    # Closer to a dead centre than the rounding error of the crank angle: treated as at it.
     still = np.abs(arm) <= 4.0 * np.finfo(np.float64).eps * (1.0 + np.abs(theta)) * linkage.crank
     with np.errstate(divide="ignore"):
         per_torque = np.where(still, np.inf, 1.0 / np.abs(arm))

@@ -1,25 +1,25 @@
-r"""Equations of motion of a linkage with one pin loose in its bearing and a steadily turning crank.
+r"""Equations of motion of a linkage with one loose pin and a crank at steady speed.
 
-Whichever pin is loose, the linkage keeps two degrees of freedom besides the crank angle theta: slider position x and
-rod angle phi. With complex numbers for vectors in the plane, the loop of the ideal linkage fails to close by the *gap*
+Whichever pin is loose, the linkage has two degrees of freedom besides the crank angle theta: slider position x and rod
+angle phi. With plane vectors written as complex numbers, the loop of the ideal linkage fails to close by the *gap*
 
     C = x + i e - l exp(i phi) - r exp(i theta),        |C| <= radial clearance, apart from penetration.
 
-A crank pivot that is loose lets the crank translate while a coupling keeps turning it steadily: then the crank's
-origin is at C; the crank pin is at C + r exp(i theta). A loose crank pin is C away from the rod's end, a loose slider
-pin C away from the slider. So the contact does the same work in every case; only the attachment of the masses differs.
-The mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
+A loose crank pivot lets the crank translate while a coupling still turns it steadily: the crank's origin is then at C,
+and the crank pin at C + r exp(i theta). With a loose crank pin, the rod's end is C away from it; with a loose slider
+pin, the slider is C away from it. So the contact does the same work in every case; only the positions of the masses
+differ. The mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i theta):
 
     loose joint      crank                  rod                   slider
     crank pivot      k 1, a -l, b c - r     k 1, a s - l, b 0     k 1, a 0, b 0
     crank pin        k 0, a 0,  b c         k 1, a s - l, b 0     k 1, a 0, b 0
     slider pin       k 0, a 0,  b c         k 0, a s,     b r     k 1, a 0, b 0
 
-with c and s the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
+where c and s are the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
 
-State of the integration: the gap and its velocity rather than x and phi, because the penetration is a millionth of
-x. Three integrals are included: the work of the drive, the work of the loads on the slider, and the energy that the
-contact dissipates.
+The state of the integration is the gap and its velocity rather than x and phi, because the penetration is a millionth
+of x. Three integrals are included: the work of the drive, the work of the loads on the slider, and the energy
+dissipated in the contact.
 """
 
 from __future__ import annotations
@@ -41,12 +41,14 @@ STATES = 7
 
 
 class System(NamedTuple):
-    """Numbers of a linkage with a loose joint. SI; sums over the bodies with mass m, inertia I and k, a, b as above.
+    """Parameters of a linkage with a loose joint.
 
-    start: crank angle at time zero. clearance to slip_speed: parameters of the contact. journal_turns: whether the
-    journal turns with the crank. bearing_turns: whether the bearing turns with the rod. m_xx: sum k m. m_x_rod,
-    m_x_crank: sums k m a, k m b. m_rod, m_crank: sums m |a|^2 + I, m |b|^2 + I. m_rod_crank: sum m a conj(b).
-    first_rod, first_crank: sums m a, m b.
+    SI; sums over the bodies, with mass m, inertia I and k, a, b as above.
+
+    start: crank angle at time zero. clearance to slip_speed: contact parameters. journal_turns: whether the journal
+    turns with the crank. bearing_turns: whether the bearing turns with the rod. m_xx: sum k m. m_x_rod, m_x_crank: sums
+    k m a, k m b. m_rod, m_crank: sums m |a|^2 + I, m |b|^2 + I. m_rod_crank: sum m a conj(b). first_rod, first_crank:
+    sums m a, m b.
     """
 
     r: float
@@ -74,7 +76,7 @@ class System(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Place of the linkage: directions of crank and rod as complex numbers, and the coordinates with their speeds."""
+    """Configuration of the linkage: crank and rod directions as complex numbers, coordinates and speeds."""
 
     crank: Any
     rod: Any
@@ -84,10 +86,12 @@ class Place(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Contact. force: force on the body that carries gap C, complex. normal, tangential: N, the latter on the journal.
+    """Contact.
 
-    on_crank, on_rod: moments of the friction about the pins, N m. penetration: m, negative if apart.
-    elastic: stored energy, J. lost: dissipated power, W.
+    force: complex force on the body that carries the gap C. normal, tangential: N, the tangential one on the journal.
+
+    on_crank, on_rod: friction moments about the pins, N m. penetration: m, negative if apart. elastic: stored energy,
+    J. lost: dissipated power, W.
     """
 
     force: Any
@@ -102,7 +106,7 @@ class Contact(NamedTuple):
 
 @analytic
 def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
-    """Return where the linkage is, from the two components of the gap and of its derivative."""
+    """Return the linkage's configuration, from the two components of the gap and of its derivative."""
     theta = s.start + s.speed * time
     crank = complex(math.cos(theta), math.sin(theta))
     l_sin = s.e - s.r * crank.imag - gap.imag
@@ -124,7 +128,7 @@ def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) ->
     depth_t = normal.real * gap_t.real + normal.imag * gap_t.imag
     spring = s.stiffness * depth * math.sqrt(depth)
     press = max(0.0, spring * (1.0 + rate * depth_t))
-    # Both bodies touch at one point, at the bearing's radius, so that no spurious moment appears.
+    # Both bodies touch at one point on the bearing's radius, so that no spurious moment arises.
     arm = s.bearing_radius - distance
     slide = normal.real * gap_t.imag - normal.imag * gap_t.real
     slide += arm * s.journal_turns * s.speed - s.bearing_radius * s.bearing_turns * rod_t
@@ -147,9 +151,9 @@ def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) ->
 def accelerate(
     p: Place, force: complex, on_crank: float, on_rod: float, load: float, s: System
 ) -> tuple[complex, float, float]:
-    """Return the second derivative of the gap, the acceleration of the slider, and the drive torque.
+    """Return the second derivative of the gap, the slider acceleration, and the drive torque.
 
-    force: generalised force of the gap. on_crank, on_rod: further moments. load: load on the slider along x, N.
+    force: generalised force on the gap. on_crank, on_rod: additional moments. load: load on the slider along x, N.
     """
     w, u = s.speed, p.rod_t
     m_x_rod, m_x_crank = 1j * p.rod * s.m_x_rod, 1j * p.crank * s.m_x_crank
@@ -172,15 +176,18 @@ def accelerate(
 def load_along_x(
     time: float, p: Place, outward: bool, s: System, block: Any, loads: Any, piece: Any, shift: Any
 ) -> float:
-    """Return the loads on the slider at its actual position and velocity, along x. piece, shift: room (loads,)."""
+    """Return the loads on the slider at its actual position and velocity, along x.
+
+    piece, shift: work space (loads,).
+    """
     d = design_at(block, 0)
     theta = s.start + s.speed * time
     find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
-    # The block was derived for unit speed: velocity per unit of crank angle is then the velocity.
+    # The block was derived for unit speed, so velocity per crank angle is the velocity.
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
     force = load_on_slider(m, d, theta, Segment(block, loads, outward, piece, shift))
     moving = d.branch * p.x_t > 0.0
-    if moving != outward:  # near a dead centre the loose slider lags: loads that oppose its motion reverse with it
+    if moving != outward:  # near a dead centre the loose slider lags; loads that oppose its motion reverse with it
         force += with_formulas(0.0, m, d, block, 0, moving, loads) - with_formulas(0.0, m, d, block, 0, outward, loads)
     return float(d.branch * force)
 
@@ -229,7 +236,7 @@ def _record_observations(
 
 
 def observe(times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads) -> Table:
-    """Return the reported quantities of states (7, n), as (10, n).
+    """Return the reported quantities for states (7, n), as (10, n).
 
     Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,
     potential and elastic energy.

@@ -1,8 +1,8 @@
 """Integration through flight and contact: each phase is smooth and ends at an exactly located event.
 
 scipy's DOP853 takes the steps. Within a phase the right-hand side keeps its form: in flight there is no contact force;
-in contact the speed of the initial impact is fixed. After every step the interpolant is checked at intermediate points,
-so that no short contact is missed. Where it crosses the clearance, the phase ends.
+in contact the initial impact speed is fixed. After every step the interpolant is checked at intermediate points, so
+that no short contact is missed. The phase ends where the interpolant crosses the clearance.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from ..errors import SlidercrankError
 from .equations import STATES, System, rates
 
 BETWEEN = 4
-"""Samples per step of the integrator; a vibration of the contact takes six steps or more."""
+"""Samples per integrator step; a vibration of the contact takes at least six steps."""
 FLIGHT = -1.0
-"""Marks flight in place of the damping rate of a contact."""
+"""Value that marks flight in place of a contact's damping rate."""
 _STEPS_PER_TURN = 180
 _ASK = 64
 
 
 @dataclass
 class Trace:
-    """Pieces of an integration: times, states (7, n), damping rates, strokes; times and speeds of impacts.
+    """Results of an integration in pieces: times, states (7, n), damping rates, strokes; times and speeds of impacts.
 
     A time appears twice where one phase ends and the next begins.
     """
@@ -41,7 +41,7 @@ class Trace:
     impact_speeds: list[float] = field(default_factory=list)
 
     def add(self, times: Array, states: Array, rate: float, outward: bool) -> None:
-        """Append samples of one phase."""
+        """Append the samples of one phase."""
         self.times.append(times)
         self.states.append(states)
         self.rates.append(np.full(len(times), rate))
@@ -50,11 +50,11 @@ class Trace:
 
 @dataclass
 class Integrator:
-    """Integration of one linkage over time.
+    """Time integration of one linkage.
 
-    system, block, loads: results of `system.build`. hysteresis, slow_impact: values of the clearance. tolerance:
-    relative error of a step in gap and gap velocity; absolute tolerance relates to the clearance and the speed of a
-    slow impact. time, state (7,), rate: current values. trace: past values.
+    system, block, loads: results of `system.build`. hysteresis, slow_impact: parameters of the clearance. tolerance:
+    relative error of a step in gap and gap velocity; the absolute tolerance relates to the clearance and to the speed
+    of a slow impact. time, state (7,), rate: current values. trace: past values.
     """
 
     system: System
@@ -69,10 +69,10 @@ class Integrator:
     trace: Trace = field(default_factory=Trace)
 
     def advance(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
-        """Integrate to a time; return whether it was reached: False if cancelled on the way.
+        """Integrate up to a time; return whether it was reached: False if cancelled before.
 
         outward: whether it is the outward stroke, which determines the loads. Raises `SlidercrankError` if the
-        integrator finds no sufficiently small step, or if the contact is too soft to hold the journal.
+        integrator finds no sufficiently small step, or if the contact is too soft to contain the journal.
         """
         while self.time < end:
             if not self._phase(end, outward, cancelled):
@@ -85,7 +85,7 @@ class Integrator:
         fixed = (self.system, self.block, self.loads)
         rate, sign = self.rate, 1.0 if self.rate == FLIGHT else -1.0
         turn = 2.0 * math.pi / abs(self.system.speed) if self.system.speed else math.inf
-        # The integrals follow the motion; they do not control the steps.
+        # The integrals follow the motion; they do not control the step size.
         allowed = np.full(STATES, math.inf)
         allowed[:2] = self.tolerance * self.system.clearance
         allowed[2:4] = self.tolerance * self.slow_impact
@@ -135,7 +135,7 @@ class Integrator:
         return depth
 
     def _switch(self, interpolate: Callable[[float], Array], before: float, after: float, sign: float) -> None:
-        """Integrate to the crossing of the clearance between two times, then switch to the other phase."""
+        """Integrate to where the gap crosses the clearance between two times, then switch to the other phase."""
         from scipy.optimize import brentq
 
         def excess_depth(time: float) -> float:
@@ -146,7 +146,7 @@ class Integrator:
             if excess_depth(before) < 0.0
             else before
         )
-        # Beyond it by at least rounding, so that the next phase begins on its own side.
+        # At least a rounding error beyond it, so that the next phase begins on its own side.
         step = float(np.spacing(time))
         while time < after and excess_depth(time) <= 0.0:
             time = min(time + step, after)

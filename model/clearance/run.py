@@ -1,4 +1,4 @@
-"""Motion in time of the linkage with a loose joint, over many turns of the crank."""
+"""Motion of a linkage with a loose joint over many crank turns, in time."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Status = Literal["done", "cancelled"]
 
 @dataclass(frozen=True)
 class ClearanceProgress:
-    """Progress after a turn of the crank. cycle, cycles: number of this turn, and of all. impacts, seconds: so far."""
+    """Progress after a crank turn. cycle, cycles: number of this turn, and of all turns. impacts, seconds: so far."""
 
     cycle: int
     cycles: int
@@ -37,16 +37,16 @@ class ClearanceProgress:
 
 @dataclass(frozen=True)
 class ClearanceRun:
-    """Motion of a linkage with a loose joint, at the samples of the integration, (n,) each, SI and radians.
+    """Motion of a linkage with a loose joint at the samples of the integration, (n,) each, SI and radians.
 
     times: times from zero, s, not equidistant; repeated where contact begins or ends. crank_angle: angle from the
     start, not wrapped. ideal_*: the same linkage without clearance. contact_force: normal force in the joint, N.
-    friction_force: tangential one, on the journal, counter-clockwise positive. penetration: m, negative in flight.
+    friction_force: tangential force on the journal, counter-clockwise positive. penetration: m, negative in flight.
     journal_x, journal_y: centre of the journal relative to that of the bearing, m. in_contact: whether they touch.
     torque: torque on the crank, N m. input_work, load_work, dissipated: energy since the start, J, from the drive, from
     the loads on the slider, and lost in the contact. stored: kinetic, potential and elastic energy, J. impact_times,
-    impact_speeds: at every start of a contact, (k,). cycles: complete turns; status says whether these are all.
-    discard: initial turns that the statistics leave out.
+    impact_speeds: at every start of a contact, (k,). cycles: completed turns; status says whether these are all.
+    discard: initial turns that the statistics exclude.
     """
 
     mechanism: Mechanism
@@ -79,12 +79,12 @@ class ClearanceRun:
 
     @property
     def period(self) -> float:
-        """Time of one turn of the crank, s."""
+        """Time for one crank turn, s."""
         return 2.0 * math.pi / abs(self.mechanism.speed)
 
     @property
     def energy_residual(self) -> Array:
-        """Energy stored since the start, less work of drive and loads, plus dissipated energy, J: zero if exact."""
+        """Energy stored since the start, less the work of drive and loads, plus dissipated energy, J: zero if exact."""
         residual: Array = (self.stored - self.stored[0]) - self.input_work - self.load_work + self.dissipated
         return residual
 
@@ -100,23 +100,23 @@ def simulate(
     progress: Callable[[ClearanceProgress], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> ClearanceRun:
-    """Return the motion over some turns of the crank, which turns steadily at the mechanism's speed.
+    """Return the motion over a number of crank turns at the mechanism's constant speed.
 
-    It starts at crank angle zero from the motion of the ideal linkage, with the journal in the middle of its bearing.
-    As this is in flight, the first turns (`discard`) show how the initial transient dies out. A crank with a loose
-    pivot is turned by a coupling that yields sideways only. Loads act at the actual position and velocity of the
-    slider. The crank angle determines the stroke, so a load that opposes the motion is a prescribed force and not
-    friction. The counterweight is the mechanism's.
+    It starts at crank angle zero with the motion of the ideal linkage and the journal centred in its bearing. This
+    start is in free flight, so the first turns (`discard`) contain the initial transient. If the crank pivot is loose,
+    the crank is turned by a coupling that yields only sideways. Loads act at the slider's actual position and velocity.
+    The crank angle determines the stroke, so a load that opposes the motion is a prescribed force rather than friction.
+    The counterweight belongs to the mechanism.
 
     tolerance: relative tolerance of an integration step (see `Integrator`). progress: function called after every turn.
-    cancelled: function called every few steps; if true, the motion so far is returned with status "cancelled". Raises
-    as `system.build` does, `InputError` for a crank at rest or if no turns remain, and
-    `SlidercrankError` for a contact that is too soft to hold the journal.
+    cancelled: function called every few steps; if it returns true, the motion so far is returned with status
+    "cancelled". Raises the errors of `system.build`, `InputError` for a crank at rest or if no turns remain, and
+    `SlidercrankError` for a contact that is too soft to contain the journal.
     """
     _require_simulable(mechanism, cycles, discard, tolerance)
     began = time.perf_counter()
     linkage = single(mechanism, linkage)
-    # At the motion of the ideal linkage: zero gap and zero gap velocity.
+    # With the motion of the ideal linkage: zero gap and zero gap velocity.
     integrator = Integrator(
         *build(mechanism, linkage, clearance),
         hysteresis=clearance.hysteresis,
@@ -160,7 +160,7 @@ def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, toleranc
 
 
 def _moves_outward(linkage: Linkage, speed: float, before: float, after: float) -> bool:
-    """Whether the ideal slider moves outward in between."""
+    """Whether the ideal slider moves outward between them."""
     middle = linkage.at(0.5 * (before + after) * speed, speed=speed)
     return bool(linkage.sign * middle.slider_velocity > 0.0)
 
@@ -181,7 +181,7 @@ def _collect_run(
     observed = observe(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
     angle = mechanism.speed * times
     ideal = linkage.at(angle, speed=mechanism.speed)
-    # The gap is that of the bearing (on the rod) from the journal when the crank pin is loose, else the reverse.
+    # With a loose crank pin, the gap points from the journal to the bearing (on the rod), else the reverse.
     side = -1.0 if clearance.joint == "crank pin" else 1.0
     return ClearanceRun(
         mechanism=mechanism,

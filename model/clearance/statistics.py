@@ -18,13 +18,14 @@ CONFIDENCE = 0.99
 
 @dataclass(frozen=True)
 class Estimate:
-    """A mean over crank turns, and its uncertainty as an estimate of the long-run mean.
+    """A mean over crank turns, with its uncertainty as an estimate of the long-run mean.
 
     uncertainty: half the width of the 99 % confidence interval, Student's t times s / sqrt(n) with s the standard
-    deviation of the turns; None after one turn. The motion is usually chaotic: two runs that differ by rounding diverge
-    after a few impacts. Single turns therefore do not repeat, and only such means can be compared. The difference of
-    two means scatters sqrt(2) times as widely as either, so it lies within this width in at least 9 of 10 comparisons.
-    Turns count as independent; where the motion repeats after several turns, that overstates the uncertainty.
+    deviation over the turns; None after one turn. The motion is usually chaotic: two runs that differ by a rounding
+    error diverge after a few impacts. Single turns therefore do not repeat, and only such means can be compared. The
+    difference of two means scatters sqrt(2) times as widely as either mean, so it lies within this width in at least 9
+    of 10 comparisons. Turns are taken as independent; if the motion repeats after several turns, this overstates the
+    uncertainty.
     """
 
     value: float
@@ -44,16 +45,16 @@ class Estimate:
 
 @dataclass(frozen=True)
 class ClearanceSummary:
-    """Statistics of the turns after the first `discard` ones. SI.
+    """Statistics over the turns after the first `discard` ones. SI.
 
-    turns: number of counted turns. peak_acceleration: greatest size of the slider's acceleration in a turn, m/s^2;
-    acceleration_ratio: the same over that of the ideal linkage. displacement_deviation: greatest distance from the
+    turns: number of counted turns. peak_acceleration: maximum slider acceleration in a turn, in magnitude, m/s^2;
+    acceleration_ratio: the same divided by that of the ideal linkage. displacement_deviation: maximum distance from the
     ideal slider position in a turn, as a fraction of the stroke. velocity_deviation: likewise for the velocity, m/s.
-    impacts: contacts begun per turn. contact_share: fraction of the time in contact. peak_contact_force: greatest in a
-    turn, N. penetration: greatest in a turn, m. fastest_impact: greatest of all, m/s; None if there was none.
+    impacts: contacts begun per turn. contact_share: fraction of the time in contact. peak_contact_force: maximum in a
+    turn, N. penetration: maximum in a turn, m. fastest_impact: maximum over all turns, m/s; None if there was none.
     input_work, load_work, dissipated, stored: energies per turn, J: work of the drive, work of the loads on the slider,
-    loss in the joint, gain of kinetic, potential and elastic energy. energy_residual: greatest energy balance error in
-    a turn, J.
+    loss in the joint, gain in kinetic, potential and elastic energy. energy_residual: maximum energy balance error in a
+    turn, J.
     """
 
     turns: int
@@ -74,14 +75,14 @@ class ClearanceSummary:
 
 
 def summarise(run: ClearanceRun) -> ClearanceSummary:
-    """Return the statistics of a run. Raises `InputError` if no turn remains after the discarded ones."""
+    """Return the statistics of a run. Raises `InputError` if no turn remains after discarding."""
     turns = run.cycles - run.discard
     if turns < 1:
         raise InputError(
             f"statistics need a complete turn after the first {run.discard}; got {run.cycles} turns; let it run longer"
         )
     marks = run.period * np.arange(run.discard, run.cycles + 1)
-    # Samples of one turn: from the last sample at its beginning to the first one at its end.
+    # Samples of one turn: from the last sample at its beginning to the first at its end.
     first = np.searchsorted(run.times, marks[:-1] * (1.0 + 1e-12), side="right") - 1
     last = np.searchsorted(run.times, marks[1:] * (1.0 - 1e-12), side="left")
     spans = [slice(int(a), int(b) + 1) for a, b in zip(first, last, strict=True)]

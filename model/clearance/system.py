@@ -1,4 +1,4 @@
-"""Numbers of one linkage with a loose joint, from its mechanism; rejects machines that cannot be simulated."""
+"""Parameters of one linkage with a loose joint, from its mechanism; rejects machines that cannot be simulated."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ def build(
 ) -> tuple[System, Array, Loads]:
     """Return the system, its derived block and the structure of its loads. start: crank angle at time zero, rad.
 
-    Raises `InputError` for a crank that accelerates, for masses that leave the motion undetermined, and for a clearance
+    Raises `InputError` for an accelerating crank, for masses that leave the motion undetermined, and for a clearance
     that would let the linkage fold over to its other branch; `AssemblyError` unless the linkage rotates fully.
     """
     _require_simulable(mechanism, linkage, clearance)
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     raw = raw_vector(mechanism)
     raw[:3] = r, l, e
-    # Loads use the slider's velocity as velocity per radian times speed; unit speed lets them use it directly.
+    # Loads take the slider velocity as velocity per radian times speed; with unit speed they can use it directly.
     raw[Raw.SPEED] = 1.0
     loads = load_structure(mechanism)
     block = derived(raw, loads)[0][0]
     d = design_at(block, 0)
     crank_first = complex(d.crank_along, d.crank_across)
     rod_first = l * complex(d.rod_along, d.rod_across)
-    # Mass centres; zero for a massless link, which has none and needs none.
+    # Mass centres; zero for a massless link, which has no mass centre and needs none.
     c = crank_first / d.crank_mass if d.crank_mass else 0.0j
     s = rod_first / d.rod_mass if d.rod_mass else 0.0j
     spin_crank = d.crank_inertia - d.crank_mass * abs(c) ** 2
@@ -69,7 +69,7 @@ def build(
         first_rod=complex(m @ a),
         first_crank=complex(m @ b),
     )
-    # Remaining inertia of the rod once the slider yields, at the rod angle of the strongest coupling.
+    # Effective inertia of the rod once the slider yields, at the rod angle with the strongest coupling.
     if system.m_xx * system.m_rod <= (1.0 + 1e-9) * abs(system.m_x_rod) ** 2:
         raise InputError(
             f"rod and slider need masses that determine how they move when the {clearance.joint} is loose; "
@@ -79,7 +79,7 @@ def build(
 
 
 def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Clearance) -> None:
-    """Raise as `build` does, except for masses."""
+    """Raise the errors of `build`, except those about masses."""
     linkage.require_full_rotation()
     if mechanism.acceleration:
         raise InputError(

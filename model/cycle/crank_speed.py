@@ -1,4 +1,4 @@
-"""Speed and acceleration of a crank over its angle: constant, or along its machine's profile."""
+"""Crank speed and acceleration over the crank angle: constant, or along the machine's speed profile."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def crank_speed(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]
 
 
 def turn_time(mechanism: Mechanism) -> float:
-    """Return the time of one turn, s, along the profile; infinite at rest. An accelerating crank has no such time."""
+    """Return the time of one turn, s, along the profile; infinite at rest. An accelerating crank has no turn time."""
     profile = mechanism.speed_profile
     over_time = mechanism.speed * (1.0 if profile is None else profile.over_time)
     return 2.0 * math.pi / abs(over_time) if over_time else math.inf
 
 
 def acceleration_slope(mechanism: Mechanism, crank_angle: Array) -> Array:
-    """Return the slope of the acceleration over the crank angle, rad/s^2, at crank angles (n,), rad."""
+    """Return the derivative of the acceleration by the crank angle, rad/s^2, at crank angles (n,), rad."""
     profile = mechanism.speed_profile
     if profile is None:
         return np.zeros(crank_angle.shape)

@@ -38,10 +38,9 @@ _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acc
 class Cycle:
     """Curves of one design, each (n,), SI and radians; forces as components along x and y.
 
-    load: load on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise.
-    pivot: force of the frame on the crank; crank_pin: force of the crank on the rod; slider_pin: force of the rod on
-    the slider; guide: force of the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m,
-    counter-clockwise.
+    load: load on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise. pivot: force from the
+    frame on the crank; crank_pin: force from the crank on the rod; slider_pin: force from the rod on the slider; guide:
+    force from the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m, counter-clockwise.
     """
 
     crank_angle: Array
@@ -114,17 +113,17 @@ def cycle(
     speed: ArrayLike | None = None,
     acceleration: ArrayLike | None = None,
 ) -> Cycle:
-    """Return all curves of one fully turning linkage at crank angles (n,), rad.
+    """Return all curves of one fully rotating linkage at crank angles (n,), rad.
 
     speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,) or one value; by default
-    those of the mechanism, along its profile if it has one. For several cylinders the curves are those of one; see
-    `multi_cylinder`. Where a load or friction jumps (exactly at a dead centre, or where the rod turns back), the value
-    is one-sided: that of the inward stroke at a dead centre, of counter-clockwise motion at zero speed. Torque and
-    forces are NaN where friction locks the linkage (see `rubbing` for where they are undetermined). Raises `InputError`
-    for arrays of linkages and for a linkage on another branch than the mechanism's.
+    those of the mechanism, along its profile if it has one. For several cylinders, the curves are those of one
+    cylinder; see `multi_cylinder`. Where a load or friction jumps (exactly at a dead centre, or where the rod
+    reverses), the value is one-sided: that of the inward stroke at a dead centre, that of counter-clockwise motion at
+    zero speed. Torque and forces are NaN where friction locks the linkage (see `rubbing` for where they are
+    undetermined). Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
     linkage = single(mechanism, linkage)
-    angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves
+    angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves all
     mechanism_motion = crank_speed(mechanism, angles)
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(default if argument is None else argument, dtype=np.float64), angles.shape))
@@ -136,32 +135,32 @@ def cycle(
 
 
 def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
-    """Return the curves of one linkage, which need not rotate fully but closes at all crank angles (n,)."""
+    """Return the curves of one linkage, which need not rotate fully but must close at all crank angles (n,)."""
     if cycle_turns(mechanism) > 1:
         return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = CycleWindow(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(values, np.float64, ["C", "W"]) for values in (angles, speeds, accelerations))
-    block = _design_block(mechanism, linkage).copy()  # the kernel sets the speed of each angle
+    block = _design_block(mechanism, linkage).copy()  # the kernel sets the speed at each angle
     _fill_curves(block, loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
 def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
-    """Return the curves of a cycle of two turns, each angle from the machine of its own turn."""
+    """Return the curves over a cycle of two turns, each angle from the machine of its own turn."""
     turn = half_at(mechanism, *linkage.dead_centre_angles, angles)
     parts = [curves_of(half, linkage, angles, speeds, accelerations) for half in halves(mechanism)]
     return Cycle(*(np.where(turn == 0, *(getattr(part, field.name) for part in parts)) for field in fields(Cycle)))
 
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
-    """Return the numbers of one linkage for the equations of motion; missing dead centres are NaN."""
+    """Return one linkage's numbers for the equations of motion; missing dead centres are NaN."""
     design: Design = design_at(_design_block(mechanism, linkage), 0)
     return design
 
 
 def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the crank angles (k,) of one fully turning linkage at which a load has kinks or jumps."""
+    """Return the crank angles (k,) of one fully rotating linkage at which a load has kinks or jumps."""
     require_one_turn(mechanism, "a swing")
     loads = load_structure(mechanism)
     block = _design_block(mechanism, linkage).copy()
@@ -174,7 +173,7 @@ def _design_block(mechanism: Mechanism, linkage: Linkage) -> Table:
     return _design_blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
 
 
-@memoise_by_batch  # searches along the curves of one linkage call this a thousand times
+@memoise_by_batch  # searches along one linkage's curves call this a thousand times
 def _design_blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = design[0]
@@ -186,8 +185,8 @@ def _design_blocks(mechanism: Mechanism, design: Array) -> Table:
 def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) in [0, 2 pi), rad, of possible jumps and kinks in torque and forces.
 
-    At least one; in between every curve is smooth. Those of a cycle of two turns are in [0, 4 pi). Raises `InputError`
-    where friction locks the linkage.
+    There is at least one; in between, every curve is smooth. For a cycle of two turns, the angles are in [0, 4 pi).
+    Raises `InputError` where friction locks the linkage.
     """
     linkage = single(mechanism, linkage)
     if cycle_turns(mechanism) > 1:

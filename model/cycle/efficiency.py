@@ -1,15 +1,16 @@
-"""Work balance of a cycle: load, friction of each joint, kinetic energy.
+"""Work balance over a cycle: loads, friction in each joint, kinetic energy.
 
 Per cycle, one turn or two, with dt = dtheta / w at constant speed:
 
-- input: integral of T over the cycle, in the direction of turning;
-- useful: work done against the loads, minus the integral of F dx (F, x positive outward) and, of torques M on the
-  crank, of M dtheta;
-- friction heat: mu |N| |dx| in the guide, rho |F| times the relative turning in the pins: |phi'| in the slider pin,
-  1 - phi' in the crank pin, 1 in the crank pivot;
-- stored: kinetic energy from the crank's acceleration, if any. Springs and gravity return within a turn what they take.
+- input: integral of T over the cycle, in the direction of rotation;
+- useful: work done against the loads, which is minus the integral of F dx (F, x positive outward) and, for torques M on
+  the crank, of M dtheta;
+- friction heat: mu |N| |dx| in the guide, rho |F| times the relative rotation in the pins: |phi'| in the slider pin, 1
+  - phi' in the crank pin, 1 in the crank pivot;
+- stored: kinetic energy from the crank's acceleration, if any. Springs and gravity return the energy that they store
+  within a turn.
 
-Loads that do net work on the machine drive it: the crank delivers that work less friction.
+Loads that do net work on the machine drive it; the crank then delivers that work less friction.
 """
 
 from __future__ import annotations
@@ -30,16 +31,16 @@ from ..signals.panels import panels_of
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
 
-_PIECES = 8  # least number of panels between two breakpoints
+_PIECES = 8  # minimum number of panels between two breakpoints
 _SAMPLES = 720
 _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class Energies:
-    """Energies of one cycle of one or two turns, J. useful: work done against the load, negative if the load drives.
+    """Energies over one cycle of one or two turns, J. useful: work done against the load, negative if the load drives.
 
-    throughput: integral of |F dx|, to judge whether the useful work exceeds rounding.
+    throughput: integral of |F dx|, used to judge whether the useful work exceeds rounding errors.
     """
 
     input: float
@@ -53,12 +54,12 @@ class Energies:
 
     @property
     def heat(self) -> float:
-        """Friction heat of all joints, J."""
+        """Friction heat in all joints, J."""
         return self.guide_heat + self.crank_pivot_heat + self.crank_pin_heat + self.slider_pin_heat
 
     @property
     def efficiency(self) -> float | None:
-        """Work output divided by work input; None if the load neither takes nor supplies net work.
+        """Work output divided by work input; None if the load neither absorbs nor supplies net work.
 
         If the crank drives, the input is useful work plus friction heat. If the load drives, the input is the work of
         the load and the output is the work that the crank delivers after friction, at least 0.
@@ -70,7 +71,7 @@ class Energies:
 
 
 def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
-    """Return the energies of one cycle for one linkage.
+    """Return the energies over one cycle for one linkage.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not rotate fully.
     """

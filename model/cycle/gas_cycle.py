@@ -4,8 +4,8 @@ With L the logarithm of the volume ratio of an expansion, p V^n = const does the
 
     p_1 V_1 L f((n - 1) L),    f(x) = (1 - exp(-x)) / x,
 
-which is p_1 V_1 L for n = 1; compression likewise with -(n - 1) L. While a valve is open the work is pressure times
-volume. Over a turn the back pressure does none.
+which is p_1 V_1 L for n = 1; compression likewise with -(n - 1) L. While a valve is open, the work is pressure times
+volume. Over a turn the back pressure does no work.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ from ..machine.raw import fullest_inputs
 from ..machine.two_turns import cycle_turns, halves
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
-_SERIES = 1e-4  # |x| below which f is its series: x^4 / 120 is then below rounding
+_SERIES = 1e-4  # |x| below which f is computed from its series: x^4 / 120 is then below rounding
 
 
 class GasCycle(NamedTuple):
-    """Sums over the cylinders of n designs, each (n,), real or complex.
+    """Sums over the cylinders for n designs, each (n,), real or complex.
 
     swept, clearance: volumes, m^3. work: work of the gas on the pistons over a cycle of the machine, one turn or two,
     J. cycle_work: the same over one cycle of each cylinder, two turns for four strokes, J. delivers: for compressors
     only, intake volume divided by swept volume; zero or less where nothing is delivered. delivered: their intake volume
-    per turn, m^3, without those that deliver nothing.
+    per turn, m^3, excluding those that deliver nothing.
     """
 
     swept: Any
@@ -52,22 +52,22 @@ class GasCycle(NamedTuple):
     delivered: Any
 
     def times(self, count: int) -> GasCycle:
-        """Return the sums of several machines."""
+        """Return the combined sums of several machines."""
         return GasCycle(*(count * sum_of for sum_of in self))._replace(delivers=self.delivers)
 
 
 def cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
-    """Return the cylinders among the loads of a machine, each after its place."""
+    """Return the cylinders among a machine's loads, each with its index first."""
     return tuple((k, load) for k, load in enumerate(mechanism.loads) if isinstance(load, Cylinder))
 
 
 def compressors(mechanism: Mechanism) -> tuple[Compressor, ...]:
-    """Return the compressors and pumps among the loads of a machine."""
+    """Return the compressors and pumps among a machine's loads."""
     return tuple(load for load in mechanism.loads if isinstance(load, Compressor))
 
 
 def may_deliver_nothing(mechanism: Mechanism) -> bool:
-    """Return whether delivery of a compressor depends on the design; otherwise it has been checked beforehand."""
+    """Return whether the delivery of a compressor depends on the design; otherwise it has been checked beforehand."""
     gas = {k: load for k, load in cylinders(mechanism.fullest) if isinstance(load, Compressor)}
     varied = {path.split(".")[1] for item in mechanism.varying for path in item.paths if path.startswith("loads.")}
     return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
@@ -76,7 +76,7 @@ def may_deliver_nothing(mechanism: Mechanism) -> bool:
 def gas_cycle(
     mechanism: Mechanism, designs: Array, number: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
-    """Return a number (n,) of the `GasCycle` of designs (n, 3 + k), and its derivatives (n, 3 + k).
+    """Return one number (n,) from the `GasCycle` for designs (n, 3 + k), and its derivatives (n, 3 + k).
 
     For several cylinders on one crankshaft, volumes and works are totals.
     """
@@ -101,7 +101,7 @@ def gas_cycle(
 
 
 def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[GasCycle, GasCycle | None]:
-    """Return the sums of a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
+    """Return the sums over a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
     four = [load.cycle_turns > 1 for load in mechanism.loads]
     sums, slopes = [], []
     for half in halves(mechanism):
@@ -117,7 +117,7 @@ def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> t
 
 
 def _sum_of_turns(first: GasCycle, second: GasCycle) -> GasCycle:
-    """Return the sums of both turns."""
+    """Return the sums over both turns."""
     return first._replace(work=first.work + second.work, cycle_work=first.cycle_work + second.cycle_work)
 
 
@@ -127,7 +127,10 @@ def _derivatives_by_design(number: Callable[[GasCycle], Any], values: GasCycle, 
 
 
 def _gas_sums(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
-    """Return the sums for derived blocks (n, rows). four: for half of two turns, which loads have a cycle of both."""
+    """Return the sums for derived blocks (n, rows).
+
+    four: for one of two turns, which loads have a cycle of two turns.
+    """
     swept = clearance = work = cycles = intake = pumped = delivered = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
     for k, load in cylinders(mechanism):
@@ -151,9 +154,9 @@ def _gas_sums(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> G
 
 
 def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
-    """Return work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
+    """Return the work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
     expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
-    with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas has always expanded
+    with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas is expanded from the start
         full_stroke, ratio = np.log((h + stroke) / h), np.log(high / low)
     opens, delivers = expanded.real < stroke.real, compressed.real > 0.0
     down = np.where(opens, ratio / expansion, full_stroke)
@@ -168,7 +171,7 @@ def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, exp
 
 
 def _mean_factor(x: Any) -> Any:
-    """Return (1 - exp(-x)) / x, exact to rounding also around zero."""
+    """Return (1 - exp(-x)) / x, exact to rounding even near zero."""
     near = np.abs(x.real) < _SERIES
     safe = np.where(near, 1.0, x)
     return np.where(near, 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0)), -np.expm1(-safe) / safe)

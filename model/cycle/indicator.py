@@ -19,7 +19,7 @@ from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import half_at, in_cycle
 
-_BEFORE = 5e-10  # rad by which a crank angle is taken earlier: less than the width at which figures mark jumps
+_BEFORE = 5e-10  # shift to an earlier crank angle, rad: less than the width at which figures mark jumps
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     stroke, sign, top = _piston_top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
-    # The motion a moment earlier: at a dead centre, that of the stroke ending there.
+    # The motion just before: at a dead centre, that of the stroke ending there.
     before = linkage.at(theta - _BEFORE * mechanism.direction, speed=mechanism.direction).slider_velocity
     away = sign * linkage.sign * before > 0.0
     pressure = _pressure_at(load, z, stroke, away)
@@ -56,7 +56,10 @@ def _pressure_at(load: Cylinder, z: Array, stroke: float, away: Any) -> Array:
 
 
 def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tuple[float | None, float | None]:
-    """Return the crank angles, rad in [0, 2 pi), at which expansion and compression end; None for no such event."""
+    """Return the crank angles, rad in [0, 2 pi), at which expansion and compression end.
+
+    None if there is no such event.
+    """
     linkage = single(mechanism, linkage)
     stroke = _piston_top(linkage, load)[0]
     if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
@@ -72,7 +75,7 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
 def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> float | None:
     """Return the crank angle at which burning at peak pressure ends, rad in [0, 4 pi).
 
-    None without such a phase.
+    None if there is no such phase.
     """
     if not isinstance(load, LimitedPressure):
         return None
@@ -84,9 +87,9 @@ def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> floa
 
 
 def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:
-    """Return the crank angle at which the piston is z from its top, rad in [0, 2 pi).
+    """Return the crank angle at which the piston is z from its top position, rad in [0, 2 pi).
 
-    away: whether it moves away from its top. None for a z out of its reach.
+    away: whether the piston moves away from its top position. None if z is out of reach.
     """
     stroke, sign, top = _piston_top(linkage, load)
     outward = away == (sign > 0.0)
@@ -97,6 +100,9 @@ def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, 
 
 
 def _piston_top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
-    """Return stroke, sense in which the piston leaves its top (1 outward), and the top's distance from the pivot."""
+    """Return the stroke, the direction in which the piston leaves its top, and the top's distance from the pivot.
+
+    The direction is 1 for outward.
+    """
     inner, outer = (linkage.sign * float(linkage.at(angle).slider_position) for angle in linkage.dead_centre_angles)
     return outer - inner, *((-1.0, outer) if load.head == "outer dead centre" else (1.0, inner))

@@ -1,4 +1,4 @@
-"""Crank angles at which friction locks a linkage, and whether its loads let it move there (`self_locking`)."""
+"""Crank angles at which friction locks a linkage, and whether its loads can move it there (`self_locking`)."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ _SAMPLES = 256  # samples in about a quarter of the cycle
 class Verdict:
     """Whether friction locks a linkage. margin: rad, -inf if the pins alone lock it.
 
-    locked: crank angles (from, to), rad, where it locks or may jam, the second up to a turn ahead of the first.
-    holds: fraction of the `locked` angles, 0 to 1, where no torque drives the machine under its loads; at the others it
-    may jam. None if nothing is locked.
+    locked: crank angles (from, to), rad, where it locks or may jam; the second is up to a turn ahead of the first.
+    holds: fraction of the `locked` angles, 0 to 1, at which no torque drives the machine under its loads; at the others
+    it may jam. None if it never locks.
     """
 
     margin: float
@@ -38,12 +38,12 @@ class Verdict:
 
     @property
     def locks(self) -> bool:
-        """Whether there are locked angles."""
+        """Whether there are any locked angles."""
         return not self.margin > 0.0
 
 
 def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
-    """Return whether friction locks one fully turning linkage, and where."""
+    """Return whether friction locks one fully rotating linkage, and where."""
     linkage = single(mechanism, linkage)
     margin = float(locking_margin(mechanism.friction, np.array([_dimensions(linkage)]))[0][0])
     if margin > 0.0:
@@ -61,7 +61,7 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
 
 
 def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
-    """Return whether one linkage "drives", "locks" or "may jam" under its loads at crank angles (n,), rad."""
+    """Return whether one linkage "drives", "locks" or "may jam" under its loads at each crank angle (n,), rad."""
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _design(mechanism, linkage)
@@ -118,7 +118,7 @@ def _locked_spans(friction: Friction, linkage: Linkage, a: float, b: float) -> l
 
 
 def _merge_spans(spans: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Return spans in ascending order, merging those that touch, also across the end of the turn."""
+    """Return spans in ascending order, merging adjacent ones, also across the end of the turn."""
     joined: list[tuple[float, float]] = []
     for a, b in spans:
         if joined and a - joined[-1][1] < 1e-12:
@@ -132,7 +132,7 @@ def _merge_spans(spans: list[tuple[float, float]]) -> tuple[tuple[float, float],
 
 
 def _has_balance_between(d: Design, theta: float, load: float) -> bool:
-    """Return whether h crosses zero in between, although both its ends point the same way."""
+    """Return whether h crosses zero in between although both its ends have the same sign."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
     b: Balance = balance(sine, cosine, m, d, load)
@@ -148,7 +148,7 @@ def _has_balance_between(d: Design, theta: float, load: float) -> bool:
 
     size = abs(b.pull) + abs(weight) + abs(b.moment * m.per_l_cos) + np.hypot(b.rod_x, b.rod_y)
     if size == 0.0:
-        return True  # nothing acts: all forces are zero
+        return True  # no load acts: all forces are zero
     largest = 1e6 * size
     upward = 1.0 if h(largest) > 0.0 else -1.0
     steps = np.concatenate([[0.0], np.geomspace(1e-9 * size, largest, 400)])

@@ -1,9 +1,9 @@
 """Several identical cylinders on one crankshaft: total torque, shaking force, moment and rocking couple.
 
-Each cylinder is a single machine at its own crank angle, seen in axes that turn with its bank (`arrangement`). Gravity
-is rotated into these axes, and the results are rotated out of them. Actions on the shaft or the frame add up. With z
-the place of a cylinder along the shaft, its shaking force F gives the rocking couple (-z F_y, z F_x) about the plane z
-= 0.
+Each cylinder is a single machine at its own crank angle, in axes that are rotated with its bank (`arrangement`).
+Gravity is rotated into these axes, and the results are rotated back. Forces and moments on the shaft and the frame add
+up. If z is the position of a cylinder along the shaft, its shaking force F contributes the rocking couple (-z F_y, z
+F_x) about the plane z = 0.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ from .crank_speed import crank_speed, speed_knots
 from .cycle import breakpoints, cycle
 from .shaking import shaking_curves
 
-_PIECES = 12  # least number of panels in a turn
+_PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 256
-_ROUNDING = 1e-14  # remainder of forces that cancel, as a fraction of their sizes
+_ROUNDING = 1e-14  # remainder of cancelling forces, relative to their magnitudes
 _NOTHING = 1e-12
-"""Fraction of the cylinders' individual sizes below which the total counts as zero: they cancel up to rounding."""
+"""If the total is below this fraction of the cylinders' individual magnitudes, it counts as zero: they cancel up to
+rounding."""
 _TORQUE, _X, _Y, _FORCE, _MOMENT, _COUPLE, _TIME = range(7)
 
 
 @dataclass(frozen=True)
 class MultiCylinderCurves:
-    """Curves of all cylinders together at crank angles of the shaft, each (n,), SI, in the axes of zero bank.
+    """Combined curves of all cylinders at crank angles of the shaft, each (n,), SI, in the axes of zero bank.
 
     torque: drive torque, N m, counter-clockwise. force_x, force_y, moment: shaking force, N, and moment about the
     shaft, N m, on the frame. couple_x, couple_y: rocking couple, N m. torques: torque of each cylinder, (k, n).
@@ -56,12 +57,12 @@ class MultiCylinderCurves:
 
 @dataclass(frozen=True)
 class MultiCylinderCycle:
-    """Numbers of all cylinders together over a turn; SI.
+    """Statistics over a turn for all cylinders together; SI.
 
-    least, greatest: torque. peak: torque of greatest magnitude. mean: mean torque over the crank angle. rms: RMS torque
-    over time. fluctuation: RMS deviation of the torque from its mean, over the crank angle. energy_change: range of the
-    integral of torque minus mean, J, which a flywheel absorbs. shaking_force, shaking_moment, couple: greatest
-    magnitudes. rms_shaking_force, rms_shaking_moment: over time.
+    least, greatest: extremes of the torque. peak: torque with the maximum magnitude. mean: mean torque over the crank
+    angle. rms: RMS torque over time. fluctuation: RMS deviation of the torque from its mean, over the crank angle.
+    energy_change: range of the integral of torque minus mean, J, which a flywheel absorbs. shaking_force,
+    shaking_moment, couple: maximum magnitudes. rms_shaking_force, rms_shaking_moment: over time.
     """
 
     least: Extreme
@@ -79,7 +80,7 @@ class MultiCylinderCycle:
 
 
 def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> MultiCylinderCurves:
-    """Return the curves of all cylinders together at crank angles (n,) of the shaft, rad; raises as `cycle` does."""
+    """Return the combined curves of all cylinders at shaft crank angles (n,), rad; raises as `cycle` does."""
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     speed, acceleration = crank_speed(mechanism, theta)
     torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
@@ -100,14 +101,14 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
 
 
 def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the crank angles of the shaft, rad from 0, where a torque may jump or turn sharply."""
+    """Return the shaft crank angles, rad from 0, at which the torque may have a jump or a kink."""
     angles = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
     angles += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
     return np.unique(np.mod(np.concatenate(angles), cycle_turns(mechanism) * TURN))
 
 
 def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinderCycle:
-    """Return the numbers of all cylinders together; raises as `cycle` and `breakpoints` do."""
+    """Return the statistics for all cylinders together; raises as `cycle` and `breakpoints` do."""
     linkage = single(mechanism, linkage)
     cuts = multi_cylinder_breakpoints(mechanism, linkage)
     period = cycle_turns(mechanism) * TURN
@@ -145,7 +146,7 @@ def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
 
 
 def _uncancelled_sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the sizes that the curves would have if the cylinders did not cancel."""
+    """Return the magnitudes that the curves would have if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
@@ -159,14 +160,14 @@ def _uncancelled_sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
-    """Return an extreme; zero where cylinders cancel up to rounding."""
+    """Return an extreme value, or zero if cylinders cancel up to rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
     return Extreme(extreme.value, angle_in_cycle(extreme.angle, period))
 
 
 def _force_extreme(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
-    """Return the greatest size of a force from its square."""
+    """Return the maximum magnitude of a force from its square."""
     greatest = panels.extremes(curve)[1]
     return _unless_cancelled(
         Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period

@@ -1,22 +1,22 @@
-"""Self-locking: where friction prevents any crank torque, however great, from driving the slider as prescribed.
+"""Self-locking: friction prevents any crank torque, however large, from driving the slider as prescribed.
 
-From `rubbing`: the force balance of the rod is one equation h(y) = 0, whose slope tends to along + D and along - D
-for y -> +-infinity, with
+From `rubbing`: the rod's moment balance is one equation h(y) = 0, whose slope tends to along + D and along - D for y ->
++-infinity, with
 
     D = q (rho_B sgn(phi' w) - rho_A sgn(w)) - mu across sgn(x' w),        q = sqrt(1 + mu^2).
 
-Where |D| < |along| both slopes have one sign and there is a solution for every load. Where |D| >= |along| both ends of
-h point the same way, and the number of solutions is even: none for loads that resist (the linkage *locks*: the harder
-the crank pushes, the more the guide holds), two or more for loads that drive it (it *may jam*: the prescribed motion
-and a wedged state both balance, and the forces do not determine which one occurs). The condition contains no load and
-no mass; reversing the rotation changes only the sign of D. Without pin friction it says that the transmission angle is
-below arctan(mu).
+Where |D| < |along|, both slopes have the same sign and there is exactly one solution for every load. Where |D| >=
+|along|, both ends of h have the same sign, and the number of solutions is even. For resisting loads there is none: the
+linkage *locks*, because the harder the crank pushes, the more the guide resists. For loads that drive it there are two
+or more: it *may jam*, because both the prescribed motion and a wedged state are in equilibrium, and the forces do not
+determine which one occurs. The condition involves no load and no mass; reversing the rotation only changes the sign of
+D. Without pin friction, it says that the transmission angle is below arctan(mu).
 
-|D| is greatest, and |along| least, where the crank is normal to the slider line and points away from it,
-sin(theta) = -sgn(e); there l cos(phi) = mu l sin(phi) + q (rho_A + rho_B) in the limit from one side. The margin is
-therefore exactly
+|D| is largest, and |along| smallest, where the crank is normal to the slider line and points away from it, sin(theta) =
+-sgn(e). At that angle, in the limit from one side, locking begins when l cos(phi) = mu l sin(phi) + q (rho_A + rho_B).
+The margin is therefore exactly
 
-    least transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).
+    minimum transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ from ..machine.raw import Raw
 
 
 def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
-    """Return the self-locking margin, rad, of designs (n, 3): crank, rod, offset, m, each rotating fully.
+    """Return the self-locking margin, rad, for designs (n, 3): crank, rod, offset, m, each rotating fully.
 
     It does not depend on loads and masses: zero or less means that the linkage locks or may jam somewhere (see module).
-    -inf where the sum of the friction circles' radii is at least the rod length.
+    -inf if the sum of the friction circle radii is at least the rod length.
     """
     return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
 
@@ -65,7 +65,7 @@ def require_driving(friction: Friction, linkage: Linkage) -> None:
 
 
 def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
-    """Return the self-locking margin, as `locking_margin`, for designs (n, 3 + k) of a machine with varying numbers."""
+    """Return the self-locking margin, like `locking_margin`, for designs (n, 3 + k) of a machine with variables."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
     friction = mechanism.friction
@@ -91,7 +91,7 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
 
 
 def _lock_margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[Array, Array | None, Array | None]:
-    """Return margin (n,), its gradients (n, 3) and its derivatives by guide and circles (n, 2)."""
+    """Return the margin (n,), its gradients (n, 3), and its derivatives by guide and pin friction (n, 2)."""
     r, l, a = designs[:, 0], designs[:, 1], np.abs(designs[:, 2])
     turns = circles < l
     safe = np.where(turns, l, 2.0 * circles + 1.0)

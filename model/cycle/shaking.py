@@ -21,7 +21,7 @@ from .crank_speed import crank_speed
 
 @dataclass(frozen=True)
 class ShakingCurves:
-    """Curves of one design, each (n,), SI and radians: on the frame, without gravity and load.
+    """Curves of one design, each (n,), SI and radians: actions on the frame, without gravity and loads.
 
     force_x, force_y: shaking force, N. moment: moment about the crank pivot, N m, counter-clockwise. reflected_inertia:
     kg m^2.
@@ -42,7 +42,7 @@ def shaking_curves(
     speed: Array | None = None,
     acceleration: Array | None = None,
 ) -> ShakingCurves:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad.
+    """Return the curves of one fully rotating linkage at crank angles (n,), rad.
 
     speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,); by default those of the
     mechanism, along its profile if it has one.

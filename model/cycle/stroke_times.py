@@ -1,8 +1,8 @@
 """Times of the outward and the inward stroke, at constant speed or along a speed profile.
 
-The time of a stroke is the integral of d(theta) / |omega| between its dead centres. At constant speed that is its
-crank angle divided by the speed; with omega = speed p(theta) it is the integral of 1 / p divided by |speed|. At
-constant speed all cylinders have the same stroke times; along a profile each has its own.
+The time of a stroke is the integral of d(theta) / |omega| between its dead centres. At constant speed that is its crank
+angle divided by the speed; with omega = speed p(theta), it is the integral of 1 / p divided by |speed|. At constant
+speed all cylinders have the same stroke times; along a profile, each cylinder has its own.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from ..machine.mechanism import Mechanism
 from ..machine.members import cylinders_of
 from ..machine.speed_profile import Profile
 
-_EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is rounding
+_EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is a rounding error
 DIFFERS = "differs"
-"""Reported as the slow stroke if cylinders differ."""
+"""Reported instead of a slow stroke if cylinders differ."""
 
 
 class ScaledStrokeTimes(NamedTuple):
@@ -33,18 +33,18 @@ class ScaledStrokeTimes(NamedTuple):
 
     @property
     def ratio(self) -> Any:
-        """Time of the outward stroke divided by that of the inward stroke."""
+        """Duration of the outward stroke divided by that of the inward stroke."""
         return self.outward / self.inward
 
 
 def scaled_stroke_times(
     mechanism: Mechanism, crank: Any, rod: Any, offset: Any, *, cylinder: int = 0
 ) -> ScaledStrokeTimes:
-    """Return the scaled stroke times of linkages that rotate fully, lengths in m; complex lengths carry a derivative.
+    """Return the scaled stroke times of fully rotating linkages, lengths in m; complex lengths carry a derivative.
 
     On the open branch the crank turns counter-clockwise through pi + b from the outer to the inner dead centre, where b
     is the excess angle; on the crossed branch, through pi - b. That is the inward stroke if the crank rotates
-    counter-clockwise, the outward stroke if it rotates clockwise.
+    counter-clockwise, and the outward stroke if it rotates clockwise.
     """
     profile = mechanism.speed_profile
     if profile is None:
@@ -64,7 +64,7 @@ def scaled_stroke_times(
 
 
 def massless_machine(mechanism: Mechanism) -> Mechanism:
-    """Return a machine without masses and loads that has the same stroke times."""
+    """Return a machine without masses and loads but with the same stroke times."""
     nominal = mechanism.nominal
     if nominal.speed_profile is None:
         return Mechanism(speed=nominal.speed, branch=nominal.branch)
@@ -83,9 +83,9 @@ def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
 
 
 def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the time of the slower stroke over that of the faster one, 1 or more.
+    """Return the duration of the slower stroke divided by that of the faster one, 1 or more.
 
-    With several cylinders, the ratio is the first cylinder's.
+    With several cylinders, the ratio is that of the first cylinder.
     """
     if mechanism.speed_profile is None:
         return linkage.time_ratio
@@ -95,7 +95,7 @@ def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 
 def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
-    """Return which stroke takes longer: "outward", "inward", "equal", or "differs" if cylinders differ."""
+    """Return which stroke is slower: "outward", "inward", "equal", or "differs" if cylinders differ."""
     if mechanism.speed_profile is None:
         return linkage.slow_stroke(direction=mechanism.direction)
     linkage.require_full_rotation()

@@ -1,4 +1,4 @@
-"""Breakpoints of many designs: crank angles that cut each cycle into segments on which every curve is smooth."""
+"""Breakpoints for many designs: crank angles that cut each cycle into segments on which every curve is smooth."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
 
 
 class Breakpoints(NamedTuple):
-    """Breakpoints (n, k) of n designs in ascending crank angle, the first `many` (n,) of each; see `segments.Cuts`.
+    """Breakpoints (n, k) for n designs in ascending crank angle, of which the first `many` (n,) are valid.
 
-    A design that friction locks has none.
+    See `segments.Cuts`.
+
+    A design that friction locks has no breakpoints.
     """
 
     angle: Table
@@ -45,7 +47,7 @@ def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoint
 
 
 def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: bool) -> Breakpoints:
-    """Return the breakpoints of designs by their blocks (n, rows, 1), each rotating fully."""
+    """Return the breakpoints for designs given by their blocks (n, rows, 1), each rotating fully."""
     shape = len(blocks), breakpoint_capacity(loads)
     breakpoints = Breakpoints(
         np.empty(shape),

@@ -1,7 +1,7 @@
-"""The cycle of a machine with friction: signs of sliding in each segment; angles where the guide's force changes sides.
+"""Friction over the cycle: signs of sliding in each segment, and angles at which the guide force changes sides.
 
 Friction reverses with the slider (dead centres), with the rod (where the crank is normal to the slider line) and with
-the guide's force. The first two are cuts of `segments.cut_cycle`. The third, a kink in every curve, is found here.
+the guide force. The first two are cuts from `segments.cut_cycle`. The third, a kink in every curve, is located here.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from .segments import (
 )
 
 CONTACT = 5
-"""Code of a cut where the guide's force changes sides."""
+"""Code of a cut at which the guide force changes sides."""
 _SAMPLES = 192
 _BISECTIONS = 60
 _TURN = 2.0 * math.pi
 
 
 def rubs(mechanism: Mechanism) -> bool:
-    """Whether kernels have to include friction."""
+    """Whether kernels must include friction."""
     return bool(mechanism.fullest.friction.acts)
 
 
@@ -49,7 +49,7 @@ def _touch(theta: Any, d: Any, segment: Segment, grip: Any, swing: Any) -> Any:
 
 @analytic
 def _senses(probe: Any, d: Any) -> Any:
-    """Senses of rotation of the crank, the rod, and the crank relative to the rod, 1 or -1."""
+    """Signs of the rotation of the crank, of the rod, and of the crank relative to the rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0, turn if m.rod_1 < 1.0 else -turn
@@ -57,7 +57,7 @@ def _senses(probe: Any, d: Any) -> Any:
 
 @analytic
 def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
-    """Return the `Sides` of the segment around the crank angle `probe`."""
+    """Return the `Sides` for the segment around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
     turn, swing, grip = _senses(probe, d)
@@ -70,14 +70,14 @@ def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
 def cut_contacts(
     d: Any, block: Any, loads: Any, watch: CycleWindow, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
-    """Add cuts where the guide's force changes sides to the first `count` cuts; return their new number.
+    """Add cuts at which the guide force changes sides to the first `count` cuts; return their new number.
 
-    Found between neighbouring samples: two changes within one spacing, where the force is almost zero, are ignored.
-    There the curves follow one side, with an error of at most the friction of that force.
+    Changes are found between neighbouring samples: two changes within one spacing, where the force is almost zero, are
+    ignored. The curves there follow one side, with an error of at most the friction due to that force.
     """
     kappa = crowding(d.r, d.l, d.e)
     first, ahead, n = cuts.angle[0], 0, count
-    for s in range(count - 1, -1, -1):  # backwards: additions move only cuts that have already been processed
+    for s in range(count - 1, -1, -1):  # backwards, so that insertions move only cuts that have already been processed
         while cuts.angle[ahead] < first:  # except those after the last cut that lie before the first one
             ahead += 1
         a = cuts.angle[ahead + s]
@@ -92,7 +92,7 @@ def cut_contacts(
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
         left, before, right, after = a, 0.0, a, 0.0
         p, q, halvings, i = a, a, 0, 0
-        # Samples and bisection share one call, which is inlined together with all loads.
+        # Samples and bisection share one call site, into which all loads are inlined.
         while i <= points:
             sampled = a if i == 0 else b if i == points else uncrowded(low + (high - low) * i / points, kappa)
             theta = sampled if halvings == 0 else 0.5 * (p + q)

@@ -1,7 +1,8 @@
 """Torques of loads on the crank, subtracted from the drive torque.
 
-By virtual work a torque M on the crank changes the drive torque by -M and no joint force: T = T_linkage - M(theta).
-Where the slider drives, -M adds to the couple of weight and inertia in the crank's moments about the pivot.
+By virtual work, a torque M on the crank changes the drive torque by -M and leaves all joint forces unchanged: T =
+T_linkage - M(theta). If the slider drives, -M adds to the couple of weight and inertia in the crank's moments about the
+pivot.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ _CRANK_TORQUE = int(Enters.CRANK_TORQUE)
 
 @analytic
 def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Segment) -> Any:
-    """Return a torque less those of the loads on the crank, N m, at a crank angle within a segment.
+    """Return a torque minus the torques of the loads on the crank, N m, at a crank angle within a segment.
 
-    way: 1 where the crank turns counter-clockwise, -1 clockwise.
+    way: 1 if the crank turns counter-clockwise, -1 clockwise.
     """
     block, loads, _, piece, shift = segment
     if not loads.on_crank:
         return torque
-    # Subtracted one by one within the loop, so that machines without such a load keep their last digits.
+    # Subtracted one by one within the loop, so that results without such a load are unchanged to the last digit.
     for k in range(loads.kind.shape[0]):
         q = DESIGN + LOAD_ROWS * k
         if loads.kind[k] == _CRANK_TORQUE:
@@ -47,5 +48,5 @@ def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Seg
 
 @analytic
 def sense_of(d: Any) -> float:
-    """Return the sense in which the crank turns: 1 counter-clockwise or at rest, -1 clockwise."""
+    """Return the sense of rotation of the crank: 1 counter-clockwise or at rest, -1 clockwise."""
     return 1.0 if d.speed.real >= 0.0 else -1.0

@@ -1,17 +1,17 @@
 """Pressure of the gas in a cylinder over a turn: expansion, valve events and compression in closed form.
 
-With z the distance of the piston from its top, S the stroke, h the height of the clearance (its volume over the piston
-area), p_l and p_h the low and the high pressure, the gas follows p V^n = const while the valves are shut:
+Let z be the distance of the piston from its top, S the stroke, h the height of the clearance (its volume divided by the
+piston area), p_l and p_h the low and the high pressure. The gas follows p V^n = const while the valves are closed:
 
 - away from the top: p_h (h / (h + z))^n_e, until it has fallen to p_l at z_e = h ((p_h / p_l)^(1/n_e) - 1); then p_l;
 - towards the top: p_l ((h + S) / (h + z))^n_c, until it has risen to p_h at z_c = (h + S) (p_l / p_h)^(1/n_c) - h;
   then p_h.
 
-The pressure is continuous and turns sharply at z_e and z_c, the valve events. A liquid, whose exponents are given as
-zero, has z_e = 0 and z_c = S: the pressure jumps at the dead centres.
+The pressure is continuous, with kinks at the valve events z_e and z_c. A liquid, given by zero exponents, has z_e = 0
+and z_c = S: the pressure jumps at the dead centres.
 
-Gas that burns at limited pressure keeps p_h from the top to z_b, where burning ends, and expands from there:
-p_h ((h + z_b) / (h + z))^n_e. It has no valve events.
+Gas that burns at limited pressure stays at p_h from the top to z_b, where burning ends, and expands from there: p_h ((h
++ z_b) / (h + z))^n_e. It has no valve events.
 """
 
 from __future__ import annotations
@@ -25,26 +25,26 @@ from ..machine.loads.load import Enters
 _BURNING_CYLINDER = int(Enters.BURNING_CYLINDER)
 
 _NEAR = 1e-12
-"""Fraction of the stroke: a place nearer to a valve event than this counts as beyond it."""
+"""Fraction of the stroke: closer to a valve event than this, a position counts as beyond it."""
 
 
 @analytic
 def expanded_at(h: Any, ratio: Any, exponent: Any) -> Any:
-    """Return z_e, m, for a ratio p_h / p_l: where the gas has expanded to the low pressure."""
+    """Return z_e, m, for a ratio p_h / p_l: the position at which the gas has expanded to the low pressure."""
     return h * (power(ratio, inverse(exponent)) - 1.0)
 
 
 @analytic
 def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
-    """Return z_c, m, for a ratio p_h / p_l: where the gas has been compressed to the high pressure."""
+    """Return z_c, m, for a ratio p_h / p_l: the position at which the gas has been compressed to the high pressure."""
     return (h + stroke) * inverse(power(ratio, inverse(exponent))) - h
 
 
 @analytic
 def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
-    """Return z_e and z_c of the cylinder that is load k of a derived block.
+    """Return z_e and z_c for the cylinder that is load k in a derived block.
 
-    Where gas burns, the first is z_b, and there is no second one.
+    If gas burns, the first is z_b, and there is no second event.
     """
     q = DESIGN + LOAD_ROWS * k + AREA
     if kind == _BURNING_CYLINDER:
@@ -66,9 +66,9 @@ def piece_at(d: Any, block: Any, j: int, k: int, kind: int, x: float) -> int:
 
 @analytic
 def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
-    """Return the force of gas and back pressure on the piston, N outward, on a piece of `piece_at`."""
+    """Return the force from gas and back pressure on the piston, N outward, on a piece from `piece_at`."""
     q = DESIGN + LOAD_ROWS * k
-    # Chosen, as in `segments.with_formulas`, so that machines without a cylinder keep their last digits.
+    # Selected, as in `segments.with_formulas`, so that results without a cylinder are unchanged to the last digit.
     position = m.x if d.branch.real > 0.0 else -m.x
     sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])
     area, h, low, high = block[q + 2, j], block[q + 3, j], block[q + 4, j], block[q + 5, j]
@@ -85,7 +85,7 @@ def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: 
 
 @analytic
 def burning_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
-    """Return the force of gas burning at limited pressure, as `gas_force` does."""
+    """Return the force from gas burning at limited pressure, like `gas_force`."""
     q = DESIGN + LOAD_ROWS * k
     position = m.x if d.branch.real > 0.0 else -m.x
     sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])

@@ -1,15 +1,16 @@
 """Inertia effects of the moving masses: reflected inertia, shaking force and shaking moment.
 
-With A the crank pin, S the rod's first moment about it, C that of the crank (counterweight included) about the pivot:
+Let A be the crank pin, S the rod's first moment about it, and C that of the crank (counterweight included) about the
+pivot:
 
     J = I_O + m_rod r^2 + 2 phi' (A . S) + phi'^2 I_A + (m_s + m_a) x'^2
 
-so that J w^2 / 2 is the kinetic energy; m_s is the slider's mass, m_a the mass moving with it, such as fluid in a pipe.
-The shaking force is minus the rate of change of the linkage's momentum, the resultant of all inertia forces; the
+so that J w^2 / 2 is the kinetic energy; m_s is the slider's mass, and m_a the mass moving with it, such as fluid in a
+pipe. The shaking force, the resultant of all inertia forces, is minus the rate of change of the linkage's momentum. The
 shaking moment is minus the rate of change of its angular momentum about the crank pivot. They are the machine's actions
-on its frame through pivot, guide and motor (including the reaction of the drive torque: the motor stands on the frame).
-Gravity and loads, including added masses, are left out: gravity is constant or balanced by the foundation at rest, and
-loads are usually closed within the machine. Friction is internal and changes neither.
+on its frame through pivot, guide and motor (including the reaction to the drive torque, as the motor stands on the
+frame). Gravity and loads, including added masses, are left out: gravity is constant or balanced by the foundation at
+rest, and loads usually have their reaction within the machine. Friction is internal and affects neither of them.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
 
 @analytic
 def shaking(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
-    """Return shaking force along x and y, N, and shaking moment about the crank pivot, N m, on the frame.
+    """Return the shaking force along x and y, N, and the shaking moment about the crank pivot, N m, on the frame.
 
-    Counter-clockwise moments are positive. Force -[m a]: of the crank C_tt, of the rod m_rod a_A + S_tt, of the slider
-    m_s a_B. Moment -[r x m a]: I_O alpha, A x (m_rod a_A + S_tt) + S x a_A + I_A phi_tt, and -e m_s a_B.
+    Counter-clockwise moments are positive. Force -[m a]: from the crank C_tt, from the rod m_rod a_A + S_tt, from the
+    slider m_s a_B. Moment -[r x m a]: I_O alpha, A x (m_rod a_A + S_tt) + S x a_A + I_A phi_tt, and -e m_s a_B.
     """
     w2, alpha = d.speed * d.speed, d.acceleration
     rod_w2 = m.rod_1 * m.rod_1 * w2

@@ -1,27 +1,28 @@
 """Inverse dynamics with Coulomb friction, solved consistently in all four joints.
 
-Friction adds to the equations of `dynamics` (mu: the guide's coefficient, rho: radius of a pin's friction circle, w the
-crank speed):
+Friction adds terms to the equations in `dynamics` (mu: the guide's coefficient, rho: radius of a pin's friction circle,
+w the crank speed):
 
 - slider: B_x = pull + mu |N| sgn(x' w), N = -(B_y + W), W = m_s G_y;
 - rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B sgn(phi' w) |B| = 0;
 - crank, moments about the pivot: T gains rho_A s_A |A| + rho_O sgn(w) |P|, with s_A = sgn((1 - phi') w).
 
-|phi'| < 1 where l > r + |e|, so that s_A = sgn(w); on a swing the rod may turn faster than the crank, where x is on the
-other side of the pivot.
+|phi'| < 1 if l > r + |e|, so s_A = sgn(w); on a swing the rod may turn faster than the crank, where x is on the other
+side of the pivot.
 
 With B_x eliminated, and A - B known, the moment balance is one equation h(y) = 0 for y = B_y. Where y > -W or y < -W
-its slope is along -+ mu across, plus at most (rho_A + rho_B) sqrt(1 + mu^2) in size, since d|A|/dy and d|B|/dy are at
-most |(mu, 1)|. Hence, with q = sqrt(1 + mu^2),
+its slope is along -+ mu across, plus a term of magnitude at most (rho_A + rho_B) sqrt(1 + mu^2), since d|A|/dy and
+d|B|/dy are at most |(mu, 1)|. Hence, with q = sqrt(1 + mu^2),
 
     |along| > mu |across| + q (rho_A + rho_B)                                                             (*)
 
 makes h monotone: there is one solution, and the sign of h(-W) shows on which side of -W it lies. Divided by l q, (*)
-says that the transmission angle exceeds arctan(mu) + asin((rho_A + rho_B) / l). Where it fails, no forces are returned.
+says that the transmission angle exceeds arctan(mu) + asin((rho_A + rho_B) / l). Where it does not hold, no forces are
+returned.
 
-On the known side h is smooth. Every slope between two points lies within the bounds above, so a point gives a bracket
-of the root; Newton's iteration, halving the bracket where it would leave it, converges. One further step, in the
-design's arithmetic, propagates an imaginary part: implicit function theorem.
+On the known side h is smooth. Every slope between two points is within the bounds above, so one point gives a bracket
+for the root; Newton's method, with bisection whenever it would leave the bracket, converges. One further step, in the
+design's arithmetic, propagates an imaginary part by the implicit function theorem.
 """
 
 from __future__ import annotations
@@ -41,8 +42,8 @@ _CONVERGED = 1e-15
 class Sides(NamedTuple):
     """Signs, each +1 or -1, constant within a segment of the cycle; all 0 without friction.
 
-    turn: sign of the crank speed (+1 at rest). slide: sign of the slider's velocity along x. swing: sign of the rod's
-    angular velocity. press: sign of B_y + W, opposite to the guide's force. grip: sign of the crank's angular velocity
+    turn: sign of the crank speed (+1 at rest). slide: sign of the slider velocity along x. swing: sign of the rod's
+    angular velocity. press: sign of B_y + W, opposite to the guide force. grip: sign of the crank's angular velocity
     relative to the rod.
     """
 
@@ -55,21 +56,21 @@ class Sides(NamedTuple):
 
 @analytic
 def drives(l_cos: Any, l_sin: Any, d: Design) -> Any:
-    """Return the margin of condition (*), m: positive where the forces are determined for any load."""
+    """Return the margin in condition (*), m: positive where the forces are determined for any load."""
     mu = d.guide_friction
     return abs(l_cos) - mu * abs(l_sin) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
 
 
 @analytic
 def always_drives(d: Design) -> Any:
-    """Return the least `drives` over the cycle, at sin(theta) = -sgn(e)."""
+    """Return the minimum of `drives` over the cycle, at sin(theta) = -sgn(e)."""
     pin_distance = d.r + abs(d.e)
     return drives(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
 
 
 @analytic
 def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, swing: Any) -> Any:
-    """Return h(-W) times the branch: it has the sign of the guide's force, and is smooth between other breakpoints."""
+    """Return h(-W) times the branch: it has the sign of the guide force, and is smooth between other breakpoints."""
     b = balance(sine, cosine, m, d, load)
     y = -d.slider_mass * d.gravity_y
     ax, ay = b.pull + b.rod_x, y + b.rod_y
@@ -133,7 +134,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
 
 @analytic
 def joint_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
-    """Return drive torque and reactions, with friction unless `sides` are 0, or None where friction is not compiled."""
+    """Return drive torque and reactions, with friction unless `sides` are 0, or None if friction is not compiled."""
     if sides is None:
         return forces(sine, cosine, m, d, load)
     if sides.turn == 0.0:

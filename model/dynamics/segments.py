@@ -1,9 +1,9 @@
 """The cycle cut into segments on which every curve is smooth.
 
-Loads that change at a dead centre, tables with knots, valves that open, and a position error that counts only over a
-part of the stroke make the curves piecewise: smooth between *breakpoints*, with a kink or a jump on them. Within a
-segment the stroke and the piece of every table and cylinder are fixed, so the curve there is an analytic function of
-crank angle and design.
+Loads that change at a dead centre, tables with knots, valves that open, and a position error that counts only over part
+of the stroke make the curves piecewise. They are smooth between *breakpoints*, at which they have a kink or a jump.
+Within a segment the stroke and the piece of every table and cylinder are fixed, so the curve there is an analytic
+function of crank angle and design.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ _OUTER, _INNER, _FIXED, _KNOT, _FRACTION = range(5)
 _EXPANDED, _COMPRESSED, _TURNED, _BURNT = 6, 7, 8, 9  # 5: `contact.CONTACT`
 _TURN = 2.0 * math.pi
 _STILL = 1e-13
-"""|x'| over crank below which the slider is at a dead centre, to the precision of a crank angle."""
+"""|x'| over crank below which the slider is at a dead centre, to the accuracy of a crank angle."""
 BASE_CAPACITY = 40
-"""Room for breakpoints, besides two for each knot and four for each cylinder: 8 at most, plus those from friction."""
+"""Room for breakpoints, besides two per knot and four per cylinder: at most 8, plus those due to friction."""
 
 
 class CycleWindow(NamedTuple):
-    """The counted part of the cycle, and the kinds of breakpoints in it.
+    """Part of the cycle that counts, and the kinds of breakpoints in it.
 
     strokes: 0 the cycle, 1 the outward stroke, 2 the inward stroke. start, end: fractions of the stroke from the inner
     dead centre. split: whether a load or friction changes at the dead centres. swing: whether friction changes where
-    the rod turns back, the crank normal to the slider line.
+    the rod reverses, with the crank normal to the slider line.
     """
 
     strokes: int
@@ -58,10 +58,10 @@ class Cuts(NamedTuple):
 
 
 class Segment(NamedTuple):
-    """State that decides the loads within one segment of a design's cycle.
+    """State that determines the loads within one segment of a design's cycle.
 
     block: derived numbers (rows, 1), real or with an imaginary step. outward: the slider's stroke. piece, shift: the
-    piece of every table and cylinder, and the turns that an angle table is off, filled by `enter`.
+    piece of every table and cylinder, and the turns by which an angle table is shifted, filled by `enter`.
     """
 
     block: Any
@@ -85,7 +85,7 @@ def crank_angle_at(x: float, r: float, l: float, e: float, second: bool) -> floa
 
 @analytic
 def breakpoint_capacity(loads: Loads) -> int:
-    """Return the greatest number of breakpoints that a design can have."""
+    """Return the maximum number of breakpoints that a design can have."""
     return int(BASE_CAPACITY + 2 * loads.knots.shape[0] + 4 * loads.kind.shape[0])
 
 
@@ -108,7 +108,7 @@ def add_cut(cuts: Cuts, n: int, angle: float, code: int, number: float, load: in
 def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float, cuts: Cuts, n: int) -> int:
     """Add the valve events of a cylinder, or the end of burning, to the first `n` cuts.
 
-    Each is added in its own stroke; if the crank is at rest, in both.
+    Each is added in its own stroke or, if the crank is at rest, in both.
     """
     sign, origin = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
     expanded, compressed = events_of(d, block, j, k, kind)
@@ -126,7 +126,7 @@ def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float,
 
 @analytic
 def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, cuts: Cuts) -> int:
-    """Fill `cuts` with the breakpoints of a design in ascending crank angle; return how many (at least one)."""
+    """Fill `cuts` with the breakpoints of a design in ascending crank angle; return their number (at least one)."""
     n = 0
     if watch.split or watch.strokes != 0:
         a, b = outer_crank_angle(d.r, d.l, d.e), inner_crank_angle(d.r, d.l, d.e)
@@ -141,8 +141,8 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
             x = d.branch * (d.inner + fraction * (d.outer - d.inner))
             for second in (False, True):
                 n = add_cut(cuts, n, crank_angle_at(x, d.r, d.l, d.e, second), _FRACTION, fraction, -1)
-    # A knot on a dead centre is not a breakpoint. There the slider stands still, so that a force continuous over
-    # position has no kink over crank angle, while the crank angle of the knot has no derivative.
+    # A knot on a dead centre is not a breakpoint. The slider stands still there, so a force that is continuous over
+    # position has no kink over crank angle, whereas the crank angle of the knot has no derivative.
     margin = 1e-12 * (d.outer - d.inner)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
@@ -156,7 +156,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
             continue
         scale, datum = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
         for second in (True, False):
-            # Knots by rising crank angle: most are then added behind all others.
+            # Knots by ascending crank angle, so that most are added behind all others.
             rising = (d.branch * scale > 0.0) != second
             for i in range(first, last):
                 at = loads.knots[i if rising else first + last - 1 - i]
@@ -170,7 +170,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
 
 @analytic
 def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> float:
-    """Return the imaginary part of breakpoint i's angle when the design carries an imaginary step."""
+    """Return the imaginary part of the angle of breakpoint i when the design carries an imaginary step."""
     code = cuts.code[i]
     if code == _FIXED:
         return 0.0
@@ -193,7 +193,7 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
     else:
         row = DESIGN + LOAD_ROWS * cuts.load[i]
         target = (block[row + 1, j] + block[row, j] * cuts.number[i]).imag
-    # Implicit function theorem on x(theta, design) = target.
+    # Implicit function theorem applied to x(theta, design) = target.
     m = motion(math.sin(theta), math.cos(theta), d.r, d.l, d.e, d.branch)
     return float((sign * target - m.x.imag) / m.x_1.real)
 
@@ -202,7 +202,7 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
 def angle_within(a: float, b: float) -> float:
     """Return a crank angle in (a, b) that identifies the segment's stroke and table pieces.
 
-    The middle would not do: without offset it is a dead centre. There, rounding decides on which side of the stroke's
+    The midpoint is unsuitable: without offset it is a dead centre. Rounding then decides on which side of the stroke's
     end, or of a knot, the slider is.
     """
     return a + 0.382 * (b - a)
@@ -246,16 +246,16 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 def enter(
     d: Design, block: Any, j: int, probe: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
-    """Fix the table pieces of the segment that the crank angle `probe` lies in; return (counts, outward).
+    """Fix the table pieces for the segment that contains the crank angle `probe`; return (counts, outward).
 
-    Within rounding of a dead centre, where the sign of x' is arbitrary, the inward stroke is taken.
+    Within rounding of a dead centre, where the sign of x' is arbitrary, the inward stroke is used.
     """
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     x = d.branch * m.x
     outward = d.branch * m.x_1 * (1.0 if d.speed >= 0.0 else -1.0) > _STILL * d.r
     fraction = (x - d.inner) / (d.outer - d.inner)
     counts = watch.strokes == 0 or (watch.strokes == 1) == outward
-    # Only at ends that are cuts: otherwise a dead centre in mid-segment may lie outside 0 to 1 by a rounding error.
+    # Only at ends that are cuts: elsewhere a dead centre in mid-segment may leave the range 0 to 1 by a rounding error.
     if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
         counts = False
     find_pieces(d, block, j, probe, x, loads, piece, shift)
@@ -264,12 +264,12 @@ def enter(
 
 @analytic
 def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
-    """Return a force plus all loads that have their own formula, N outward."""
+    """Return a force plus all loads with their own formula, N outward."""
     way = 1.0 if outward else -1.0
     for k in range(loads.kind.shape[0]):
         if loads.kind[k] >= _FORMULA:
-            # Chosen, not multiplied by the branch: of a product shared with `smooth_load` the compiler groups the
-            # factors anew, which changes the last digits of machines without such a load.
+            # Selected rather than multiplied by the branch: the compiler regroups a product shared with `smooth_load`,
+            # which would change the last digits of machines without such a load.
             position, pace = (m.x, m.x_1) if d.branch.real > 0.0 else (-m.x, -m.x_1)
             first, second = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
             force = force + force_of(loads.kind[k], position, pace * d.speed, way, first, second)
@@ -299,7 +299,8 @@ def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
         else:
             slope = (loads.force[i] - loads.force[i - 1]) / (loads.knots[i] - loads.knots[i - 1])
             if loads.kind[k] == _ANGLE_TABLE:
-                # Summed separately, as the compiler may regroup a sum: tables from zero keep their last digits.
+                # Summed separately, as the compiler may regroup a sum: summing tables from zero preserves their last
+                # digits.
                 if loads.datum[k] == 0:
                     force = force + factor * (loads.force[i - 1] + slope * (theta + shift[k] - loads.knots[i - 1]))
                 else:
@@ -313,12 +314,12 @@ def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
 
 @analytic
 def crowding(r: float, l: float, e: float) -> float:
-    """Return kappa of the crowded angle tau with tan(theta - pi/2) = kappa tan(tau).
+    """Return kappa for the crowded angle tau with tan(theta - pi/2) = kappa tan(tau).
 
-    The curves are singular at theta = +-pi/2 + i w with cosh(w) = (l - |e|) / r, closer to the real axis the nearer the
-    linkage is to locking. The map opens the strip of analyticity around both to the half-width atanh(kappa) on either
-    side when kappa^2 = tanh(w) = sqrt(1 - (r / (l - |e|))^2), the best balance of near and far. Equidistant tau then
-    resolve every linkage with the same number of angles.
+    The curves are singular at theta = +-pi/2 + i w with cosh(w) = (l - |e|) / r: the closer the linkage is to locking,
+    the closer to the real axis. The map widens the strip of analyticity around both to the half-width atanh(kappa) on
+    either side when kappa^2 = tanh(w) = sqrt(1 - (r / (l - |e|))^2), the best balance between near and far
+    singularities. Equidistant tau then resolves every linkage with the same number of angles.
     """
     q = r / (l - abs(e))
     return math.sqrt(math.sqrt(max(1.0 - q * q, 1e-12)))
@@ -326,7 +327,7 @@ def crowding(r: float, l: float, e: float) -> float:
 
 @analytic
 def crowded(theta: float, kappa: float) -> float:
-    """Return tau of a crank angle, in the same half-turn as theta - pi/2."""
+    """Return tau for a crank angle, in the same half-turn as theta - pi/2."""
     psi = theta - 0.5 * math.pi
     turn = math.atan2(math.sin(psi), kappa * math.cos(psi)) - psi
     return psi + turn - _TURN * math.floor(turn / _TURN + 0.5)
@@ -334,6 +335,6 @@ def crowded(theta: float, kappa: float) -> float:
 
 @analytic
 def uncrowded(tau: float, kappa: float) -> float:
-    """Return the crank angle of tau; inverse of `crowded`."""
+    """Return the crank angle for tau; inverse of `crowded`."""
     turn = math.atan2(kappa * math.sin(tau), math.cos(tau)) - tau
     return 0.5 * math.pi + tau + turn - _TURN * math.floor(turn / _TURN + 0.5)

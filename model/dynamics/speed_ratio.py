@@ -20,7 +20,7 @@ class SpeedRatio(NamedTuple):
     """A profile p(theta) of the crank speed, with mean 1: harmonics, or the pieces of a periodic cubic spline.
 
     cosines, sines: (h,). knots: (k + 1,), increasing, spanning a turn, rad; none for harmonics. pieces: (4, k), by
-    falling power of the distance from the knot before.
+    descending power of the distance from the preceding knot.
     """
 
     cosines: Row
@@ -43,7 +43,7 @@ def speed_ratio_of(mechanism: Mechanism) -> SpeedRatio:
 
 @analytic
 def speed_ratio_at(theta: Any, pace: SpeedRatio) -> Any:
-    """Return p and its first three derivatives at a crank angle of the shaft, rad."""
+    """Return p and its first three derivatives at a shaft crank angle, rad."""
     p, first, second, third = 1.0, 0.0, 0.0, 0.0
     for i in range(pace.cosines.shape[0]):
         k = i + 1.0

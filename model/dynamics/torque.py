@@ -1,6 +1,6 @@
-"""Inverse dynamics: drive torque and joint reactions of the rigid linkage at prescribed crank motion.
+"""Inverse dynamics: drive torque and joint reactions of the rigid linkage for a prescribed crank motion.
 
-Newton-Euler, body by body, slider to crank. With G gravity, S and C the first moments of rod and crank (mass times
+Newton-Euler, body by body, slider to crank. Let G be gravity, S and C the first moments of rod and crank (mass times
 vector from the link's origin to its mass centre), A the crank pin, B the slider pin:
 
 - slider: B_x = m_s (a_x - G_x) - F, and the guide carries N = -B_y - m_s G_y;
@@ -23,8 +23,8 @@ from ..machine.design import Design
 class Forces(NamedTuple):
     """Drive torque on the crank (N m, counter-clockwise) and joint forces (N).
 
-    pivot: force of the frame on the crank. crank_pin: force of the crank on the rod. slider_pin: force of the rod on
-    the slider. guide: force of the guide on the slider, along +y.
+    pivot: force from the frame on the crank. crank_pin: force from the crank on the rod. slider_pin: force from the rod
+    on the slider. guide: force from the guide on the slider, along +y.
     """
 
     torque: Any
@@ -39,12 +39,12 @@ class Forces(NamedTuple):
 
 @analytic
 def smooth_load(m: Motion, d: Design, stroke_force: Any) -> Any:
-    """Return the load on the slider, N outward: the stroke force, the springs and the viscous resistance."""
+    """Return the load on the slider, N outward: stroke force, springs and viscous resistance."""
     return stroke_force + d.spring_force - d.stiffness * d.branch * m.x - d.viscous * d.branch * m.x_1 * d.speed
 
 
 class Balance(NamedTuple):
-    """Terms of the equations of motion before the slider pin's force is known, N and N m.
+    """Terms in the equations of motion that do not depend on the slider pin force, N and N m.
 
     pull: B_x without friction in the guide. moment: I_A phi_tt + S x (a_A - G) of the rod. rod_x, rod_y: A - B.
     crank_x, crank_y: P - A. couple: torque without the crank pin's contribution.
@@ -91,7 +91,7 @@ def with_couple(b: Balance, couple: Any) -> Balance:
 
 @analytic
 def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
-    """Return drive torque and reactions for the slider pin's force; the torque excludes pin friction."""
+    """Return drive torque and reactions for a slider pin force; the torque excludes pin friction."""
     ax = bx + b.rod_x
     ay = by + b.rod_y
     torque = b.couple + d.r * (cosine * ay - sine * ax)

@@ -1,13 +1,13 @@
-"""Arithmetic that runs the same formula on reals, complex numbers and NumPy arrays.
+"""Arithmetic that evaluates the same formula with reals, complex numbers and NumPy arrays.
 
-A physical formula is written once, as a plain Python function marked `analytic`. Called from Python it broadcasts
-like any NumPy expression; called from a compiled kernel it is compiled into it (`compiler`). Evaluated at `x + i h`
-with `h = STEP = 1e-30` its imaginary part divided by `h` is the derivative, exact to rounding, because no difference
-of close numbers is taken (Squire and Trapp, SIAM Review 40(1), 1998, pp. 110-112).
+A physical formula is written once, as a plain Python function marked `analytic`. Called from Python, it broadcasts like
+any NumPy expression; called from a compiled kernel, it is compiled into that kernel (`compiler`). Evaluated at `x + i
+h` with `h = STEP = 1e-30`, its imaginary part divided by `h` is the derivative. This is exact to rounding, because no
+close numbers are subtracted (Squire and Trapp, SIAM Review 40(1), 1998, pp. 110-112).
 
 The functions at the end keep only the first power of the imaginary part. With `h = 1e-30` the dropped second power
-(1e-60) is far below rounding, and without the branches of the general complex functions the compiler turns loops
-over designs into vector instructions.
+(1e-60) is far below rounding. Without the branches in the general complex functions, the compiler turns loops over
+designs into vector instructions.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 STEP = 1e-30
-"""Length of the imaginary step of the complex-step derivative."""
+"""Imaginary step for complex-step derivatives."""
 
 
 FORMULAS: list[Callable[..., Any]] = []
@@ -28,7 +28,7 @@ FORMULAS: list[Callable[..., Any]] = []
 
 
 def analytic(formula: Function) -> Function:
-    """Mark a formula that runs on floats, complex numbers and arrays from Python, and inline in compiled kernels."""
+    """Mark a formula that runs on floats, complex numbers and arrays in Python, and inline in compiled kernels."""
     FORMULAS.append(formula)
     return formula
 
