@@ -1,7 +1,7 @@
-"""Comparison of several fronts with the same objectives: coverage, contribution, and distance from the union.
+"""Comparison of several fronts for the same objectives: coverage, contribution, and distance from their union.
 
-All figures use one scaling: ideal and range of the union front, the non-dominated designs among all. If these do not
-differ in an objective, its range over all designs counts.
+All figures share one scaling: ideal and range of the union front, which holds the non-dominated designs among all. If
+the union front has no range in an objective, the range over all designs is used.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 
 TOLERANCE = 1e-6
-"""Share of an objective's range that counts as equal: designs are exact to about that."""
+"""Fraction of an objective's range within which values count as equal, about the accuracy of the designs."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class Comparison:
 
     sizes: (k,), numbers of designs. ideal, span: (m,), the scaling, in the objectives' units. hypervolumes: (k,),
     hypervolume of each front, as a fraction of the box from the ideal to 1.1 ranges beyond it. union: hypervolume of
-    all together. shares: (k,), hypervolumes divided by that of the union. in_union: (k,), number of designs of each
-    that no design of any front dominates; one found by several counts for each. coverage: (k, k), `[a, b]` is the
-    fraction of b's designs that a weakly dominates. epsilon: (k, k), `[a, b]` is the least number that, added to all
-    scaled objectives of a, makes it weakly dominate all of b; zero or less if it already does. dominates:
-    (k, k), whether a weakly dominates all of b, and b not all of a. tolerance: fraction of the range that counts as
-    equal in `in_union`, `coverage` and `dominates`.
+    all fronts together. shares: (k,), hypervolumes divided by that of the union. in_union: (k,), number of each front's
+    designs that no design of any front dominates; a design in several fronts counts for each. coverage: (k, k), `[a,
+    b]` is the fraction of b's designs that a weakly dominates. epsilon: (k, k), `[a, b]` is the least number that,
+    added to all scaled objectives of b, lets a weakly dominate all of b; zero or less if a already does. dominates: (k,
+    k), whether a weakly dominates all of b, and b not all of a. tolerance: fraction of the range that counts as equal
+    in `in_union`, `coverage` and `dominates`.
     """
 
     sizes: IntArray
@@ -50,13 +50,13 @@ class Comparison:
 
 
 def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Comparison:
-    """Compare fronts (n_k, m) of objective values, as minimised.
+    """Compare fronts (n_k, m) by their minimised objective values.
 
     Coverage C(A, B) after E. Zitzler and L. Thiele, "Multiobjective evolutionary algorithms: a comparative case study
     and the strength Pareto approach", IEEE Trans. Evolutionary Computation 3(4), 1999; the additive epsilon indicator
     and "weakly dominates" after Zitzler et al., "Performance assessment of multiobjective optimizers: an analysis and
-    review", ibid. 7(2), 2003. Two samples of the same front cover little of each other: there the epsilon indicates
-    how close they are.
+    review", ibid. 7(2), 2003. Two samples of the same front cover little of each other; the epsilon indicator then
+    shows how close they are.
 
     Raises `InputError` for fewer than two fronts, an empty one, or different numbers of objectives.
     """
@@ -77,7 +77,7 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
     coverage, epsilon = np.ones((k, k)), np.zeros((k, k))
     for a in range(k):
         for b in range(k):
-            # Excess of a's nearest design over each design of b, in its worst objective.
+            # Excess of a's nearest design over each design in b, in the worst objective.
             excess = np.array([np.min(np.max(scaled[a] - point, axis=1)) for point in scaled[b]])
             coverage[a, b] = float(np.mean(excess <= tolerance))
             epsilon[a, b] = float(excess.max())
@@ -98,14 +98,14 @@ def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Compari
 
 
 def _ideal_and_range(everything: Array) -> tuple[Array, Array]:
-    """Return ideal and range of the union front; if that has no range, the range of all designs."""
+    """Return ideal and range of the union front; where it has no range, use the range of all designs."""
     best = everything[nondominated(everything)]
     best_range = column_ranges(best)
     return best.min(axis=0), np.where(best_range > 0.0, best_range, scaling(everything)[1])
 
 
 def _count_undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:
-    """Return the number of designs that no other one dominates by more than the tolerance."""
+    """Return the number of designs that no other design dominates by more than the tolerance."""
     everything = np.concatenate(list(fronts))
     return sum(
         not bool(((everything <= point + tolerance).all(axis=1) & (everything < point - tolerance).any(axis=1)).any())

@@ -1,13 +1,12 @@
-"""A design like a given one that also meets further requirements: the nearest point of the remaining front.
+"""Find a design like a given one that also meets further requirements: the nearest point on the remaining front.
 
-The requirements are added to the problem. The result is the Pareto-optimal design of the extended problem that is
-nearest to the given one, by Euclidean distance of the objectives, each divided by its range over the given front.
+The requirements are added to those of the problem. The result is the Pareto-optimal design of the extended problem that
+is nearest to the given one, by Euclidean distance in the objectives, each divided by its range over the given front.
 
-A solver cannot search the set of Pareto-optimal designs directly, but the polish maps every point onto one of them and
-leaves them unchanged. So the extended problem is sampled everywhere and the samples nearest to the given design are
-polished, then points around the nearest results, more closely in every round. Every result is a polished design,
-stationary and on its constraints to rounding; "nearest" is as good as the sampling, checked against dense fronts in the
-tests.
+A solver cannot search the set of Pareto-optimal designs directly, but the polish maps every point onto that set and
+leaves its members unchanged. So samples cover the extended problem, and those nearest to the given design are polished,
+followed by points around the nearest results, closer in every round. Every result is a polished design, stationary and
+on its constraints to rounding. How near it is depends on the sampling, which the tests check against dense fronts.
 """
 
 from __future__ import annotations
@@ -43,15 +42,15 @@ from ..solve import solve
 Ends = tuple[float | None, float | None]
 
 _STARTS = 48
-"""Samples polished at first, the nearest ones."""
-_PARENTS, _CHILDREN = 2, 8  # of a round: nearest designs, and points around each
-_WIDEST, _CLOSEST = 0.1, 1e-6  # of the unit box: spread of the first and of the last round
+"""Number of samples to polish first, the nearest ones."""
+_PARENTS, _CHILDREN = 2, 8  # per round: nearest designs, and points around each
+_WIDEST, _CLOSEST = 0.1, 1e-6  # spread in the unit box in the first and the last round
 _ROUNDS = 30
-_BEATEN = 1e-6  # of the objectives' range: a domination that is more than rounding
+_BEATEN = 1e-6  # relative to the objectives' range: a smaller domination is rounding
 
 
 def distance(values: Array, reference: Array, span: Array) -> Array:
-    """Return the distance (n,) of designs (n, m) from a given one (m,), objectives divided by `span` (m,)."""
+    """Return the distance (n,) of designs (n, m) from a given one (m,), with objectives divided by `span` (m,)."""
     return np.asarray(np.linalg.norm((values - reference) / span, axis=1))
 
 
@@ -63,13 +62,13 @@ def nearest(
     constraints: Sequence[Constraint] = (),
     ranges: Mapping[str, Ends] | None = None,
 ) -> ParetoFront:
-    """Return a front with the Pareto-optimal design of the extended problem that is nearest to a given one.
+    """Return a front with the extended problem's Pareto-optimal design that is nearest to a given one.
 
-    row: the given design in the table of its front. values: its objectives (m,) as minimised, SI. span: (m,), the
+    row: the given design's row in the table of its front. values: its objectives (m,) as minimised, SI. span: (m,), the
     objectives' ranges over its front. constraints: constraints to add. ranges: least and greatest crank, rod or offset,
-    m, None for open. Residuals are scaled by `span`. Without a feasible design the front is empty and its message says
-    which requirements contradict each other. Raises `InputError` if nothing is added, if the design already meets all
-    requirements, or if a quantity has no gradient.
+    m, None if unbounded. Residuals are scaled by `span`. If no design is feasible, the front is empty and its message
+    names the requirements that contradict each other. Raises `InputError` if nothing is added, if the design already
+    meets all requirements, or for a quantity without gradient.
     """
     ranges = ranges or {}
     _require_new(problem, row, constraints, ranges)
@@ -96,12 +95,12 @@ def nearest(
 def like(
     front: ParetoFront, row: int, *constraints: Constraint, ranges: Mapping[str, Ends] | None = None
 ) -> ParetoFront:
-    """Return the design most like one of a front that also meets further requirements, as a separate front.
+    """Return, as a separate front, the design most like one of a front that also meets further requirements.
 
-    It is the nearest of the Pareto-optimal designs for the extended problem. If the requirements contradict the rest,
-    the front is empty and its message has the reason. ranges: least and greatest crank, rod, offset, m:
-    `like(front, 3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`.
-    Warns about ends that were probably meant in mm.
+    It is the nearest one among the extended problem's Pareto-optimal designs. If the requirements contradict the rest,
+    the front is empty and its message gives the reason. ranges: least and greatest crank, rod, offset, m: `like(front,
+    3, Constraint(quantity="transmission_angle", lower=0.8), ranges={"crank": (0.04, None)})`. Warns about limits that
+    were probably meant in mm.
     """
     require_front(front, "like")
     for item in constraints:
@@ -111,7 +110,7 @@ def like(
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
     ranges = {name: lower_and_upper(name, ends) for name, ends in (ranges or {}).items()}
-    front.part(row)  # refuses an unknown row
+    front.part(row)  # raises an error for an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
     if (doubt := in_both_units(ends)) is not None:
         warn_user(f"ranges of lengths are in m: {doubt}")
@@ -122,7 +121,7 @@ def like(
 def extended(
     problem: Problem, constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
 ) -> tuple[Problem, str | None]:
-    """Return the problem with added requirements, merged with its own, and the omitted contradiction, if any."""
+    """Return the problem with added requirements merged, and the contradictory one that was left out, if any."""
     constraints_by_name = {constraint.quantity: constraint for constraint in problem.constraints}
     dimensions = {name: getattr(problem, name) for name in DIMENSIONS}
     contradictions, keys = [], []
@@ -151,7 +150,7 @@ def extended(
             assert ends[1] is not None
             dimensions[name] = Range(lower=ends[0], upper=ends[1])
     remedy = [f"choose other values, or change {' and '.join(keys)} in the job and solve it again"] if keys else []
-    # This search only needs to come near, whatever method made the front.
+    # An approximate search is enough here, whatever method made the front.
     settings = Settings(designs=problem.settings.designs, seed=problem.settings.seed)
     return (
         replace(problem, constraints=tuple(constraints_by_name.values()), settings=settings, **dimensions),
@@ -221,7 +220,7 @@ def _add_nearer_designs(
             if len(points):
                 finished.add(index, polish(evaluator, points, finished.span))
         after = distance(finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span)[0]
-        # A design that still comes nearer by about a step has farther to go.
+        # A design that still moves nearer by about one step has farther to go.
         if before - after < 0.5 * width:
             width *= 0.5
         if width < _CLOSEST:

@@ -1,4 +1,4 @@
-"""Price of robustness: the robust front compared with the nominal one of the same problem."""
+"""Price of robustness: the robust front compared with the nominal one for the same problem."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ..solve import solve
 
 @dataclass(frozen=True)
 class RobustCost:
-    """A robust front and the nominal one, objectives (n, m) in display units.
+    """A robust front and the nominal one; objectives (n, m) in display units.
 
-    nominal: objectives of the nominal designs, as drawn. toleranced: of the same designs, within tolerances. robust: of
-    the robust designs, within tolerances. keeps: number of nominal designs that meet all requirements within
-    tolerances.
+    nominal: objectives of the nominal designs, as drawn. toleranced: objectives of the same designs within tolerances.
+    robust: objectives of the robust designs within tolerances. keeps: number of nominal designs that meet all
+    requirements within tolerances.
     """
 
     nominal: Array
@@ -29,7 +29,7 @@ class RobustCost:
     keeps: int
 
     def cost(self, column: int, *, maximised: bool) -> float:
-        """Return the shortfall of the best promised value of an objective from the nominal best, in display units."""
+        """Return by how much the robust front's best value falls short of the nominal best, in display units."""
         best = np.max if maximised else np.min
         away = float(best(self.nominal[:, column]) - best(self.robust[:, column]))
         return away if maximised else -away

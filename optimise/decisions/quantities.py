@@ -1,4 +1,4 @@
-"""List of the quantities that objectives and constraints may name."""
+"""Table of the quantities that objectives and constraints may name."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from ..problem.problem import Problem, require_problem
 
 
 def quantities(problem: Problem | None = None) -> pd.DataFrame:
-    """Return a table of quantities by name: title, display unit, column in tables of designs, good side, needs.
+    """Return a table of quantities by name: title, display unit, column in tables of designs, better side, needs.
 
-    problem: adds its own quantities. In Python values are in SI; `factor` converts SI to the display unit. better: the
-    good side, low or high, as usual in requirements; empty if there is none. needs: required contents of a job; empty
+    problem: adds its custom quantities. Python values are in SI; `factor` converts SI to the display unit. better: the
+    side that requirements usually prefer, low or high; empty if there is none. needs: required contents of a job; empty
     if every job has them.
 
     >>> from slidercrank import quantities

@@ -1,20 +1,21 @@
-"""A design by aspiration levels: the Pareto-optimal one nearest to desired values, from a new solve.
+"""A design from aspiration levels: the Pareto-optimal one nearest to desired values, from a new solve.
 
-Objectives f_i are as minimised, divided by their range over the front, starting from its ideal z*. Desired values z_i
-and classes, see `wishes`, define an augmented achievement scalarising function,
+Objectives f_i are as minimised, measured from the front's ideal z* and divided by their range over the front. Desired
+values z_i and classes, see `wishes`, define an augmented achievement scalarising function,
 
-    min over designs   max( f_i - z_i  where a value is wished,   f_i - z*_i  where it is to improve ) + rho sum_i f_i
-    subject to   f_i <= the design's  where it is to improve or to keep,   f_i <= the value that it may worsen to,
+    min over designs   max( f_i - z_i  for a desired value,   f_i - z*_i  to improve ) + rho sum_i f_i
+    subject to   f_i <= the design's value  to improve or to keep,   f_i <= the value that it may worsen to,
 
 and all requirements of the problem (A. P. Wierzbicki, "The use of reference objectives in multiobjective optimization",
 Lecture Notes in Economics and Mathematical Systems 177, 1980; Miettinen and Mäkelä, see `wishes`). If every wish can be
 met, all are exceeded (the function is negative); otherwise the conflicting ones are relaxed by the same fraction of
-their ranges. A small multiple rho of the sum makes every minimiser Pareto-optimal, whether the wish can be met or not.
+their ranges. A small multiple rho of the sum makes every minimiser Pareto-optimal, whether the wishes can be met or
+not.
 
-The polish solves it on every branch of the problem - sign of the offset, choices - from distinct designs of the front
-that are nearest to the wish. Their lengths are tried on all other branches too. If they do not all end in one optimum,
-more designs are tried. The answer is never worse than the best design of the front, and exact within its valley; only
-the starts can show that no other valley is deeper.
+The polish solves it on every branch of the problem (sign of the offset, choices), starting from distinct designs on the
+front that are nearest to the desired values. Their lengths are tried on all other branches as well. If they end in
+different optima, more designs are tried. The answer is never worse than the best design on the front, and exact within
+its valley; only more starts can show that no other valley is deeper.
 """
 
 from __future__ import annotations
@@ -43,15 +44,15 @@ from ..search.search import BANDS, Run
 from .wished import Wished, outcomes_of
 from .wishes import Wish, aimed, read_wishes
 
-_NEAREST, _MORE = 3, 6  # starts on a branch, and further ones if the first end in different optima
-_BRANCHES, _FINAL = 12, 2  # that are tried, the best ones; at first from one start each, then the best of them
-_WORSE = 0.5  # of the ranges: a branch whose best start is worse than the best of all by more is left out
-_DIFFER = 1e-9  # of the ranges: optima that are not one
-_OUTSIDE = 10.0  # what a start counts for that lies above a ceiling, or outside the requirements
+_NEAREST, _MORE = 3, 6  # starts per branch, and further ones if the first end in different optima
+_BRANCHES, _FINAL = 12, 2  # branches to try, best first, at first from one start each; then the best of these
+_WORSE = 0.5  # relative to the ranges: a branch is skipped if its best start is worse than the best of all by more
+_DIFFER = 1e-9  # relative to the ranges: optima farther apart are different
+_OUTSIDE = 10.0  # merit added to a start above a ceiling, or outside the requirements
 
 
 class Wishes:
-    """The starts for wishes on a front, prepared once for many wishes.
+    """Starts for wishes on a front, prepared once for many wishes.
 
     Raises `InputError` for a front without designs or with one objective, and for a quantity without a gradient.
     """
@@ -74,10 +75,10 @@ class Wishes:
         self._starts = self._starting_designs()
 
     def wish(self, texts: Mapping[str, object], *, row: int | None = None) -> Wished:
-        """Return the design nearest to the wishes, see `wish`."""
+        """Return the design nearest to the wishes; see `wish`."""
         front = self.front
         if row is not None:
-            front.part(row)  # refuses an unknown row
+            front.part(row)  # raises an error for an unknown row
             row = int(row) % len(front)
         wishes = read_wishes(front, texts, row)
         form, aims = self._form(wishes, row)
@@ -99,7 +100,7 @@ class Wishes:
         return [Evaluator(self.front.problem, branch) for branch in self._branches]
 
     def _starting_designs(self) -> Candidates:
-        """Return the designs of the front on their own branches, and their numbers on all other branches."""
+        """Return the front's designs on their own branches, and their numbers on all other branches."""
         front, parts = self.front, []
         variants = np.array(front.variants or np.zeros(len(front)), dtype=np.int64)
         for index, evaluator in enumerate(self._evaluators()):
@@ -123,7 +124,7 @@ class Wishes:
         return parts[0].join(*parts[1:])
 
     def _form(self, wishes: Sequence[Wish], row: int | None) -> tuple[Form, list[float | None]]:
-        """Return the achievement function, and the wished values as minimised, SI."""
+        """Return the achievement function, and the desired values as minimised, SI."""
         m = len(wishes)
         weights, reference, ceilings = np.zeros(m), np.zeros(m), np.full(m, np.inf)
         reference_values = None if row is None else self._scaled(self.front.values[row])
@@ -145,7 +146,10 @@ class Wishes:
         return np.asarray((values - self.ideal) / self.span)
 
     def _solve(self, form: Form, evaluators: list[Evaluator]) -> tuple[int, Array, float] | None:
-        """Return branch, point (k,) and value of the form at its minimiser; None if no start leads to a design."""
+        """Return branch, point (k,) and value of the achievement function at its minimiser.
+
+        None if no start leads to a design.
+        """
         scaled = self._scaled(self._starts.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
         free = replace(form, ceilings=np.full(len(form.weights), np.inf))
@@ -171,7 +175,7 @@ class Wishes:
         return index, u, value
 
     def _promising(self, merits: Array) -> list[int]:
-        """Return the branches to try, the best first."""
+        """Return the branches to try, best first."""
         merit_by_branch = {
             index: float(merits[self._starts.branch == index].min()) for index in set(self._starts.branch.tolist())
         }
@@ -179,7 +183,7 @@ class Wishes:
         return [index for index in order if merit_by_branch[index] <= merit_by_branch[order[0]] + _WORSE][:_BRANCHES]
 
     def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: IntArray) -> list[tuple[float, int, Array]]:
-        """Return the feasible end points of the starts on a branch, with the form's value there."""
+        """Return the feasible end points of the starts on a branch, with the achievement function's value there."""
         if not len(rows):
             return []
         start = self._starts.u[rows][:, : evaluator.dimension]
@@ -192,7 +196,7 @@ class Wishes:
         ]
 
     def _why_none(self, wishes: Sequence[Wish]) -> str:
-        """Return in words that no design stays within the allowed values, and what the front offers."""
+        """Say that no design stays within the allowed values, and give the front's best values."""
         phrases = []
         for column, wish in enumerate(wishes):
             if wish.kind == "limit":
@@ -205,10 +209,10 @@ class Wishes:
 
 
 def wish(front: ParetoFront, wishes: Mapping[str, object], *, row: int | None = None) -> Wished:
-    """Return the Pareto-optimal design nearest to desired values of a front's objectives, from a new solve.
+    """Return the Pareto-optimal design nearest to desired values for a front's objectives, from a new solve.
 
     wishes: by objective, a desired value, "110 N m" or a number in SI, which is not a bound; or a class. Classes:
-    "improve" on a design of the front, "keep" its value or better, "may worsen to 120 N m", which is a bound, or
+    "improve" on a design of the front; "keep" its value or better; "may worsen to 120 N m", which is a bound; or
     "free", the default. row: row of the design to which classes refer.
 
     `wish(front, {"peak_torque": "110 N m", "transmission_angle": "45 deg"})`. For many wishes on one front, `Wishes` is

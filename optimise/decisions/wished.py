@@ -1,4 +1,4 @@
-"""The answer to a wish: the design, and in words the desired and the reached value of each objective."""
+"""Answer to wishes: the design, and the desired and reached value of each objective in words."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ from ..problem.requirements import Objective
 from .wishes import Kind, Wish
 
 _ROUNDING = 1e-9
-"""Of an objective's range: differences that are none."""
+"""Relative to an objective's range: smaller differences do not count."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """One objective of the design found for a wish.
+    """One objective of the design that answers a wish.
 
-    objective: the objective. quantity: its quantity. kind: kind of the wish. wished, reached, before: the desired or
-    allowed value, that of the design found, and that of the design to which classes refer, SI; None if there is none.
+    objective: the objective. quantity: its quantity. kind: kind of the wish. wished, reached, before: desired or
+    allowed value, value reached by the new design, and value of the design to which classes refer, SI; None if there is
+    none.
     short: shortfall from the desired or allowed value, in the objective as minimised, SI; negative if the design is
-    better; None without such a value. changed: the same against the value before. range_: range of the objective over
-    the front.
+    better; None without such a value. changed: the same difference from the value before. range_: range of the
+    objective over the front.
     """
 
     objective: Objective
@@ -41,16 +42,16 @@ class Outcome:
 
     @property
     def is_met(self) -> bool:
-        """Whether the design found reaches the desired value, or stays within the allowed one."""
+        """Whether the new design reaches the desired value, or stays within the allowed one."""
         return self.short is None or self.short <= _ROUNDING * self.range_
 
     @property
     def gained(self) -> bool:
-        """Whether the design found is better than the previous one."""
+        """Whether the new design is better than the previous one."""
         return self.changed is not None and self.changed < -_ROUNDING * self.range_
 
     def text(self, system: System = "metric") -> str:
-        """Return wish and outcome in words: "peak torque 109.2 N m of 110 N m wished"."""
+        """Describe wish and outcome: "peak torque 109.2 N m of 110 N m wished"."""
         reached = f"{self.quantity.title} {self._value(self.reached, system)}"
         if self.kind == "value":
             return reached + self._against_wish(system)
@@ -93,8 +94,8 @@ class Wished:
 
     found: the design, as a separate front with all columns of a front's table, its stationarity residual and trade-off
     rates; empty if no design stays within the allowed values. row: row of the design to which classes refer. wishes:
-    wish for each objective. value: value at the design of the achievement function that `wish` explains; NaN without a
-    design. outcomes: outcome of each objective; empty without a design. message: reason for a missing design, or empty.
+    wish for each objective. value: the achievement function at the design, as `wish` defines it; NaN without a design.
+    outcomes: outcome of each objective; empty without a design. message: reason for a missing design, or empty.
     """
 
     found: ParetoFront
@@ -112,11 +113,11 @@ class Wished:
 
     @property
     def possible(self) -> bool:
-        """Whether the design meets every wish."""
+        """Whether the design fulfils every wish."""
         return bool(self.outcomes) and all(outcome.is_met for outcome in self.outcomes)
 
     def sentences(self, system: System = "metric") -> list[str]:
-        """Return in words whether the wish can be met, then wish and outcome of each objective."""
+        """Say whether the wishes can be met, then describe wish and outcome for each objective."""
         if not self.outcomes:
             return [self.message]
         return [self._head(), *(outcome.text(system) for outcome in self.outcomes)]
@@ -140,9 +141,9 @@ class Wished:
 def outcomes_of(
     front: ParetoFront, wishes: Sequence[Wish], aims: Sequence[float | None], row: int | None, found: ParetoFront
 ) -> tuple[Outcome, ...]:
-    """Return the outcome of each objective.
+    """Return the outcome for each objective.
 
-    aims: wished values as minimised, SI. found: the design, as a separate front.
+    aims: desired values as minimised, SI. found: the design, as a separate front.
     """
     return tuple(
         Outcome(

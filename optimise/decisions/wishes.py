@@ -1,9 +1,9 @@
-"""Wishes for the objectives of a front: values, or classes relative to one of its designs.
+"""Wishes for a front's objectives: values, or classes relative to one of its designs.
 
-A value, "110 N m", is an aspiration level, not a bound: the design comes as near as possible. The classes are those of
+A value, "110 N m", is an aspiration level, not a bound: the design comes as close as possible. The classes are those of
 NIMBUS (K. Miettinen and M. M. Mäkelä, "Synchronous approach in interactive multiobjective optimization", Eur. J. Oper.
-Res. 170(3), 2006): an objective must improve on the design, must keep the design's value or better, may worsen to a
-value, or is free. Unnamed objectives are free.
+Res. 170(3), 2006): an objective must improve on the design's value, must keep it or better, may worsen to a value, or
+is free. Objectives that are not named are free.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ _WORDS = 'a value such as "{example}", "improve", "keep", "may worsen to {exampl
 
 @dataclass(frozen=True)
 class Wish:
-    """A wish for one objective. value: desired value of its quantity, or the one it may worsen to, SI; else None."""
+    """A wish for one objective.
+
+    value: its quantity's desired value, or the one it may worsen to, SI; otherwise None.
+    """
 
     kind: Kind
     value: float | None = None
@@ -40,7 +43,7 @@ FREE = Wish("free")
 
 
 def read_wishes(front: ParetoFront, texts: Mapping[str, object], row: int | None) -> tuple[Wish, ...]:
-    """Return the wish for every objective, in order.
+    """Return the wish for each objective, in order.
 
     texts: by objective, a number in SI, "110 N m", "improve", "keep", "may worsen to 120 N m" or "free". row: row of
     the design to which improve, keep and worsen refer. Raises `InputError` for an unknown objective, a value in another
@@ -90,10 +93,10 @@ def _read_wish(front: ParetoFront, column: int, text_or_value: object) -> Wish:
     except InputError as error:
         words = "" if text[:1] in _VALUE else f"; a wish must be {_WORDS.format(example=kind.example)}"
         raise InputError(f"the wish for {quantity.name} {error}{words}") from None
-    turning = front.problem.motion is None or isinstance(quantity, SwingQuantity)  # below one, proportions may swing
-    if (
-        turning and quantity.domain is not None and value > quantity.domain.upper
-    ):  # degrees without their unit, a ratio in percent
+    # A swing may exceed the domain that full rotation imposes.
+    turning = front.problem.motion is None or isinstance(quantity, SwingQuantity)
+    # This catches degrees without a unit, or a ratio in percent.
+    if turning and quantity.domain is not None and value > quantity.domain.upper:
         value_text = f"{value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
         raise InputError(
             f"the wish for {quantity.name}: {quantity.domain.rule}; got {value_text}; {quantity.domain.remedy}"
@@ -102,7 +105,7 @@ def _read_wish(front: ParetoFront, column: int, text_or_value: object) -> Wish:
 
 
 def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None) -> None:
-    """Raise `InputError` for empty wishes, or wishes that by themselves no design can meet."""
+    """Raise `InputError` for empty wishes, or for wishes that no design can meet."""
     kinds = [wish.kind for wish in wishes]
     names = [objective.quantity for objective in front.objectives]
     if "value" not in kinds and "improve" not in kinds:

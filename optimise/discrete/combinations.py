@@ -1,4 +1,4 @@
-"""Combinations of discrete values: their number, those that meet every requirement, and the nearest ones."""
+"""Combinations of discrete values: how many there are, those that meet every requirement, and the nearest ones."""
 
 from __future__ import annotations
 
@@ -24,18 +24,18 @@ from ..problem.violation import (
     greatest_violation,
 )
 
-_BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations judged between two reports of progress
+_BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations to judge between two progress reports
 
 
-_HELD = 1 << 17  # combinations that meet every requirement; of more, only the best are stored
-_EXPANDED = 256  # designs whose neighbours are looked up together: with eight numbers each has 6,561
+_HELD = 1 << 17  # maximum number of feasible combinations to store; only the best of more are kept
+_EXPANDED = 256  # designs whose neighbours are found together: with eight numbers each has 6,561
 
 
 @dataclass(frozen=True)
 class Axes:
-    """The values of a design's numbers in one variant of a problem.
+    """Possible values of a design's numbers in one variant of a problem.
 
-    part: the variant. values: possible values of each number of a design (3 + v), None for one free in a range.
+    part: the variant. values: possible values for each number of a design (3 + v), None if it is free within a range.
     """
 
     part: Problem
@@ -43,7 +43,7 @@ class Axes:
 
     @classmethod
     def of_problem(cls, part: Problem) -> Axes:
-        """Return the axes of a problem without choices; a fixed number has its one value."""
+        """Return the axes for a problem without choices; a fixed number has a single value."""
         discrete = {item.name: item for item in part.discrete}
         axes: list[Array | None] = []
         for name, ends in part.ranges.items():
@@ -59,7 +59,7 @@ class Axes:
 
     @property
     def is_complete(self) -> bool:
-        """Whether a combination is a design, with no free number left."""
+        """Whether every combination is a complete design, without free numbers."""
         return all(values is not None for values in self.values)
 
     @property
@@ -68,11 +68,14 @@ class Axes:
         return math.prod(len(values) for values in self.values if values is not None)
 
     def designs(self, begin: int, end: int) -> Array:
-        """Return combinations (n, 3 + v) in order, the last number changing fastest; NaN where one is free."""
+        """Return combinations (n, 3 + v) in order, with the last number changing fastest.
+
+        NaN where a number is free.
+        """
         return self.numbered(np.arange(begin, min(end, math.prod(self._sizes))))
 
     def numbered(self, numbers: IntArray) -> Array:
-        """Return combinations (n, 3 + v) by their numbers."""
+        """Return combinations (n, 3 + v) by their indices."""
         places = np.unravel_index(numbers, self._sizes)
         columns = [
             np.full(len(at), np.nan) if values is None else values[at]
@@ -81,9 +84,9 @@ class Axes:
         return np.stack(columns, axis=1)
 
     def next_to(self, designs: Array) -> IntArray:
-        """Return the numbers (n, s) of the combinations at designs (n, 3 + v) and next to them.
+        """Return the indices (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
-        They include the design itself, which also replaces neighbours outside the range.
+        They include the design itself, which also replaces neighbours beyond the ends.
         """
         places = np.stack(self._places(designs), axis=1)
         ways = np.array(list(itertools.product(*((-1, 0, 1) if size > 1 else (0,) for size in self._sizes))))
@@ -91,7 +94,7 @@ class Axes:
         return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(neighbours_at, 2, 0)), self._sizes), np.int64)
 
     def numbers(self, designs: Array) -> IntArray:
-        """Return the number of each combination (n, 3 + v), as `designs` counts them."""
+        """Return the index of each combination (n, 3 + v), as `designs` counts them."""
         return np.asarray(np.ravel_multi_index(tuple(self._places(designs)), self._sizes), np.int64)
 
     @property
@@ -107,11 +110,11 @@ class Axes:
 
 @dataclass(frozen=True)
 class Judged:
-    """Combinations that meet every requirement, and the nearest of those that do not.
+    """Combinations that meet every requirement, and the nearest of the others.
 
-    part: the problem of the nearest one. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged:
-    number of combinations judged. nearest: the fully rotating design (3 + v,) with the least violation, None without
-    one. missed: its greatest relative violation.
+    part: problem of the nearest one. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged: number of
+    combinations judged. nearest: the fully rotating design (3 + v,) with the least violation, or None. missed: its
+    greatest relative violation.
     """
 
     part: Problem
@@ -127,7 +130,7 @@ class Judged:
         return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
     def merge(self, others: Judged) -> Judged:
-        """Return these designs together with others; the nearest miss is the smaller of both."""
+        """Return these designs together with others, and the nearer miss of the two."""
         nearer = others if others.missed < self.missed else self
         return Judged(
             nearer.part,
@@ -139,15 +142,15 @@ class Judged:
         )
 
     def best(self) -> Judged:
-        """Return only the combinations that no other dominates: millions of them would take gigabytes."""
+        """Return only the combinations that no other dominates, because millions of them would take gigabytes."""
         rows = nondominated(self.values)
         return replace(self, dimensions=self.dimensions[rows], values=self.values[rows])
 
 
 def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimensions_only: bool = False) -> Judged:
-    """Judge all combinations of a variant without free numbers; of very many, return the best.
+    """Judge all combinations of a variant without free numbers; return the best if there are too many.
 
-    report: called after every few thousand. dimensions_only: whether to judge only requirements without a cycle, and
+    report: called after every few thousand. dimensions_only: whether to judge only requirements that need no cycle, and
     no objectives.
     """
     judged = Judged.empty(axes.part)
@@ -186,9 +189,9 @@ def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Ju
 
 
 def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
-    """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest of each design first.
+    """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest to each design first.
 
-    The window around each design is as wide as `limit` allows, at least the values on either side.
+    The window around each design is as wide as `limit` allows, and contains at least the values on either side.
     """
     if not len(designs):
         return designs
@@ -206,10 +209,10 @@ def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
 def judge_near(
     axes: Axes, designs: Array, window: int, limit: int, report: ReportProgress = ignore_progress
 ) -> tuple[Judged, IntArray]:
-    """Return the best combinations around designs of a fully discrete variant, and the numbers of all judged ones.
+    """Return the best combinations around designs of a fully discrete variant, and the indices of all judged ones.
 
-    First, a window of at most `window` combinations around the designs is judged. Then the neighbours of the best so
-    far follow, until all of them are judged, or `limit` are.
+    First, it judges a window of at most `window` combinations around the designs. Then it judges the neighbours of the
+    best so far, until none are left or `limit` combinations are judged.
     """
     best, judged_numbers = Judged.empty(axes.part), np.zeros(0, np.int64)
     fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
@@ -229,12 +232,12 @@ def judge_near(
 
 
 def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: IntArray) -> Mask:
-    """Return which combinations (n, 3 + v) have all their neighbours among the judged numbers."""
+    """Return a mask of combinations (n, 3 + v) whose neighbours are all among the judged indices."""
     return np.array([bool(np.isin(axes.next_to(row[None]), judged_numbers).all()) for row in designs], np.bool_)
 
 
 def _combinations_around(axes: Sequence[Array | None], design: Array, width: int) -> Array:
-    """Return the combinations of the values next to a design, the nearest in ranges first."""
+    """Return the combinations of values next to a design, nearest first; distances are relative to the ranges."""
     ladders, ways = [], []
     for values, value in zip(axes, design.tolist(), strict=True):
         if values is None:
@@ -252,9 +255,9 @@ def _combinations_around(axes: Sequence[Array | None], design: Array, width: int
 
 
 def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Problem:
-    """Return the problem whose variants are combinations. chosen: index of each variant and its design (3 + v,).
+    """Return a problem whose variants are combinations. chosen: index of each variant and its design (3 + v,).
 
-    A number that is NaN stays free in its range.
+    A number that is NaN stays free within its range.
     """
     variants = []
     parts = problem.parts()

@@ -1,4 +1,4 @@
-"""The result of a search among discrete values, in words."""
+"""Messages about the result of a search among discrete values."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from .combinations import Judged
 
 
 def rules_text(problem: Problem) -> str:
-    """Return the choices with the number of their options, and the discrete numbers with their possible values."""
+    """Describe the choices with the number of their options, and the discrete numbers with their possible values."""
     options = [len({variant.labels[place] for variant in problem.variants}) for place in range(len(problem.choices))]
     choices = [f"{name} ({counted(count, 'option')})" for name, count in zip(problem.choices, options, strict=True)]
     return ", ".join([*choices, *(f"{item.name} ({item.rule})" for item in problem.discrete)])
 
 
 def result_message(front: ParetoFront) -> str:
-    """Return the numbers of designs found and of combinations, and the best with continuous values."""
+    """Describe how many designs and combinations there are, and the best values with continuous numbers."""
     summary, problem = front.discrete, front.problem
     assert summary is not None
     rules = rules_text(problem)
@@ -51,7 +51,7 @@ def result_message(front: ParetoFront) -> str:
 
 
 def failure_message(problem: Problem, judged: Judged) -> str:
-    """Return the message that no combination meets every requirement, the nearest one's misses, and a remedy."""
+    """Return the message that no combination meets every requirement, with the nearest one's misses and a remedy."""
     rules = rules_text(problem)
     subject = (
         f"none of {_count_combinations(judged.judged)} of {rules}"

@@ -1,9 +1,9 @@
-"""The front of a problem whose numbers have discrete values.
+"""The front of a problem with discrete numbers.
 
-The continuous front comes first: it shows what the discrete values cost. If combinations are few enough, every one is
-judged, and the answer is exact. Without free unknowns a combination is a design; otherwise these are searched and
-polished for each. If combinations are too many, those around the continuous front are judged, and those around the best
-of these.
+The continuous front comes first, because it shows what discrete values cost. If there are few enough combinations, all
+are judged, and the answer is exact. If no unknown is free, a combination is a design; otherwise the free unknowns are
+searched and polished for each combination. If there are too many combinations, those around the continuous front are
+judged, then those around the best of these.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from .combinations import Axes, Judged, has_judged_neighbours, judge_all, judge_
 from .discrete_messages import failure_message, result_message
 
 MOST, _MOST_ROBUST = 5_000_000, 1 << 13
-"""Combinations that are designs, all judged; robust quantities take a hundred times as long."""
+"""Maximum number of complete combinations to judge exhaustively; robust quantities take a hundred times as long."""
 _WINDOW = 1_000_000
-"""Combinations around the continuous front that are judged first where they are more."""
+"""If there are more combinations, this many around the continuous front are judged first."""
 SOLVED = 64
-"""Combinations that leave something free, each searched: of few all, of more those next to the continuous front."""
-_SAME = 1e-9  # of the objectives' range: designs nearer than this are one
+"""Number of incomplete combinations to search: all if few, otherwise those next to the continuous front."""
+_SAME = 1e-9  # relative to the objectives' range: designs nearer than this are the same
 Search = Callable[[Problem], ParetoFront]
 Chosen = list[tuple[int, Array]]
 
@@ -42,8 +42,8 @@ def discrete_front(
 ) -> ParetoFront:
     """Return the front of a problem with discrete numbers.
 
-    search: function that solves a continuous problem. nothing: function that makes an empty front from a status and a
-    message. report: called in between.
+    search: solves a continuous problem. nothing: makes an empty front from a status and a message. report: called
+    between steps.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
     is_complete, count = all(axis.is_complete for axis in axes), sum(axis.count for axis in axes)
@@ -113,7 +113,7 @@ def _downgrade_unproven(
 
 
 def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
-    """Return the designs to deliver: the non-dominated ones of all variants, at most the requested number."""
+    """Return the designs to deliver: the non-dominated ones from all variants, at most the requested number."""
     together = parts[0]
     for part in parts[1:]:
         together = together.merge(part)
@@ -132,14 +132,14 @@ def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged])
 
 
 def _distinct_rows(values: Array) -> Array:
-    """Return the rows of objectives (n, m) that differ from those before by more than rounding."""
+    """Return the rows of objectives (n, m) that differ from earlier rows by more than rounding."""
     size = np.maximum(_SAME * np.ptp(values, axis=0), 1e-300)
     _, first = np.unique(np.round(values / size), axis=0, return_index=True)
     return np.sort(first)
 
 
 def _designs_of_variant(front: ParetoFront, variant: int) -> Array:
-    """Return the designs of a variant, the best in an objective first."""
+    """Return the designs of a variant, best first in each objective in turn."""
     rows = np.flatnonzero(np.array(front.variants) == variant) if front.variants else np.arange(len(front))
     first = [row for row in front.extremes().values() if row in rows]
     order = [*dict.fromkeys(first), *(row for row in rows.tolist() if row not in first)]
@@ -147,7 +147,7 @@ def _designs_of_variant(front: ParetoFront, variant: int) -> Array:
 
 
 def _first_of_each_variant(chosen: Chosen) -> Chosen:
-    """Return at most `SOLVED` combinations, the first ones of each variant."""
+    """Return at most `SOLVED` combinations, the first ones from each variant."""
     rank: dict[int, int] = {}
     order = []
     for place, (index, _) in enumerate(chosen):
@@ -159,13 +159,13 @@ def _first_of_each_variant(chosen: Chosen) -> Chosen:
 def _front_of_problem(
     problem: Problem, front: ParetoFront, continuous: ParetoFront, chosen: Chosen, summary: DiscreteSearch
 ) -> ParetoFront:
-    """Return the front of combinations as a front of the original problem."""
+    """Return a front of combinations as a front of the original problem."""
     columns = dict(front.columns)
     for place, (name, (column, unit)) in enumerate(columns_of_numbers(problem.mechanism.varying).items()):
         if column in columns and any(item.name == name for item in problem.discrete):
             displayed = front.dimensions[:, place] * unit.factor
             columns[column] = np.array([drop_conversion_rounding(value) for value in displayed.tolist()])
-    # A design of discrete values is one of the continuous problem too.
+    # A design with discrete values is also a design of the continuous problem.
     best = front.values.min(axis=0, initial=np.inf).tolist()
     least = tuple(
         min(previous, discrete_best) for previous, discrete_best in zip(summary.continuous, best, strict=False)

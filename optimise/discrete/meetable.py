@@ -1,4 +1,4 @@
-"""Requirements on the dimensions that no combination of discrete values meets, found before anything runs."""
+"""Requirements on the dimensions that no combination of discrete values meets, detected before a search."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from .combinations import Axes, Judged, judge_all
 from .discrete_messages import failure_message
 
 MOST = 200_000
-"""Combinations that are looked at."""
+"""Maximum number of combinations to check."""
 
 
 def require_meetable(problem: Problem) -> None:
-    """Raise InfeasibleError, with the nearest, if all three dimensions have discrete values and none meets the rules.
+    """Raise InfeasibleError, naming the nearest, if no combination of three discrete dimensions meets the requirements.
 
-    Checks only requirements that need no cycle, and at most `MOST` combinations; the rest is left to the search.
+    Checks only requirements that need no cycle, and at most `MOST` combinations; the search handles the rest.
     """
     if not problem.discrete:
         return
@@ -37,6 +37,6 @@ def require_meetable(problem: Problem) -> None:
 
 
 def _of_dimensions(axes: Axes) -> Axes:
-    """Return axes with one value of each other number: what is looked at depends on the dimensions alone."""
+    """Return axes with a single value for each other number; these requirements depend only on the dimensions."""
     fixed_values = [np.array([item.lower]) for item in axes.part.mechanism.varying]
     return Axes(axes.part, (*axes.values[:3], *fixed_values))

@@ -1,4 +1,4 @@
-"""Batches of rows on an engine, in chunks that are worth the way; light batches stay where they are."""
+"""Batches of rows on an engine, in chunks large enough to send; light batches stay in this process."""
 
 from __future__ import annotations
 
@@ -21,35 +21,35 @@ Subject = TypeVar("Subject")
 Question = TypeVar("Question", bound=Hashable)
 Part = TypeVar("Part")
 Work = Callable[[Subject, Question, Array], Part]
-"""Work on rows: a function of a module, of the subject, the question and rows (n, k). Each row is judged independently
-of the others, to the last bit, so that chunks do not affect the result."""
+"""Work on rows: a module-level function of the subject, the question and rows (n, k). The result for a row does not
+depend on the other rows, to the last bit, so chunks do not affect it."""
 
 CHUNK = 0.05
-"""Minimum time of a chunk, s: sending one costs about 1 ms here, and a few on a cluster."""
-_EACH = 4  # chunks for every worker, so that none waits long for the last one
-_FIRST = 4  # rows, of the first chunk of a kind: kernels are loaded and samples drawn with it
-_SURE = 0.5 * CHUNK  # s, after which a pace is reliable
+"""Minimum duration of a chunk, s; sending one costs about 1 ms on this machine, and a few ms on a cluster."""
+_EACH = 4  # chunks per worker, so that no worker waits long for the last one
+_FIRST = 4  # rows in the first chunk of each kind, which also loads kernels and draws samples
+_SURE = 0.5 * CHUNK  # s, measured time after which a pace is reliable
 
 
 class Shared(Generic[Value]):
-    """A value that is sent with every chunk but created only once in each process that works on them.
+    """A value that is sent with every chunk but created only once in each worker process.
 
-    A problem pickles into some kB, negligible next to a chunk of 50 ms. Creating it is costly: custom functions start a
-    process, and samples are drawn.
+    A pickled problem takes a few kB, negligible next to a chunk of 50 ms. Creating it is costly: custom functions start
+    a process, and samples are drawn.
     """
 
     def __init__(self, value: Value) -> None:
-        """Take the value; it is pickled when it first leaves this process."""
+        """Store the value; it is pickled when it first leaves this process."""
         self.value = value
 
     @cached_property
     def pickled(self) -> bytes:
-        """The value as bytes. Raises the error of pickle if it cannot leave this process."""
+        """The pickled value. Raises pickle's error if it cannot leave this process."""
         return pickle.dumps(self.value, protocol=pickle.HIGHEST_PROTOCOL)
 
     @property
     def portable(self) -> bool:
-        """Whether the value can leave this process: functions given from Python may not."""
+        """Whether the value can leave this process; functions defined in Python code may not."""
         try:
             return bool(self.pickled)
         except (pickle.PicklingError, AttributeError, TypeError):
@@ -61,7 +61,7 @@ class Shared(Generic[Value]):
 
 @lru_cache(maxsize=16)
 def _shared_value(pickled: bytes) -> Shared[Any]:
-    """Return the value of these bytes, the same one for the same bytes."""
+    """Return the value for these bytes; the same bytes give the same object."""
     shared = Shared(pickle.loads(pickled))
     shared.__dict__["pickled"] = pickled
     return shared
@@ -69,13 +69,13 @@ def _shared_value(pickled: bytes) -> Shared[Any]:
 
 @dataclass
 class _Pace:
-    """Time a row takes, s, and the seconds over which it was measured; negative before the first."""
+    """Time per row, s, and the duration of its measurement, s; negative before the first one."""
 
     row: float = 0.0
     seconds: float = -1.0
 
     def measured(self, seconds: float, rows: int) -> None:
-        if self.seconds < 0.0:  # the first time counts for nothing: something may have been compiled
+        if self.seconds < 0.0:  # ignore the first time, which may include compilation
             self.row, self.seconds = seconds / rows, 0.0
         elif seconds >= _SURE or self.seconds < _SURE:
             self.row, self.seconds = seconds / rows, seconds
@@ -83,10 +83,10 @@ class _Pace:
 
 @dataclass(frozen=True)
 class Chunked(Generic[Subject]):
-    """Does work on rows of one subject, on an engine if it is expensive.
+    """Runs work on rows of one subject, on an engine if the work is expensive.
 
-    That is measured: a batch leaves this process when at least two chunks of 50 ms remain and the engine considers it
-    worthwhile. Where the work is done does not affect the results. poll: called between chunks.
+    Cost is measured: a batch leaves this process if at least two chunks of 50 ms remain and the engine finds it
+    worthwhile. The place of the work does not affect the results. poll: called between chunks.
     """
 
     shared: Shared[Subject]
@@ -103,11 +103,11 @@ class Chunked(Generic[Subject]):
         kind: Hashable = None,
         together: bool = False,
     ) -> list[Part]:
-        """Return the parts of the work on rows (n, k), in order; a single part if it is cheap.
+        """Return the results of the work on rows (n, k), in order; a single result if it is cheap.
 
-        kind: kind of work that takes the same time for a row; the question if None. together: whether rows are much
-        quicker together than one by one. They are then not divided here, and elsewhere into at most one chunk for each
-        worker. Raises the errors of the work, the engine and `poll`.
+        kind: key for work with the same time per row; by default, the question. together: whether rows are much faster
+        together than one by one. Such rows are not divided here, and elsewhere into at most one chunk per worker.
+        Raises the errors of the work, the engine and `poll`.
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):

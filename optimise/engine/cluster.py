@@ -1,4 +1,4 @@
-"""Evaluation on a Dask cluster; work lost with a worker or with the scheduler is repeated."""
+"""Evaluation on a Dask cluster; work lost with a worker or the scheduler is repeated."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from .engine import Found, Item, Poll
 
 _log = logging.getLogger(__name__)
 PATIENCE = 300.0
-"""s, without a scheduler or without a single worker, after which a search is given up."""
+"""s, time without a scheduler or any worker after which a search gives up."""
 MOST_KILLED = 3
-"""Times that Dask may give up an item because its workers died, four of them each time."""
-_START = 1.0  # s, that connecting takes about
-_CONNECT = 5.0  # s, of one attempt
+"""How often Dask may give up an item because its workers died; each time, four of them did."""
+_START = 1.0  # s, typical time to connect
+_CONNECT = 5.0  # s, timeout for one attempt
 _TICK = 0.1
-_LOOK = 2.0  # s, between two looks for workers while nothing arrives
-_DELAYS = 0.25, 8.0  # s, before connecting again: the first, doubled up to the last
-_SAME = ("slidercrank", "numpy", "numba", "scipy")  # whose versions decide about the last bit
+_LOOK = 2.0  # s, between two checks for workers while no results arrive
+_DELAYS = 0.25, 8.0  # s, before reconnecting: the initial delay, doubled up to the maximum
+_SAME = ("slidercrank", "numpy", "numba", "scipy")  # packages whose versions affect the last bit
 
 
 @dataclass(frozen=True)
 class Tls:
-    """Files of an encrypted connection: certificate of the authority, own certificate and its key."""
+    """Files for an encrypted connection: the authority's certificate, the client's certificate and its key."""
 
     authority: Path
     certificate: Path
@@ -43,25 +43,24 @@ class Tls:
 
 
 class _Lost(Exception):
-    """The scheduler is lost, or its record of this client."""
+    """The scheduler is lost, or no longer knows this client."""
 
 
 class Cluster:
-    """A running Dask cluster with the same versions of this software as here.
+    """A running Dask cluster with the same software versions as this process.
 
-    The connection is made when it is first needed. Not for concurrent use by several threads.
+    It connects on first use. Do not use it from several threads at once.
     """
 
     def __init__(self, address: str, *, tls: Tls | None = None, patience: float = PATIENCE) -> None:
-        """Take the scheduler's address, "tcp://host:8786" or "tls://host:8786", and how long to wait for it, s.
+        """Store the scheduler's address, "tcp://host:8786" or "tls://host:8786", and how long to wait for it, s.
 
         Raises `InputError` for any other kind of address, and for an encrypted one without the necessary files.
         """
         scheme, _, rest = address.partition("://")
         if scheme not in ("tcp", "tls") or "@" in rest or not rest.rpartition(":")[2].isdigit():
-            printable_address = (
-                f"***@{address.rpartition('@')[2]}" if "@" in address else address
-            )  # before it may be a password
+            # The part before @ may be a password.
+            printable_address = f"***@{address.rpartition('@')[2]}" if "@" in address else address
             raise InputError(
                 "a scheduler's address must look like tcp://host:8786 or tls://host:8786, without a user; got "
                 f"{printable_address!r}; correct it"
@@ -74,13 +73,13 @@ class Cluster:
         if not patience >= 0.0:
             raise InputError(f"the patience with a lost scheduler must be zero or more; got {patience:g} s")
         self.address, self.tls, self.patience = address, tls, patience
-        self.workers = 4  # until it is known
+        self.workers = 4  # until the real number is known
         self._client: Any = None
         self._refused = 0.0
-        self._reached = 0.0  # when the scheduler was last heard of
+        self._reached = 0.0  # last time the scheduler answered
 
     def should_map(self, seconds: float) -> bool:
-        """Whether so much work pays; see `Engine`."""
+        """Whether this much work pays; see `Engine`."""
         if self._client is None:
             self._refused += seconds
         return self._client is not None or self._refused >= _START
@@ -89,7 +88,7 @@ class Cluster:
         """Return function(item) for every item; see `Engine`.
 
         Raises `EngineError` if the scheduler or all workers are missing for longer than the patience, if workers have
-        other versions, and for an item that repeatedly kills its workers.
+        other versions, or if an item repeatedly kills its workers.
         """
         results: dict[int, Found] = {}
         killed = [0] * len(items)
@@ -111,10 +110,10 @@ class Cluster:
         return [results[index] for index in range(len(items))]
 
     def close(self) -> None:
-        """End the connection; the cluster goes on."""
+        """Close the connection; the cluster continues to run."""
         client, self._client = self._client, None
         if client is not None:
-            with contextlib.suppress(Exception):  # it may be lost already
+            with contextlib.suppress(Exception):  # the connection may already be lost
                 client.close(timeout=_CONNECT)
 
     def _round(
@@ -126,7 +125,10 @@ class Cluster:
         killed: list[int],
         poll: Poll | None,
     ) -> None:
-        """Put the results that are missing into `results`; raise `_Lost` and the like when the scheduler goes."""
+        """Add missing results to `results`.
+
+        Raise `_Lost` or a similar error when the connection to the scheduler fails.
+        """
         dask: Any = import_module("distributed")
         self.workers = max(1, sum(client.nthreads().values()))
         pending: dict[Any, int] = {}
@@ -199,7 +201,7 @@ class Cluster:
         if self._client is None:
             dask = required("distributed", "a Dask cluster needs")
             for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
-                logging.getLogger(name).setLevel(logging.CRITICAL)  # what matters is raised, and logged, here
+                logging.getLogger(name).setLevel(logging.CRITICAL)  # errors are raised, and logged, here
             security = None
             if self.tls is not None:
                 security = dask.Security(
@@ -228,7 +230,7 @@ def _library_versions() -> tuple[str, ...]:
 
 
 def _explain_error(error: BaseException) -> BaseException:
-    """Return the exception of a task, in words where the cluster is at fault."""
+    """Return the exception of a task, with an explanation if the cluster is at fault."""
     if isinstance(error, SlidercrankError) or not isinstance(error, ImportError | AttributeError | RuntimeError):
         return error
     return EngineError(

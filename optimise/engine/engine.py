@@ -1,4 +1,4 @@
-"""Protocol of engines that evaluate chunks (this process, several processes or a cluster), and this process."""
+"""Interface of engines that evaluate chunks (this process, several processes or a cluster), and the serial engine."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ Poll = Callable[[], None]
 
 
 class Engine(Protocol):
-    """Applies a function to items, wherever that runs, and returns the results in the order of the items.
+    """Applies a function to items on some computer, and returns the results in the order of the items.
 
-    A function of an item has the same bits on every engine, on processors of the same kind.
+    On processors of the same kind, every engine returns the same bits for an item.
     """
 
     @property
@@ -22,37 +22,38 @@ class Engine(Protocol):
         ...
 
     def should_map(self, seconds: float) -> bool:
-        """Whether work that takes this time, s, in this process should rather be mapped.
+        """Whether to map work that takes this long, s, in this process.
 
-        Called for all expensive work: an engine that is slow to start declines until the work declined outweighs that.
+        Called for all expensive work: an engine that is slow to start declines until the declined work outweighs its
+        start.
         """
         ...
 
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
         """Return function(item) for every item, in order.
 
-        function: of a module, so that another process can import it. poll: called between items and while waiting; an
-        error that it raises ends the map. Raises that, the errors of the function, and `EngineError` if the engine is
-        lost. Work lost with a worker is silently repeated.
+        function: at module level, so that another process can import it. poll: called between items and while waiting;
+        any error that it raises ends the map. Raises that error, the errors of the function, and `EngineError` if the
+        engine is lost. Work lost with a worker is repeated silently.
         """
         ...
 
     def close(self) -> None:
-        """End what the engine has started. It starts again with the next map."""
+        """Stop everything that the engine has started. It starts again with the next map."""
         ...
 
 
 LONGEST = 0.5
-"""s, that a chunk takes at most, where one row takes no longer: nothing is polled meanwhile."""
+"""s, maximum duration of a chunk if rows are short enough: nothing is polled meanwhile."""
 
 
 class Serial:
-    """The engine that is none: nothing is pickled, nothing started."""
+    """Engine that runs work directly: it pickles nothing and starts nothing."""
 
     workers = 1
 
     def should_map(self, seconds: float) -> bool:
-        """Return whether something is to be heard meanwhile; see `Engine`."""
+        """Return whether the work is long enough to need polling; see `Engine`."""
         return seconds > LONGEST
 
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:

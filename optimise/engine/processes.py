@@ -1,4 +1,4 @@
-"""Evaluation in processes of this machine; one that ends in the middle is replaced and its chunks are done again."""
+"""Evaluation in several processes on this machine; if one ends abruptly, it is replaced and its chunks are repeated."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from ...model.kernel.interruption import ask, farewell, killed
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3
-"""Abrupt ends of a process, with nothing but one item under way, before that item is given up."""
-_STARTS = 8  # in a row that may fail
-_START = 3.0  # s, that it takes about to start them and to load what is compiled
-_TICK = 0.1  # s, between two questions whether to stop
+"""Number of abrupt ends, each with only this item running, after which the item is given up."""
+_STARTS = 8  # consecutive starts that may fail
+_START = 3.0  # s, typical time to start processes and load compiled code
+_TICK = 0.1  # s, between two checks for interruption
 
 
 class Processes:
-    """Processes that are started when they are first needed, and kept.
+    """Processes that start on first use and stay alive.
 
-    They are spawned: nothing is inherited but the environment. They end with this process, however it ends. Not to be
-    used by several threads at once.
+    They are spawned, so they inherit only the environment. They end with this process, whatever the reason. Do not use
+    them from several threads at once.
     """
 
     def __init__(self, workers: int | None = None) -> None:
-        """Take the number of processes, that of the processors if not given. Raises `InputError` for fewer than one."""
+        """Store the number of processes, by default one per processor. Raises `InputError` for fewer than one."""
         if workers is not None and workers < 1:
             raise InputError(
                 f"the number of processes must be at least one; got {workers}; leave it out for one per processor"
@@ -41,7 +41,7 @@ class Processes:
         self._refused = 0.0
 
     def should_map(self, seconds: float) -> bool:
-        """Whether mapping work of this length pays; see `Engine`."""
+        """Whether mapping this much work pays; see `Engine`."""
         if self._pool is None:
             self._refused += seconds
         return self._pool is not None or self._refused >= _START
@@ -49,14 +49,14 @@ class Processes:
     def map(self, function: Callable[[Item], Found], items: Sequence[Item], *, poll: Poll | None = None) -> list[Found]:
         """Return function(item) for every item; see `Engine`.
 
-        Raises `EngineError` for an item under which the processes ended three times.
+        Raises `EngineError` for an item whose processes ended three times.
         """
         results: dict[int, Found] = {}
         suspects, breaks = set[int](), [0] * len(items)
         while len(results) < len(items):
             left = [index for index in range(len(items)) if index not in results]
-            # Those that were under way when processes ended go one at a time: who ends one alone is to blame, not who
-            # was beside it.
+            # Items running when processes ended are repeated one at a time: an item that ends a process alone is to
+            # blame, not the items beside it.
             alone = next((index for index in left if index in suspects), None)
             broken = self._take(function, items, left if alone is None else [alone], results, poll)
             suspects.update(broken)
@@ -71,7 +71,7 @@ class Processes:
         return [results[index] for index in range(len(items))]
 
     def close(self) -> None:
-        """End the processes, when they have finished what they are at."""
+        """Stop the processes after their current work."""
         if self._pool is not None:
             self._pool.shutdown(cancel_futures=True)
             self._pool = None
@@ -84,7 +84,10 @@ class Processes:
         results: dict[int, Found],
         poll: Poll | None,
     ) -> list[int]:
-        """Put the chosen items' results into `results` until the processes break; return what was under way then."""
+        """Add the selected items' results to `results` until a process dies.
+
+        Return the items that were running then.
+        """
         running: dict[Future[Found], int] = {}
         waiting = iter(chosen)
         try:
@@ -116,7 +119,7 @@ class Processes:
             raise
 
     def _abandon(self) -> None:
-        """Kill processes whose work nobody waits for, and that may never end."""
+        """Kill processes whose work is no longer needed and may never end."""
         pool, self._pool = self._pool, None
         if pool is not None:
             for process in list((cast(Any, pool)._processes or {}).values()):
@@ -124,7 +127,7 @@ class Processes:
             pool.shutdown(cancel_futures=True)
 
     def _started(self) -> ProcessPoolExecutor:
-        """Return the pool, its first process ready: how a process starts is not the fault of what it is given."""
+        """Return the pool once its first process is ready: a failed start is not the fault of an item."""
         for _ in range(_STARTS):
             if self._pool is not None:
                 return self._pool
@@ -148,7 +151,7 @@ class Processes:
 
 @contextlib.contextmanager
 def block_interrupts() -> Iterator[None]:
-    """Keep Ctrl-C from processes that start meanwhile: it is for this one, which hears it afterwards."""
+    """Shield processes that start meanwhile from Ctrl-C; this process receives it afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -160,11 +163,11 @@ def block_interrupts() -> Iterator[None]:
 
 
 def _report_ready() -> None:
-    """Do nothing, when the process has started."""
+    """Do nothing; returning shows that the process has started."""
 
 
 def end_with_parent() -> None:
-    """Prepare a process: Ctrl-C is for its parent, and it ends with its parent, also when that is killed."""
+    """Prepare a process to ignore Ctrl-C, which its parent handles, and to end with its parent, even if killed."""
     import multiprocessing
     from multiprocessing.connection import wait as wait_for
 

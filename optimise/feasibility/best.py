@@ -1,4 +1,4 @@
-"""The best value that one quantity can have while all requirements are met."""
+"""Best value of one quantity subject to all requirements."""
 
 from __future__ import annotations
 
@@ -19,14 +19,15 @@ from ..search.sampling import first_samples
 from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, is_beyond_sampling, samples_per_branch
 
 _SAMPLES = 2048
-"""Designs of a round where only the dimensions count."""
+"""Samples per round if only the dimensions count."""
 _FEW = 1024
-"""The same where all requirements do: a cycle for each takes long, and the best of a few lead down as those of many."""
+"""Samples per round if all requirements count: evaluating cycles takes long, and descents from a few good samples
+suffice."""
 
 
 @dataclass(frozen=True)
 class Best:
-    """The best value (SI) of a quantity, and a design (3 + v,) that has it."""
+    """Best value (SI) of a quantity, and a design (3 + v,) that attains it."""
 
     value: float
     design: Array
@@ -40,7 +41,7 @@ def best_of(
 ) -> Best | None:
     """Return the best value of a problem's only objective, None if nothing is feasible.
 
-    checkpoints, engine: those of the calling search. report: called with the progress of this one.
+    checkpoints, engine: those of the calling search. report: receives the progress of this search.
     """
     combined = [
         Evaluator(problem, branch, checkpoints, engine)
@@ -57,11 +58,11 @@ def best_of(
 
 
 def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the archive of a few samples if it suffices, else of a whole search.
+    """Return the archive of a few samples if they suffice, otherwise that of a full search.
 
-    It suffices with enough feasible designs, or if none can be feasible.
+    A few samples suffice if enough are feasible, or if no design can be feasible.
 
-    For one objective, descents from the best few samples reach its best value.
+    With one objective, descents from the best few samples reach the best value.
     """
     if not any(evaluator.loose for evaluator in evaluators):
         archive = run.archive = Archive.empty(1)
@@ -77,10 +78,10 @@ def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator]
 
 
 def best_on_dimensions(problem: Problem) -> Best | None:
-    """Return the best value of a stroke, time ratio or other closed form, the only objective of a problem.
+    """Return the best value of a problem's only objective: a stroke, time ratio or other closed form.
 
-    The design meets the requirements on the dimensions and the floor of the transmission angle; loads and masses do not
-    count. None if no design does. The search takes about a tenth of a second.
+    The design meets the requirements on the dimensions and the transmission angle's floor; loads and masses are
+    ignored. None if there is no such design. The search takes about a tenth of a second.
     """
     light = on_dimensions(problem)
     return best_of(replace(light, settings=replace(light.settings, samples=_SAMPLES)))
@@ -93,11 +94,11 @@ def wanting(problem: Problem, name: str, sense: Sense, target: float | None = No
 
 
 def on_dimensions(problem: Problem) -> Problem:
-    """Return the problem with its requirements on the dimensions alone, of a machine that weighs nothing.
+    """Return the problem for a massless machine, with only the requirements on the dimensions.
 
     The stroke times stay the same.
 
-    Choices that leave the dimensions and what is asked of them as they are fall together.
+    Choices that affect neither the dimensions nor their requirements are merged.
     """
     parts = list(dict.fromkeys(_without_masses(part) for part in problem.parts()))
     if len(parts) == 1:
@@ -117,7 +118,7 @@ def on_dimensions(problem: Problem) -> Problem:
 
 
 def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
-    """Return the constraints on quantities that follow from crank, rod and offset alone."""
+    """Return the constraints on quantities that depend on crank, rod and offset alone."""
     return tuple(c for c in problem.constraints if problem.quantity(c.quantity).of_dimensions)
 
 

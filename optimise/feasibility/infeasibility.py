@@ -1,4 +1,4 @@
-"""Nothing feasible: which requirements contradict each other, and how near one can get."""
+"""Infeasible problems: which requirements contradict each other, and how close to them a design can get."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ _STARTS = 24
 class Diagnosis:
     """Result of a search for feasible designs.
 
-    feasible: designs (n, 3 + v), SI, that are feasible if there are any after all. relaxations: requirements of which
-    giving up any one is enough. message: the contradiction in words.
+    feasible: designs (n, 3 + v), SI, if any are feasible after all. relaxations: requirements, each of which suffices
+    if relaxed. message: explanation of the contradiction.
     """
 
     feasible: Array
@@ -47,13 +47,13 @@ def diagnose(
     checkpoints: Checkpoints | None = None,
     engine: Engine | None = None,
 ) -> Diagnosis:
-    """Return feasible designs after all, or which requirements contradict each other.
+    """Return feasible designs if there are any after all; otherwise the requirements that contradict each other.
 
-    best: gives the best of a problem with one objective, None if it is infeasible too. checkpoints, engine: of the
-    search that wants to know it. First the greatest relative violation is minimised from many starts, without
-    eliminating anything. If it stays positive, each requirement in turn becomes the objective of the problem without
-    it; one that is met after all gives a feasible design. Both searches are local from many starts: strong evidence;
-    `certificate.infeasible` gives the proof where it can.
+    best: returns the best design of a problem with one objective, None if that is infeasible too. checkpoints, engine:
+    those of the calling search. First, the greatest relative violation is minimised from many starts, without
+    elimination. If it stays positive, each requirement in turn becomes the objective of the problem without it; if it
+    can be met after all, the design is feasible. Both searches are local, from many starts, which is strong evidence;
+    `certificate.infeasible` gives a proof where possible.
     """
     feasible, turning, nearest = _least_violation(problem, checkpoints, engine)
     if len(feasible):
@@ -97,9 +97,9 @@ def diagnose(
 def _least_violation(
     problem: Problem, checkpoints: Checkpoints | None, engine: Engine | None
 ) -> tuple[Array, bool, str]:
-    """Return feasible designs, whether any sampled design can be judged, and the one nearest to feasible in words.
+    """Return feasible designs, whether any sample can be judged, and a description of the sample nearest to feasible.
 
-    Where none can be judged though some turn fully, the words say which quantity has no value for any of them.
+    If none can be judged although some rotate fully, the message names the quantity without a value.
     """
     feasible = []
     turning = False
@@ -124,7 +124,7 @@ def _least_violation(
 
 
 def _jointly_possible(problem: Problem, variant: int, design: Array) -> str:
-    """Return a design and what it meets in place of the requirements that it misses, in words."""
+    """Describe a design, and the values it has for the requirements that it misses."""
     part = problem.part(variant)
     found = []
     for constraint in constraints_of(part):

@@ -1,4 +1,4 @@
-"""Reachable values in place of a requirement that cannot be met, in numbers that can be asked for."""
+"""Reachable values in place of a requirement that cannot be met, rounded so that they can be required."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from .best import Best, wanting
 from .safe_side import exact, safe
 
 _LOWEST = 0.02
-"""Of a floor: what is kept of it where it is let go. Nearer to locking nothing is worth telling."""
+"""Fraction of a floor that remains when it is dropped. Values closer to locking are not worth reporting."""
 _SENSES: dict[Word, Sense] = {"min": "maximise", "max": "minimise", "equals": "target"}
-"""How to come nearest to a bound."""
+"""Objective that brings a quantity closest to each kind of bound."""
 
 
 @dataclass(frozen=True)
 class Relaxation:
-    """A requirement that cannot be met, and its reachable value (shown units) while all others are kept.
+    """A requirement that cannot be met, and its reachable value (display unit) if all others are met.
 
-    alone: whether no value near the one that can be had is possible, so that it is told in all its digits. standing:
-    whether nobody asked for it: a floor that holds where a job sets none.
+    alone: whether no value near the reachable one is possible, so all its digits are shown. standing: whether it is the
+    default floor of a job that sets none.
     """
 
     quantity: str
@@ -39,23 +39,23 @@ class Relaxation:
 
     @property
     def rounded_value(self) -> str:
-        """The reachable value, in digits that can be asked for."""
+        """The reachable value, in digits that can be required."""
         if self.alone:
             return exact(self.reachable)
         return safe(self.reachable, "down" if self.reachable < self.requested else "up")
 
     @property
     def number(self) -> float:
-        """The reachable value as a number, as it is told."""
+        """The reachable value as a number, as shown."""
         return float(self.rounded_value)
 
     @property
     def with_unit(self) -> str:
-        """The reachable value as it is told, with its unit."""
+        """The reachable value as shown, with its unit."""
         return f"{self.rounded_value} {self.unit}".rstrip()
 
     def sentence(self, *, other_requirements: str = "all else") -> str:
-        """Return the relaxation in words. other_requirements: what the other requirements are called."""
+        """Return the relaxation in words. other_requirements: phrase for the other requirements."""
         limit_word = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
         requested_value = "is kept where a job sets none" if self.standing else "is asked"
         requirement = f"{self.title} {self.relation} {self._requested_number()}"
@@ -64,7 +64,7 @@ class Relaxation:
         )
 
     def instead(self) -> str:
-        """Return the reachable requirement to ask for instead, in words."""
+        """Return the reachable requirement that can replace this one, in words."""
         return f"{self.title} {self.relation} {self.with_unit} instead of {self._requested_number()}"
 
     def _requested_number(self) -> str:
@@ -72,7 +72,7 @@ class Relaxation:
 
 
 def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, value: float) -> Relaxation | None:
-    """Return a missed side of a constraint with its reachable value (SI); None if the value meets it."""
+    """Return the violated side of a constraint with its reachable value (SI); None if the value meets it."""
     slack = FEASIBLE * (abs(bound) or 1.0)
     off = {"min": bound - value, "max": value - bound, "equals": abs(value - bound)}[word]
     if off <= slack:
@@ -88,15 +88,15 @@ def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, v
 def relaxations(
     problem: Problem, constraint: Constraint, best: Callable[[Problem], Best | None]
 ) -> Iterator[Relaxation | Array]:
-    """Yield the reachable value for each unreachable side of a constraint, where giving that side up is enough.
+    """Yield the reachable value for each unreachable side of a constraint, if dropping that side is enough.
 
-    Where a side can be had after all, the design (3 + v,) that has it with all else kept is given instead. best: gives
-    the best of a problem with one objective, None where nothing meets its requirements.
+    If a side can be met after all, yields the design (3 + v,) that meets it and all else instead. best: returns the
+    best design of a problem with one objective, None if no design meets its requirements.
     """
     for word, bound in constraint.sides:
         sense = _SENSES[word]
         free = _drop_side(problem, constraint, word)
-        # What grows without bound somewhere is brought near to what is asked instead: beyond that it does not matter.
+        # A quantity without upper bound is brought close to the required value instead; values beyond it do not matter.
         unbounded = problem.quantity(constraint.quantity).in_line == math.inf
         sought: Sense = "target" if unbounded else sense
         reached = best(wanting(free, constraint.quantity, sought, bound if sought == "target" else None))
@@ -115,9 +115,9 @@ def relaxations(
 
 
 def _drop_side(problem: Problem, constraint: Constraint, word: Word) -> Problem:
-    """Return the problem with one side of a constraint let go.
+    """Return the problem without one side of a constraint.
 
-    Of a floor a little is kept: the one that a job without it has would hide what can be had below that.
+    A small part of a floor remains, because the default floor would hide reachable values below it.
     """
     lower = constraint.lower if word == "max" else None
     upper = constraint.upper if word == "min" else None

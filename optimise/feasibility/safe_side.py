@@ -1,6 +1,6 @@
-"""Limits as people read them and type them again: rounded so that asking for the number told is possible.
+"""Limits for people to read and enter again: rounded so that requiring the reported number is possible.
 
-Told to the nearest digit, every other limit would lie beyond itself: 42.8078 deg of 42.80776 deg has no design.
+Rounded to nearest, every other limit would be unreachable: if 42.80776 deg is the limit, no design has 42.8078 deg.
 """
 
 from __future__ import annotations
@@ -9,20 +9,20 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from typing import Literal
 
 Side = Literal["down", "up"]
-"""Side on which possible values lie: below the greatest value ("down") or above the least ("up")."""
+"""Side of the possible values: below a greatest value ("down") or above a least value ("up")."""
 
 DIGITS = 6
-"""Significant digits of a limit: less than 1e-5 of it is given away, far below any tolerance of manufacture."""
+"""Significant digits of a limit: rounding gives away less than 1e-5 of it, far below any manufacturing tolerance."""
 _EXACT = 12
 _ROUNDING = 1e-10
-"""Relative: a value nearer than this to a shorter number is that number; a tenth of what counts as violated."""
+"""Relative: a value closer than this to a shorter number becomes that number; a tenth of what counts as violated."""
 
 
 def safe(value: float, side: Side, *, digits: int = DIGITS) -> str:
-    """Return a limit in decimal digits, rounded to the side where all values are possible.
+    """Return a limit in decimal digits, rounded to the side of the possible values.
 
-    value: in the unit that is shown, finite. A number of fewer digits within rounding is taken as it is: 240 for
-    239.99999999999. Without exponent from 1e-4 to 1e9, so that it can be typed as it stands.
+    value: finite, in the display unit. A shorter number within rounding is used instead: 240 for 239.99999999999. It
+    has no exponent from 1e-4 to 1e9, so that it can be typed as shown.
     """
     size = Decimal(repr(abs(float(value)) * _ROUNDING))
     rounded = Context(prec=digits, rounding=ROUND_FLOOR if side == "down" else ROUND_CEILING)
@@ -30,7 +30,7 @@ def safe(value: float, side: Side, *, digits: int = DIGITS) -> str:
 
 
 def exact(value: float) -> str:
-    """Return a value that is possible alone, its neighbours not, in as many digits as rounding leaves of it."""
+    """Return an isolated possible value, in all digits that rounding errors leave certain."""
     return _number_text(Context(prec=_EXACT).plus(Decimal(repr(float(value)))))
 
 

@@ -1,4 +1,4 @@
-"""No design of the ranges swings as asked: why, in words."""
+"""Reasons why no design within the ranges makes the required swing."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from ..search.elimination import elimination_branches
 from ..search.sampling import first_samples
 
 _SAMPLES = 4096
-_HALVINGS = 10  # of the share of the friction: three digits
+_HALVINGS = 10  # bisections of the friction fraction, for three digits
 
 
 def require_swinging(problem: Problem) -> None:
-    """Raise `InfeasibleError` if none of many designs within the ranges swings as required, or friction locks them."""
+    """Raise `InfeasibleError` if no design in a large sample makes the required swing, or if friction locks it."""
     message = unswung(problem)
     if message:
         raise InfeasibleError(f"motion: {message}")
 
 
 def unswung(problem: Problem) -> str:
-    """Return why no design of the ranges swings as asked, in words; "" if one of many does."""
+    """Return why no design within the ranges swings as required, in words; "" if one in a large sample does."""
     motion = problem.motion
     assert motion is not None
     closing = passing = 0
@@ -77,7 +77,7 @@ def unswung(problem: Problem) -> str:
 
 
 def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
-    """Return which share of the friction some design of machines that it locks still moves with; "" where it varies."""
+    """Describe the fraction of friction at which a locked machine first moves; "" if the friction varies."""
     if any(path.startswith("friction.") for machine, _ in stuck for item in machine.varying for path in item.paths):
         return ""
     low, high = 0.0, 1.0
@@ -89,7 +89,7 @@ def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
 
 
 def _with_friction_share(machine: Mechanism, share: float) -> Mechanism:
-    """Return a machine with a share of its coefficients of friction."""
+    """Return a machine with its friction coefficients multiplied by a fraction."""
     friction = machine.friction
     pins = {
         name: replace(pin, coefficient=share * pin.coefficient)

@@ -1,4 +1,4 @@
-"""Quantities without a number for any design, such as roots of negative values or safety of unloaded bars."""
+"""Quantities without a value for any design, such as roots of negative numbers or safety factors of unloaded bars."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from ..problem.violation import constraints_of
 from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 
-_TRIED = 256  # designs of each branch that are asked whether an objective is infinite
+_TRIED = 256  # designs of each branch that are checked for an infinite objective
 
 
 def valueless(part: Problem, designs: Array) -> str:
-    """Return the quantity without a value for any of some designs (n, 3 + v), with a remedy, or "".
+    """Return the quantity that has no value for any of the designs (n, 3 + v), with a remedy, or "".
 
-    part: a problem without choices. The designs must move as asked.
+    part: a problem without choices. The designs must be able to move as required.
     """
     names = [*(item.quantity for item in part.objectives), *(item.quantity for item in constraints_of(part))]
     for name in dict.fromkeys(names):
@@ -38,15 +38,15 @@ def valueless(part: Problem, designs: Array) -> str:
 
 
 def valueless_in_all(problem: Problem, designs: Array) -> str:
-    """Return the answer of `valueless` if there is one in every variant of a problem."""
+    """Return the answer of `valueless` if every variant of a problem has one."""
     said = [valueless(part, designs) for part in problem.parts()] if len(designs) else []
     return said[0] if said and all(said) else ""
 
 
 def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
-    """Raise `InputError` for an objective that may be infinite, and is for all of some designs of the ranges.
+    """Raise `InputError` for an objective that is infinite for every sampled design within the ranges.
 
-    None of them is then better than another in it. Those without a value do not count.
+    That objective could then not rank any designs. Designs without a value are ignored.
     """
     for name in [item.quantity for item in problem.objectives if problem.quantity(item.quantity).endless]:
         found = []

@@ -1,7 +1,8 @@
-"""Choice of one design from a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
+"""Selection of one design from a front: nearest to the ideal, by weights (TOPSIS), or by ranked objectives.
 
 All functions take objective values (n, m) as minimised, in any units: only proportions matter.
-size: (m,), scale for rounding an objective's values besides their own magnitude: the target, for distances from it.
+size: (m,), scale for rounding an objective's values besides their own magnitude: the target if it is a distance from
+one.
 """
 
 from __future__ import annotations
@@ -21,12 +22,12 @@ from ...model.machine.loads.load import require_word
 from .constant_numbers import column_ranges
 
 Normalisation = Literal["range", "vector"]
-_TIE = 1e-9  # of a range, of a closeness: nearer together is rounding
+_TIE = 1e-9  # relative to a range or a closeness: smaller differences are rounding
 
 
 @dataclass(frozen=True, kw_only=True)
 class Priority:
-    """An objective in a ranking, and the loss from its best value allowed in favour of the next one.
+    """An objective in a ranking, and the loss from its best value that is allowed in favour of the next one.
 
     absolute: loss in the quantity's SI unit. share: fraction of the objective's range over the designs. The two add up.
     """
@@ -52,7 +53,7 @@ def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
 
 
 def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
-    """Return the row nearest to the ideal point, every objective scaled by its range over the designs."""
+    """Return the row nearest to the ideal point, with every objective scaled by its range over the designs."""
     distances = np.linalg.norm(by_range(values, size=size), axis=1)
     return int(np.flatnonzero(distances <= distances.min() + _TIE)[0])
 
@@ -62,10 +63,10 @@ def closeness(
 ) -> Array:
     """Return the relative closeness (n,) of designs to the ideal, 0 to 1, greatest best (TOPSIS).
 
-    C = d_worst / (d_best + d_worst), where d are Euclidean distances of the weighted normalised objectives from the
-    best and from the worst value of each. C. L. Hwang and K. Yoon, "Multiple Attribute Decision Making", Springer 1981,
-    the section on TOPSIS. They divide each objective by its Euclidean norm over the designs ("vector"). An objective
-    that varies little around a large value then hardly counts, whatever its weight, and adding a constant changes the
+    C = d_worst / (d_best + d_worst), where d are Euclidean distances of the weighted, normalised objectives from the
+    best and the worst value of each. C. L. Hwang and K. Yoon, "Multiple Attribute Decision Making", Springer 1981, the
+    section on TOPSIS. They divide each objective by its Euclidean norm over the designs ("vector"). An objective that
+    varies little around a large value then hardly counts, whatever its weight, and adding a constant changes the
     choice. By default objectives are divided by their range over the designs, so that weights rate whole ranges.
 
     weights: (m,), zero or more, with any sum. If all designs are equal in the weighted objectives, all closenesses
@@ -102,11 +103,11 @@ def topsis(
 def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, size: ArrayLike = 0.0) -> int:
     """Return the row that remains when objectives decide in turn.
 
-    order: objectives as (column, absolute, share). Each in turn keeps the remaining designs that lose at most
-    `absolute + share * range` against the best of them, with the range over all designs. The last one keeps its best,
-    whatever its tolerance. Ties go to the better in the other objectives. (Fishburn, "Lexicographic orders,
-    utilities and decision rules", Management Science 20(11), 1974; with tolerances: Waltz, "An engineering approach:
-    hierarchical optimization criteria", IEEE Trans. Automatic Control 12(2), 1967.)
+    order: objectives as (column, absolute, share). Each in turn keeps the remaining designs whose loss against their
+    best is at most `absolute + share * range`, with the range over all designs. The last one keeps only its best,
+    whatever its tolerance. Ties go to the better in the other objectives. (Fishburn, "Lexicographic orders, utilities
+    and decision rules", Management Science 20(11), 1974; with tolerances: Waltz, "An engineering approach: hierarchical
+    optimization criteria", IEEE Trans. Automatic Control 12(2), 1967.)
     """
     _require_designs(values)
     columns = [column for column, _, _ in order]

@@ -1,4 +1,4 @@
-"""Test whether computed numbers are all the same."""
+"""Test whether computed numbers are all equal."""
 
 from __future__ import annotations
 
@@ -8,25 +8,26 @@ from numpy.typing import ArrayLike
 from ...model.arrays import Array, Mask
 
 SAME = 1e-9
-"""Relative spread of what counts as one number.
+"""Relative spread within which numbers count as equal.
 
-A quantity that the rules hold at a value comes out of the search with a spread of one or a few last bits (2e-16 each),
-amplified by what it is computed from, and constraints count as met to 1e-9. A spread that a drawing shows is a million
-times greater.
+A quantity that the requirements hold at a value leaves the search with a spread of one or a few last bits (2e-16 each),
+amplified by its inputs, and constraints count as met to 1e-9. A spread that is visible in a drawing is a million times
+greater.
 """
 
 
 def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
-    """Return whether the numbers of each column are equal to rounding: () or (m,) of values (n,) or (n, m).
+    """Return whether the numbers in each column are equal to rounding: () or (m,) of values (n,) or (n, m).
 
-    The spread is compared with the greatest magnitude, or with `size` if that is greater: the target, for a distance
-    from it. NaN and infinity do not count; a column without numbers is constant. Zero needs a size, having no scale.
+    The spread is compared with the greatest magnitude, or with `size` if that is greater: the target, if the numbers
+    are distances from one. NaN and infinity are ignored; a column without numbers is constant. Zero needs a size
+    because it has no scale.
     """
     return np.asarray(column_ranges(values, size=size) == 0.0)
 
 
 def column_ranges(values: ArrayLike, *, size: ArrayLike = 0.0) -> Array:
-    """Return the range of each column of values, as `is_constant` takes them; exactly 0 where it is constant."""
+    """Return the range of each column of values as for `is_constant`; exactly 0 for a constant column."""
     values = np.ascontiguousarray(np.moveaxis(np.asarray(values, dtype=np.float64), 0, -1))  # ten times faster
     finite = np.where(np.isfinite(values), values, np.nan)
     low = np.fmin.reduce(finite, axis=-1, initial=np.inf)

@@ -1,4 +1,4 @@
-"""Answer of a search among discrete values: its extent, and the cost of the values."""
+"""Summary of a search among discrete values: its extent, and what the values cost."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, kw_only=True)
 class DiscreteSearch:
-    """Origin of the front of a problem with discrete numbers.
+    """How the front of a problem with discrete numbers was found.
 
-    exact: whether every combination was judged; else those next to the designs of the continuous front were.
-    combinations: number of combinations. judged: number of those judged. rules: rules of the discrete numbers by name,
-    in words. continuous: best value of each objective in the continuous front, (m,), as minimised, SI; empty without
+    exact: whether every combination was judged; otherwise only those next to designs of the continuous front.
+    combinations: number of combinations. judged: number of those judged. rules: rules for the discrete numbers by name,
+    in words. continuous: best value of each objective on the continuous front, (m,), as minimised, SI; empty without
     one.
     """
 

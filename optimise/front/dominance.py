@@ -1,4 +1,4 @@
-"""Domination between designs: no worse in every objective, better in one; all objectives are minimised."""
+"""Dominance between designs: no worse in every objective, better in one; all objectives are minimised."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from ...model.arrays import Array, IntArray, Mask
 from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Cube, Flags, IntegerTable, Table, kernel
 
-_WORD = 63  # designs marked by the bits of one integer, whose sign is unused
+_WORD = 63  # designs per integer word of mask bits, whose sign bit is unused
 _CHUNK = 2048  # designs that one thread filters at a time
-_OBJECTIVES, _MANY = 4, 40_000  # for fewer objectives, and for more designs, a filter of n log n steps is faster
+# With fewer objectives, or with more designs, an n log n filter is faster.
+_OBJECTIVES, _MANY = 4, 40_000
 
 
 def nondominated(values: Array) -> IntArray:
-    """Return the indices of designs that no other dominates, ascending; of equals, the first.
+    """Return the ascending indices of designs that no other design dominates; of equal designs, the first.
 
-    Designs are sorted, by the first objective first: only earlier designs may dominate a later one. For each other
-    objective, bits mark the designs up to a given place in its order. The intersection over all objectives contains the
-    few designs that may be as good as the one with these places. These are compared with it.
+    Designs are sorted by the first objective, so only earlier designs may dominate a later one. For each other
+    objective, bits mark the designs up to a given rank. The intersection over all objectives contains the few designs
+    that may be as good as the one with these ranks. Only these are compared with it.
     """
     count, objectives = values.shape
     if not count:
@@ -73,7 +74,7 @@ def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upt
 
 @kernel
 def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, undominated: Flags) -> None:
-    """Mark the designs from `begin` to `end` for which no earlier one is as good in all of these objectives."""
+    """Mark the designs from `begin` to `end` for which no earlier design is as good in all of these objectives."""
     candidates = np.empty(bits.shape[1], np.int64)
     for i in range(begin, end):
         words, first, second = 1 + i // _WORD, upto[0, i], upto[1, i]
@@ -83,7 +84,7 @@ def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, e
             row = upto[column, i]
             for w in range(words):
                 candidates[w] &= bits[row, w]
-        candidates[words - 1] &= (1 << (i % _WORD)) - 1  # those before this design
+        candidates[words - 1] &= (1 << (i % _WORD)) - 1  # designs before this one
         for w in range(words):
             for column in range(by_word.shape[0]):
                 if not candidates[w]:
@@ -115,9 +116,9 @@ def _mark_dominating(points: Table, rivals: Table, clearly: float, slightly: flo
 
 
 def dominating(points: Array, rivals: Array, *, clearly: float, slightly: float = np.inf) -> Mask:
-    """Return which points (n, m) dominate one of the rivals (k, m) and are better by more than `clearly` somewhere.
+    """Return which points (n, m) dominate any rival (k, m) and are better by more than `clearly` in some objective.
 
-    slightly: a point that is better by more than this somewhere may be worse by up to `clearly` elsewhere.
+    slightly: a point that is better by more than this in one objective may be worse by up to `clearly` in others.
     """
     dominates = np.zeros(len(points), dtype=bool)
     points, rivals = np.ascontiguousarray(points), np.ascontiguousarray(rivals)

@@ -1,4 +1,4 @@
-"""Result of an optimisation: the Pareto front, how good it is, and how it was found."""
+"""Result of an optimisation: the Pareto front, its quality, and how it was found."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Columns = dict[str, NDArray[Any]]
-_NOTHING = 1e-7  # of a range: a gain, and of a range per range a loss, below which there is rounding
-_LEAST = 1e-4  # of a range: the least step worth reporting
-_UNMET = 1e-7  # residual that counts as no solution, for rows of size one
+_NOTHING = 1e-7  # relative to ranges: smaller gains, and smaller losses per gain, are rounding
+_LEAST = 1e-4  # relative to a range: smallest step worth reporting
+_UNMET = 1e-7  # residual above which there is no solution, for rows of size one
 Status = Literal["done", "cancelled", "infeasible"]
 
 
@@ -61,12 +61,11 @@ class ParetoFront:
     active), `residual` (stationarity) and `status` ("stationary" or "best found"). Sorted by the first objective, best
     first. dimensions: (n, 3 + v) crank, rod, offset, m, and the exact values of the extra variables, SI.
     variants: index of each design's variant in the problem; empty without choices.
-    values: (n, m) objectives as they are minimised (maximised ones negated, targets as distances), SI. goals: for each
-    design, objective index and gradient of every active piece; active: gradients of its active constraints; both by the
-    free unknowns scaled to the unit box.
-    hypervolume: dominated fraction of the box between the front's ideal and 1.1 times nadir, see `hypervolume.py`.
-    history: rounds, with hypervolumes in the same box. versions: versions of this software and its numerical libraries.
-    discrete: extent of the search among discrete values; None without any.
+    values: (n, m) minimised objectives (maximised ones negated, targets as distances), SI. goals: for each design,
+    objective index and gradient of every active piece; active: gradients of its active constraints; both with respect
+    to the free unknowns scaled to the unit box. hypervolume: dominated fraction of the box between the front's ideal
+    and 1.1 times nadir, see `hypervolume.py`. history: rounds, with hypervolumes in the same box. versions: versions of
+    this software and its numerical libraries. discrete: extent of the search among discrete values; None without any.
     """
 
     problem: Problem
@@ -88,7 +87,7 @@ class ParetoFront:
 
     @cached_property
     def designs(self) -> pd.DataFrame:
-        """The designs as a pandas DataFrame: one row per design, the columns under their names."""
+        """The designs as a pandas DataFrame, one row per design."""
         import pandas as pd
 
         return pd.DataFrame(self.columns)
@@ -101,7 +100,7 @@ class ParetoFront:
         return f"ParetoFront({self.problem.name!r}: {self.status}, {count}; {'; '.join(self._labels())})"
 
     def _repr_html_(self) -> str:
-        """Table of the first designs and a picture, for notebooks."""
+        """HTML table of the first designs and a plot, for notebooks."""
         if not len(self):
             return f"<p>{escape(self.problem.name)}: {escape(self.message)}</p>"
         columns = [quantity.field for quantity in self._quantities]
@@ -131,7 +130,7 @@ class ParetoFront:
         return self.problem.objectives
 
     def part(self, row: int) -> Problem:
-        """Return the problem that a design answers, with its choices in place.
+        """Return the problem that a design solves, with its choices made.
 
         Raises `InputError` for a row that is not in the front.
         """
@@ -145,17 +144,17 @@ class ParetoFront:
         return self.problem.part(self.variants[row] if self.variants else 0)
 
     def mechanism(self, row: int) -> Mechanism:
-        """Return the machine of a design, with its choices and extra variables in place."""
+        """Return a design's machine, with its choices made and its extra variables set."""
         return self.part(row).mechanism.with_values(self.dimensions[row, 3:].tolist())
 
     def ask(self, question: str, row: int | None = None, /, **inputs: object) -> dict[str, Any]:
         """Answer a question about the front, or about the design in a row, as `Problem.ask` does.
 
-        "certify", "wish", "like" and "round" are questions about a front, as the commands are:
-        `front.ask("certify", epsilon=0.02)`, `front.ask("wish", at={"peak_torque": "110 N m"})`. A row is the design
-        to which "improve" and "keep" refer, or the one to round: `front.ask("round", 3, to="0.5 mm")`. All others are
-        about a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question, row or input,
-        and for anything that the front does not have.
+        "certify", "wish", "like" and "round" are questions about a front, as are the commands of these names:
+        `front.ask("certify", epsilon=0.02)`, `front.ask("wish", at={"peak_torque": "110 N m"})`. The row is the design
+        to which "improve" and "keep" refer, or the one to round: `front.ask("round", 3, to="0.5 mm")`. All other
+        questions are about a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question,
+        row or input, and for anything that the front lacks.
         """
         if row is None or subject_of(question) == "front":
             record: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
@@ -168,9 +167,9 @@ class ParetoFront:
 
     @classmethod
     def load(cls, file: str | PathLike[str], problem: Problem) -> ParetoFront:
-        """Return a front that `save` wrote, unchanged to the last bit. problem: the problem that it was solved for.
+        """Return a front that `save` wrote, unchanged to the last bit. problem: the problem that the front solves.
 
-        Raises `InputError` for any other file, and for the front of another problem.
+        Raises `InputError` for any other file, and for a front of another problem.
         """
         return cls(**front_fields(Path(file), problem))
 
@@ -178,7 +177,7 @@ class ParetoFront:
     def violated(self) -> dict[str, Array]:
         """Excess (n,) of each design over an allowable value, SI, by quantity; see `Analysis.violated`.
 
-        Zero for a design within the allowable value; quantities that no design exceeds are left out.
+        Zero for a design within the allowable value; quantities that no design exceeds are omitted.
         """
         variants = np.array(self.variants or [0] * len(self))
         excess_by_name: dict[str, Array] = {}
@@ -207,11 +206,13 @@ class ParetoFront:
         return best
 
     def knee(self) -> int:
-        """Return the row nearest to the ideal point, every objective scaled by its range over the front."""
+        """Return the row nearest to the ideal point, with every objective scaled by its range over the front."""
         return knee(self.values, size=self._sizes)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
-        """Return the row chosen by weights of the objectives, see `choose_design.closeness`; the others have no weight.
+        """Return the row chosen by weights for the objectives, see `choose_design.closeness`.
+
+        Omitted ones have no weight.
 
         `front.topsis({"peak_torque": 2.0, "transmission_angle": 1.0})`. Raises `InputError` for other names.
         """
