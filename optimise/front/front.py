@@ -224,11 +224,11 @@ class ParetoFront:
         return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
 
     def lexicographic(self, *priorities: Priority | str) -> int:
-        """Return the row that remains when objectives decide in turn, see `choose_design.lexicographic`.
+        """Return the row that remains when objectives decide in turn; see `choose_design.lexicographic`.
 
-        `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: of the designs within
-        a tenth of the range from the least torque, the one with the best transmission angle. A name alone means a
-        share of zero.
+        `front.lexicographic(Priority(quantity="peak_torque", share=0.1), "transmission_angle")`: among the designs
+        within a tenth of the range from the least torque, the one with the best transmission angle. A name alone means
+        zero share.
         """
         order = [Priority(quantity=item) if isinstance(item, str) else item for item in priorities]
         for item in order:
@@ -239,23 +239,23 @@ class ParetoFront:
 
     @property
     def _sizes(self) -> list[float]:
-        """The targets, SI, 0 without one: the scale for rounding distances from them."""
+        """The objectives' targets, SI, 0 for an objective without one: the scale for rounding distances from them."""
         return [abs(objective.target or 0.0) for objective in self.objectives]
 
     def column_of(self, name: str) -> int:
         """Return the column of an objective in `values`. Raises `InputError` for any other name."""
         names = [objective.quantity for objective in self.objectives]
-        plain = ["".join(item.split()) for item in names]  # a formula is the same with other spaces
+        plain = ["".join(item.split()) for item in names]  # spaces in a formula do not matter
         if "".join(str(name).split()) not in plain:
             raise InputError(f"pick must name one of the objectives {', '.join(names)}; got {name!r}")
         return plain.index("".join(str(name).split()))
 
     def pick(self, best: str, **bounds: tuple[float | None, float | None]) -> int:
-        """Return the row that is best in an objective among those within bounds.
+        """Return the row that is best in an objective among the designs within bounds.
 
-        best: an objective's quantity name. bounds: column = (least, greatest) in the table's units, None for open:
-        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may stand for a
-        column, its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` if no design qualifies.
+        best: name of an objective. bounds: column = (least, greatest) in the table's units, None if unbounded:
+        `front.pick("peak_torque", least_transmission_angle_deg=(40, None))`. A quantity or formula may replace a
+        column, with its bounds in SI: `**{"2 * crank + rod": (None, 0.4)}`. Raises `InputError` if no design qualifies.
         """
         objective = self.column_of(best)
         if not len(self):
@@ -277,7 +277,7 @@ class ParetoFront:
         return int(rows[np.argmin(self.values[rows, objective])])
 
     def _evaluate(self, name: str) -> Array:
-        """Return a quantity or formula of every design, SI."""
+        """Return the values of a quantity or formula for all designs, SI."""
         values = np.full(len(self), np.nan)
         variants = np.array(self.variants or [0] * len(self))
         for variant in set(variants.tolist()):
@@ -299,11 +299,13 @@ class ParetoFront:
         allow: Mapping[str, float | str] | None = None,
         progress: Callable[[Stage], None] | None = None,
     ) -> Rounded:
-        """Return the best designs with round numbers near a design that meet every requirement, and their costs.
+        """Return the best designs with round numbers near a design that meet every requirement, with their losses.
 
-        to: a step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod": 1e-3})`.
+        to: one step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod":
+        1e-3})`.
         allow: allowed misses of requirements, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. If no rounded design
-        within 32 steps meets all of them, the nearest are returned and `met` is False; `misses` has the amounts.
+        within 32 steps meets all requirements, the nearest are returned and `is_met` is False; `misses` gives the
+        amounts.
         progress: called several times a second; an exception from it ends the search. See `Rounded` and
         `rounding.rounding`. Warns if an allowed miss without a unit is more than a tenth of the required value.
         """
@@ -324,7 +326,10 @@ class ParetoFront:
         count: int = 5,
         allow: Mapping[str, float | str] | None = None,
     ) -> Generator[Stage | Rounded, None, None]:
-        """Yield the stage of the search of `rounded` several times a second, finally its answer; closing ends it."""
+        """Yield the stage of the search for `rounded` several times a second, finally its answer.
+
+        Closing it ends the search.
+        """
         part, design = self.part(row), self.dimensions[row]
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = []
@@ -340,12 +345,12 @@ class ParetoFront:
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.
 
-        Rates are first order, in display units, along the direction that gains one unit of b most cheaply. That is the
-        one with the least sum of losses, each scaled by its range over the front, with the active constraints held.
-        Losses are zero or more. Column b is NaN where b cannot gain, where no design of the front is better in it, and
-        for an amount that depends only on a choice.
+        Rates are first order, in display units, along the cheapest direction that gains one unit of b. The cheapest
+        direction has the least sum of losses, each scaled by its range over the front, and keeps the active
+        constraints. Losses are zero or more. Column b is NaN where b cannot gain, where no design on the front is
+        better in it, and for an amount that depends only on a choice.
         """
-        self.part(row)  # refuses an unknown row
+        self.part(row)  # raises an error for an unknown row
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])
@@ -355,7 +360,7 @@ class ParetoFront:
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
         residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
         if residual <= STATIONARY:
-            # Along the remaining slopes all objectives would gain a little, without end: the design counts as
+            # Along the remaining slopes, all objectives would gain slightly without limit, so the design counts as
             # exactly stationary.
             slopes = slopes - (shares @ slopes + pushes @ self.active[row])
         rates = np.full((m, m), np.nan)
@@ -368,11 +373,11 @@ class ParetoFront:
         return rates
 
     def trade_offs(self, row: int, system: System = "metric") -> list[str]:
-        """Return the trade-off rates at a design in words: "1 deg more transmission angle costs 0.8 N m ...".
+        """Describe the trade-off rates at a design: "1 deg more transmission angle costs 0.8 N m ...".
 
-        Steps and costs stay within the front: no gain beyond its best design, no loss beyond its worst. The text says
-        if an objective has nothing left to gain; one that is the same in all designs is left out. system: system of the
-        display units.
+        Steps and costs stay within the front: no gain beyond its best design, and no loss beyond its worst. The text
+        says if an objective has nothing left to gain; an objective that is equal in all designs is omitted. system:
+        system of the display units.
         """
         require_word("system", system, System)
         rates, ranges = self.rates(row), column_ranges(self.values, size=self._sizes)
@@ -391,24 +396,24 @@ class ParetoFront:
                 largest = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
                 if largest > _LEAST * span:
                     factor = self._unit(gain, system)[1]
-                    step = 10.0 ** np.floor(np.log10(largest * factor)) / factor  # a readable one where it is shown
+                    step = 10.0 ** np.floor(np.log10(largest * factor)) / factor  # round in the display unit
                     costs = [self._change(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers]
                     sentences.append(f"{self._change(gain, step, system, gain=True)} costs {' and '.join(costs)}")
         return sentences
 
     def _best(self, objective: Objective) -> str:
-        """Return in words that no design of the front is better in an objective."""
+        """Say that no design on the front is better in an objective."""
         title = self.problem.quantity(objective.quantity).title
         if objective.sense == "target":
             return f"no design of the front is nearer to the target of {title}"
         return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
     def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
-        """Return the display unit of an objective in a system, and the size of its metric unit in it."""
+        """Return an objective's display unit in a unit system, and its metric unit expressed in that unit."""
         return metric_unit_in(self.problem.quantity(objective.quantity).unit.symbol, system)
 
     def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
-        """Return a change of an objective, given in its metric unit, in words."""
+        """Describe a change in an objective; the change is given in the metric unit."""
         quantity = self.problem.quantity(objective.quantity)
         unit, factor = self._unit(objective, system)
         size = f"{amount * factor:.3g} {unit}".strip()
@@ -419,9 +424,10 @@ class ParetoFront:
 
 
 def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
-    """Return the losses (m,) of the cheapest direction in which objective b gains one; None if there is none.
+    """Return the losses (m,) for the cheapest direction in which objective b gains one unit; None if there is none.
 
-    A linear programme, min c x subject to G x <= h with some x >= 0, by its optimality conditions: with multipliers y,
+    Solves a linear programme, min c x subject to G x <= h with some x >= 0, by its optimality conditions with
+    multipliers y:
 
         G x + s = h,   G' y + c = t,   c x + h y = 0,   s, y >= 0,   t >= 0 where x >= 0, else t = 0.
     """
@@ -432,7 +438,8 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
     size = np.maximum(np.abs(rows).max(axis=1, initial=0.0), 1e-300)
     rows, limits = rows / size[:, None], limits / size
     cost = np.concatenate([np.zeros(k), np.ones(m)])
-    r, split = len(rows), np.hstack([np.eye(k + m), -np.eye(k + m)[:, :k]])  # a move is a difference of positive ones
+    # A move is the difference of two non-negative moves.
+    r, split = len(rows), np.hstack([np.eye(k + m), -np.eye(k + m)[:, :k]])
     matrix = np.block(
         [
             [rows @ split, np.eye(r), np.zeros((r, r)), np.zeros((r, m))],
@@ -448,7 +455,10 @@ def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Arr
 
 
 def lower_and_upper(name: str, ends: object) -> tuple[float | None, float | None]:
-    """Return least and greatest value for a name, None for open. Raises `InputError` unless ends are such a pair."""
+    """Return the least and greatest value for a name, None if unbounded.
+
+    Raises `InputError` unless `ends` is such a pair.
+    """
     bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
     if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):
         raise InputError(
@@ -458,6 +468,6 @@ def lower_and_upper(name: str, ends: object) -> tuple[float | None, float | None
 
 
 def require_front(front: object, caller: str) -> None:
-    """Raise `InputError` unless the argument is a front. caller: name of the function that takes one."""
+    """Raise `InputError` unless the argument is a front. caller: name of the function that was called."""
     if not isinstance(front, ParetoFront):
         raise InputError(f"{caller} needs a front; got {type(front).__name__}; solve(problem) returns one")

@@ -1,4 +1,4 @@
-"""Pictures of a front: its objectives against each other."""
+"""Plots of a front: its objectives against each other."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ...model.arrays import Array
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WIDTH, _HEIGHT, _MARGIN = 320.0, 200.0, 30.0  # px of the SVG
+_WIDTH, _HEIGHT, _MARGIN = 320.0, 200.0, 30.0  # px in the SVG
 
 
 def svg(values: Array, labels: Sequence[str]) -> str:
-    """Return an SVG scatter plot of the first two columns, or of a single column over its row number."""
+    """Return an SVG scatter plot of the first two columns, or of a single column against its row number."""
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]
@@ -42,7 +42,7 @@ def svg(values: Array, labels: Sequence[str]) -> str:
 
 
 def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
-    """Return a matplotlib figure of every objective against the first; of a single one, its values in turn.
+    """Return a matplotlib figure of every objective against the first; a single one is plotted in row order.
 
     values: (n, m), in display units.
     """

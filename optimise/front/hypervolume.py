@@ -1,4 +1,4 @@
-"""Hypervolume, non-dominance, and the choice of a few designs that preserve most of it."""
+"""Hypervolume, and the selection of a few designs that preserve most of it."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from ...model.kernel.kernel import Row, Table, kernel
 from .constant_numbers import column_ranges
 
 REFERENCE = 1.1
-"""Reference point in the scaled space, where ideal is 0 and nadir 1."""
-_BOUNDED = 4096  # designs: for more, bounding all gains takes longer than recomputing some
-_ROUNDING = 1e-12  # of a scaled volume, whose computation it exceeds by far
+"""Reference point in scaled space, where the ideal is 0 and the nadir 1."""
+_BOUNDED = 4096  # number of designs above which bounding all gains takes longer than recomputing some
+_ROUNDING = 1e-12  # scaled volume, far above its rounding error
 
 ReportProgress = Callable[[int, int], None]
-"""Called many times a second by long work: how much of it is done, and of how much."""
+"""Called many times a second by long work with the amount done and the total amount."""
 
 
 def ignore_progress(done: int, total: int) -> None:
-    """Ignore reports of progress."""
+    """Ignore progress reports."""
 
 
 def scaling(values: Array) -> tuple[Array, Array]:
-    """Return ideal and range of objective values (n, m); a constant objective has its size as range."""
+    """Return ideal and range of objective values (n, m); the range of a constant objective is its magnitude."""
     ideal, span = np.ascontiguousarray(values.T).min(axis=1), column_ranges(values)
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
 
 
 def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool = True) -> float:
-    """Return the fraction of the box from the ideal to 1.1 ranges beyond it that the designs dominate.
+    """Return the dominated fraction of the box from the ideal to 1.1 ranges beyond it.
 
-    clip_at_ideal: whether to ignore volume on the far side of the ideal; else the fraction may exceed 1.
+    clip_at_ideal: whether to ignore volume beyond the ideal; otherwise the fraction may exceed 1.
     """
     if not len(values):
         return 0.0
@@ -50,7 +50,7 @@ def hypervolume(values: Array, ideal: Array, span: Array, *, clip_at_ideal: bool
 
 @kernel
 def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> int:
-    """Store the undominated corners of the region that a point shares with the chosen ones; return their number."""
+    """Store the undominated corners of the region that a point shares with the selected ones; return their number."""
     corner_count = 0
     for i in range(count):
         covered = False
@@ -80,14 +80,15 @@ def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> in
 
 
 class Bounds:
-    """Upper bounds of the hypervolume that scaled designs (n, m) add to the chosen ones.
+    """Upper bounds on the hypervolume that scaled designs (n, m) add to the selected ones.
 
-    The gain is the design's box minus the part that it shares with the chosen ones. Inclusion and exclusion over three
-    shared boxes bounds this part from below: the two largest so far, and that of the last chosen design.
+    The gain is the design's box minus the part that it shares with the selected designs. Inclusion and exclusion over
+    three shared boxes bounds this part from below: the two largest so far, and the one shared with the last selected
+    design.
     """
 
     def __init__(self, scaled: Array) -> None:
-        """Begin without chosen designs."""
+        """Start without selected designs."""
         self.margins = np.ascontiguousarray(REFERENCE - scaled.T)
         self.boxes = self.margins.prod(axis=0)
         self.largest, self.second = np.zeros(self.margins.shape), np.zeros(self.margins.shape)
@@ -95,7 +96,7 @@ class Bounds:
         self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
 
     def with_design(self, index: int) -> Array:
-        """Return the bounds (n,) after choosing another design."""
+        """Return the bounds (n,) after another design is selected."""
         shared = np.minimum(self.margins, self.margins[:, index : index + 1])
         size = shared.prod(axis=0)
         with_largest = np.minimum(self.largest, shared)
@@ -116,13 +117,13 @@ class Bounds:
 def choose(
     values: Array, count: int, *, always: tuple[int, ...] = (), report: ReportProgress = ignore_progress
 ) -> IntArray:
-    """Return `count` indices of non-dominated designs, greedily by hypervolume, `always` included; ascending.
+    """Return `count` ascending indices of non-dominated designs, `always` included, selected by hypervolume.
 
-    The hypervolume is submodular: the gain of a design only shrinks as others join. So a gain need not be recomputed if
-    its old value is already below the best new one (lazy greedy; Minoux, 1978), or if its upper bound is. The gain is
-    the design's box minus the part shared with the chosen ones, which has few corners (L. While et al., "A fast way of
-    calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). report: called for every design and gain,
-    with the number of designs chosen.
+    The hypervolume is submodular: a design's gain only shrinks as others are selected. So a gain need not be recomputed
+    if its old value is already below the best new one (lazy greedy; Minoux, 1978), or if its upper bound is. The gain
+    is the design's box minus the part shared with the selected designs, which has few corners (L. While et al., "A fast
+    way of calculating exact hypervolumes", IEEE Trans. Evol. Comput. 16(1), 2012). report: called for every design and
+    gain, with the number of designs chosen.
     """
     n = len(values)
     if n <= count:

@@ -1,4 +1,4 @@
-"""Nearest neighbours of points in the space of objectives."""
+"""Nearest neighbours of points in objective space."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ...model.kernel.kernel import Integers, Table, kernel
 
 
 def neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
-    """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, beginning with itself.
+    """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, starting with itself.
 
     count: number of neighbours, at most n.
     """
@@ -26,13 +26,13 @@ def neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
 
 @kernel
 def _search_neighbours(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
-    """Search points sorted by first coordinate: beyond the farthest neighbour's distance there, none is nearer."""
+    """Search points by their first coordinate, until it alone exceeds the distance of the neighbours found."""
     n, m = points.shape
     count = distance.shape[1]
     for i in range(begin, end):
         distance[i, 0], nearest[i * count] = 0.0, i
         worst, before, after = distance[i, count - 1], i - 1, i + 1
-        while before >= 0 or after < n:  # alternating, so that near points on either side end both directions
+        while before >= 0 or after < n:  # alternate sides, so that near points on either side end both directions early
             for k in (before, after):
                 if not 0 <= k < n:
                     continue

@@ -1,7 +1,7 @@
 """Non-negative least squares: the active-set method of Lawson and Hanson, compiled.
 
-min |A x - b| with x >= 0 (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, algorithm 23.10).
-Every polishing step, multiplier and trade-off rate is such a problem, with some dozen rows and columns.
+Solves min |A x - b| with x >= 0 (C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems", 1974, algorithm
+23.10). Every polishing step, multiplier and trade-off rate is such a problem, with a few dozen rows and columns.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from ...model.kernel.arithmetic import analytic
 from ...model.kernel.kernel import Integers, Row, Table, kernel
 
 _STEPS = 50
-"""Changes of the active set at most, for each column."""
-_INDEPENDENT = 1e-2  # a column counts as independent of others if this share of what is left of it changes their length
+"""Maximum number of changes in the active set, per column."""
+_INDEPENDENT = 1e-2  # a column counts as independent of others if this fraction of its remainder changes their length
 
 
 def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
-    """Return the x >= 0 (n,) with the least |A x - b|; None if rounding prevents convergence.
+    """Return the x >= 0 (n,) that minimises |A x - b|; None if rounding prevents convergence.
 
-    matrix: A (m, n). target: b (m,).
+    matrix: matrix: A (m, n). target: b (m,).
     """
     columns = np.array(matrix.T, order="C")
     solution = np.zeros(len(columns))
@@ -30,7 +30,10 @@ def nonnegative_least_squares(matrix: Array, target: Array) -> Array | None:
 
 @analytic
 def _reflect_column(mirror: Row, pivot: int, up: float, column: Row) -> None:
-    """Reflect a column by the mirror whose entry `pivot` is `up`, and whose later entries are kept."""
+    """Reflect a column by the Householder mirror whose entry at `pivot` is `up`.
+
+    The mirror's later entries are stored in it.
+    """
     scale = up * mirror[pivot]
     if scale >= 0.0:
         return
@@ -45,7 +48,7 @@ def _reflect_column(mirror: Row, pivot: int, up: float, column: Row) -> None:
 
 @analytic
 def _leave(columns: Table, target: Row, order: Integers, free: int, leaving: int) -> None:
-    """Fix the column at place `leaving` of the `free` ones; rotations of pairs of rows restore the triangle."""
+    """Fix the column at position `leaving` among the `free` columns; rotations of row pairs restore the triangle."""
     column = order[leaving]
     for place in range(leaving + 1, free):
         moved = order[place]
@@ -67,7 +70,7 @@ def _leave(columns: Table, target: Row, order: Integers, free: int, leaving: int
 @kernel
 def _solve_nonnegative(columns: Table, target: Row, max_steps: int, solution: Row) -> bool:
     n, m = columns.shape
-    order = np.arange(n)  # first the columns whose x may be positive, by which the others are made triangular
+    order = np.arange(n)  # first the columns with possibly positive x, in triangular form
     free, steps = 0, 0
     trial, slope, unconstrained = np.zeros(m), np.zeros(n), np.zeros(m)
     while free < min(n, m):

@@ -1,4 +1,4 @@
-"""Progress of a running search: in numbers, in words, and as a live bar."""
+"""Progress of a running search: as numbers, as text, and as a live bar."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from threading import Event, Thread
 from typing import Any
 
 LOADING = "loading"
-"""Stage before a search: its libraries, its job and the records of an earlier run are loaded."""
+"""Stage before a search: loading libraries, the job and the records of an earlier run."""
 REPEATING = "repeating rounds"
 """Stage of a resumed search that repeats the recorded rounds without evaluating anything."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a search after one of its rounds, or in a long stage between two.
+    """Progress of a search after a round, or during a long stage.
 
-    round, rounds: number of this round and of planned ones. feasible: number of feasible designs found so far.
-    hypervolume: hypervolume of these designs; it never decreases. During the search it is in boxes spanned by the first
-    feasible designs, and may exceed 1; in the history of a front, a fraction of the front's box. Not comparable between
-    runs. step, steps: progress of the stage, 0 of 0 at the end of a round.
+    round, rounds: number of this round and of planned rounds. feasible: number of feasible designs found so far.
+    hypervolume: hypervolume of these designs; it never decreases. During the search, its unit is a box spanned by the
+    first feasible designs, so it may exceed 1; in a front's history, it is a fraction of the front's box. It cannot be
+    compared between runs. step, steps: progress within the stage, 0 of 0 at the end of a round.
     """
 
     stage: str
@@ -43,9 +43,9 @@ class Progress:
 
 
 def stage_text(progress: Mapping[str, Any]) -> str:
-    """Return the stage of a search and its progress: "polishing 12/66", "selecting designs 1,200/3,000".
+    """Return a search's stage and its progress: "polishing 12/66", "selecting designs 1,200/3,000".
 
-    progress: fields of `Progress`; early stores have no steps.
+    progress: fields of `Progress`; old stores lack the steps.
     """
     total = progress.get("steps", 0)
     count, total = (progress["step"], total) if total else (progress["round"], progress["rounds"])
@@ -54,7 +54,7 @@ def stage_text(progress: Mapping[str, Any]) -> str:
 
 @contextlib.contextmanager
 def progress_bar() -> Iterator[Callable[[Progress], None]]:
-    """Show a live bar within the context, on standard error or in a notebook; yield the callback that moves it.
+    """Show a live bar within the context, on standard error or in a notebook; yield the callback that updates it.
 
     Its clock keeps running between reports.
     """
@@ -82,7 +82,7 @@ def progress_bar() -> Iterator[Callable[[Progress], None]]:
 
 
 def _terminal_size() -> tuple[int | None, int | None]:
-    """Return assumed columns and rows for a terminal that reports none, like some remote ones; else None."""
+    """Return default columns and rows for a terminal that reports none, such as some remote ones; otherwise None."""
     try:
         columns, rows = os.get_terminal_size(sys.stderr.fileno())
     except (OSError, ValueError, AttributeError):

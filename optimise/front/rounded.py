@@ -1,4 +1,4 @@
-"""Designs with round numbers: their costs, their tightest requirement, and by how much they miss each one."""
+"""Designs with round numbers: their losses, their tightest requirement, and their misses."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _SAME = 1e-12
-"""Relative change of an objective that is rounding, such as of one that follows from a requirement alone."""
+"""Relative change in an objective that is only rounding, e.g. if the objective follows from a requirement."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Miss:
-    """Distance of a value beyond a bound of a requirement.
+    """Distance by which a value misses a requirement's bound.
 
-    quantity: its name in the job. kind: kind of the value, "length". amount: distance above zero, in `unit`, the unit
-    of the quantity's column. side: side of the bound on which the value is. allowed: allowed amount, in `unit`.
+    quantity: its name in the job. kind: kind of the value, "length". amount: positive distance, in `unit`, the unit of
+    the quantity's column. side: side of the bound on which the value lies. allowed: allowed amount, in `unit`.
     """
 
     quantity: str
@@ -46,19 +46,19 @@ class Miss:
 
 @dataclass(frozen=True, kw_only=True)
 class Rounded:
-    """Designs with round numbers near a design of a front, best first.
+    """Designs with round numbers near a front's design, best first.
 
-    First come non-dominated designs that meet every requirement within the allowed misses, least loss first; then
-    designs that miss little but lose clearly less. If `met` is False, these are the nearest designs:
-    first that with the least relative violation beyond the allowed misses, then those that miss more but lose clearly
-    less. See `rounding.rounded`.
+    Non-dominated designs that meet every requirement within the allowed misses come first, least loss first; then
+    designs that miss little but lose clearly less. If `is_met` is False, these are the nearest designs: first the one
+    with the least relative violation beyond the allowed misses, then those that miss more but lose clearly less. See
+    `rounding.rounded`.
 
-    problem: the problem that they answer, with its choices in place. design: (3 + v,), the one to round. steps: steps
-    of the rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v).
+    problem: the problem that they solve, with its choices made. design: (3 + v,), the design to round. steps: steps of
+    the rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v).
     design_objectives: (m,), the design's objectives, SI. values: (n, m). losses: (n, m), loss of each objective as a
     fraction of its range over the front; negative for a gain. constraints: c constraints, including floors.
     constraint_values: (n, c). steps_tried: multiples of a step tried on either side. judged: number of movable
-    combinations, all judged. feasible_count: number of those that meet every requirement within the allowed misses.
+    combinations; all are judged. feasible_count: number of those that meet every requirement within the allowed misses.
     notes: unchanged numbers, in words.
     """
 
@@ -123,14 +123,14 @@ class Rounded:
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
     def tightest(self, row: int) -> str | None:
-        """Return the quantity with the tightest requirement, relative, equalities first; None without requirements."""
+        """Return the quantity with the relatively tightest requirement, equalities first; None without requirements."""
         rest = [(item.equality, self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
         return max(rest)[2] if rest else None
 
     def misses(self, row: int) -> list[Miss]:
-        """Return a design's misses of all requirements that it does not meet, the relatively worst first.
+        """Return a design's misses of all requirements that it violates, relatively worst first.
 
-        Allowed misses count too.
+        Allowed misses are included.
         """
         misses = []
         for place in np.argsort(-self.violations[row], kind="stable").tolist():
@@ -153,7 +153,7 @@ class Rounded:
         return misses
 
     def missed(self, row: int) -> list[str]:
-        """Return the quantities whose requirements a design misses, the worst first."""
+        """Return the quantities whose requirements a design misses, worst first."""
         return [miss.quantity for miss in self.misses(row)]
 
     def _allowed_in_words(self, system: System) -> str:
@@ -171,13 +171,13 @@ class Rounded:
 
     @property
     def names(self) -> dict[str, tuple[str, float]]:
-        """The column of each number of a design, with the factor from SI to its unit."""
+        """The column for each number of a design, with the factor from SI to its unit."""
         columns = columns_of_numbers(self.problem.mechanism.varying)
         return {name: (column, unit.factor) for name, (column, unit) in columns.items()}
 
     @cached_property
     def columns(self) -> dict[str, Array]:
-        """The columns of the table of designs, see `designs`."""
+        """The columns of the table of designs; see `designs`."""
         table: dict[str, Array] = {}
         for place, (name, (column, factor)) in enumerate(self.names.items()):
             values = self.dimensions[:, place] * factor
@@ -208,8 +208,8 @@ class Rounded:
     def designs(self) -> pd.DataFrame:
         """The designs as a pandas DataFrame, one row per design.
 
-        Columns: crank, rod, offset and varying numbers; each objective, its change from the design of the front,
-        `change_...`, and the same in percent; `loss_percent`, the greatest loss in percent of the objective's range
+        Columns: crank, rod, offset and extra variables; each objective, its change from the front's design,
+        `change_...`, and that change in percent; `loss_percent`, the greatest loss in percent of an objective's range
         over the front; `slack_...` for every requirement, negative if it is missed; `tightest` requirement.
         """
         import pandas as pd
@@ -218,5 +218,5 @@ class Rounded:
 
 
 def drop_conversion_rounding(value: float) -> float:
-    """Return a round number without the rounding error of its conversion: 73.5, not 73.50000000000001."""
+    """Return a round number without the rounding error from its conversion: 73.5, not 73.50000000000001."""
     return float(f"{value:.12g}")

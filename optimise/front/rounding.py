@@ -1,8 +1,8 @@
-"""Designs with round numbers near a design of a front: the best ones that meet every requirement, or the nearest.
+"""Designs with round numbers near a front's design: the best ones that meet every requirement, or the nearest.
 
-Numbers are not rounded one by one: every combination of the multiples of a step around the design is judged exactly.
-Those that meet all requirements, ranges and full rotation are ranked by their greatest loss in an objective, in units
-of its range over the front. Dominated ones are left out.
+Numbers are not rounded one by one: every combination of multiples of a step around the design is judged exactly.
+Combinations that meet all requirements, ranges and full rotation are ranked by their greatest loss in an objective,
+relative to its range over the front. Dominated ones are omitted.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from .constant_numbers import column_ranges
 from .rounded import Rounded
 from .rounding_search import RoundingSearch, Steps, number_text
 
-_SMALLEST = 1e-9  # of the greatest number of a range: a step below is rounding
-_LARGE = 0.1  # of a bound: a miss without a unit that was probably meant in another unit
+_SMALLEST = 1e-9  # relative to the greatest number in a range: a smaller step is rounding
+_LARGE = 0.1  # relative to a bound: a greater miss without a unit was probably meant in another unit
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 
 
@@ -49,18 +49,18 @@ def rounding(
     If the best loses more than 1 % of a range and fewer than `count` meet all requirements, further designs follow.
     They miss a requirement by at most 1 % of its bound and lose at least a quarter less.
 
-    The nearest designs: first that with the least greatest relative miss. A miss is the distance of a value beyond a
-    bound plus the allowed miss, divided by the bound. Among equal misses the least loss comes first, then the least
-    distance from the given design in steps. Next come those that miss more but lose at least a quarter less than the
+    If none does, the first is the design whose greatest relative miss is least. A miss is a value's distance beyond a
+    bound plus the allowed miss, divided by the bound. Among equal misses, the least loss comes first, then the least
+    distance in steps from the given design. Next come those that miss more but lose at least a quarter less than the
     previous one, until nothing is lost.
 
-    part: a problem without choices. given: (3 + v,), its design. span: (m,), unit of each objective's loss. to: a step
-    for crank, rod and offset, m, or steps by name, SI, also for varying numbers; numbers that are fixed or have no step
-    stay unchanged. allow: allowed misses of requirements, by quantity: a number in SI, or "0.1 mm". notes: notes to add
-    to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
+    part: a problem without choices. given: (3 + v,), its design. span: (m,), unit of each objective's loss. to: one
+    step for crank, rod and offset, m, or steps by name, SI, also for extra variables; numbers that are fixed or have no
+    step stay unchanged. allow: allowed misses of requirements, by quantity: a number in SI, or "0.1 mm". notes: notes
+    to add to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
 
-    Raises `InputError` for a step that is not above zero or has no multiple in the range, an unknown name, a miss that
-    cannot be allowed, and a count below one.
+    Raises `InputError` for a step that is not positive or has no multiple within the range, an unknown name, a miss
+    that cannot be allowed, or a count below one.
     """
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
@@ -87,7 +87,10 @@ def rounding(
 
 
 def _moved(part: Problem, given: Array, steps: Mapping[str, float]) -> tuple[dict[str, float], list[str]]:
-    """Return the steps of numbers that vary over a range, and why others stay. Raises `InputError` if all stay."""
+    """Return the steps for numbers that vary over a range, and reasons why others stay.
+
+    Raises `InputError` if all stay.
+    """
     ranges = part.ranges
     moved = {name: step for name, step in steps.items() if not ranges[name].fixed}
     discrete_rules = {item.name: item.rule for item in part.discrete if item.name in moved}
@@ -107,9 +110,9 @@ def _moved(part: Problem, given: Array, steps: Mapping[str, float]) -> tuple[dic
 
 
 def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> Array:
-    """Return the ranges (m,) of objectives over a front (n, m); for a constant one, its size.
+    """Return the ranges (m,) of objectives over a front (n, m); for a constant objective, its scale.
 
-    reference: (m,), the objectives of a design, which give the size. sizes: (m,), targets, which count if greater.
+    reference: (m,), a design's objectives, which set the scale. sizes: (m,), targets, which replace it if greater.
     """
     span = column_ranges(values, size=sizes)
     sizes_of_reference = np.maximum(np.where(np.isfinite(reference), np.abs(reference), 0.0), sizes)
@@ -117,7 +120,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
 
 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
-    """Return both readings of allowed misses without a unit that are a large part of the required value."""
+    """Return both readings of allowed misses without a unit that are large compared with the required value."""
     plain_misses, doubts = (
         {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)},
         [],
@@ -152,7 +155,7 @@ def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[st
 
 
 def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
-    """Return allowed misses. Raises `InputError` unless they are by quantity."""
+    """Return allowed misses. Raises `InputError` unless they are given by quantity."""
     if not isinstance(misses, Mapping):
         raise InputError(
             f'allowed misses must be a dict by quantity; got {misses!r}; write it like {{"stroke": "0.1 mm"}}'
@@ -161,7 +164,10 @@ def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | st
 
 
 def _allowed_miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
-    """Return the allowed miss of a requirement, SI. Raises `InputError`, with the amount meant by a percentage."""
+    """Return the allowed miss of a requirement, SI.
+
+    Raises `InputError`; for a percentage, it names the amount that was meant.
+    """
     percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     if percent is not None and quantity.kind.unit:
         bound = max(abs(bound) for _, bound in constraint.sides) * quantity.unit.factor
@@ -193,7 +199,7 @@ def _rounding_steps(to: float | Mapping[str, float], part: Problem) -> dict[str,
 
 
 def _unchanged_numbers_text(given: Array, ranges: Mapping[str, Range], steps: Mapping[str, float]) -> list[str]:
-    """Return in words the numbers that stay unchanged though they are not multiples of a step."""
+    """Describe the numbers that stay unchanged although they are not multiples of a step."""
     notes = []
     for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):
         if name not in steps:

@@ -1,4 +1,4 @@
-"""Search among combinations of round numbers around a design, with progress reports, and cancellable."""
+"""Search among combinations of round numbers around a design, with progress reports and cancellation."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ from ..problem.violation import (
 from .dominance import nondominated
 
 REACHES = (16, 32)
-"""Multiples of a step on either side of the design that are looked at, the next ones where none before met all."""
-_MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations judged at once
-_NEAREST = 8192  # designs whose cycle is computed at most, for those that miss more but lose less
-_BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; of those whose cycle is computed
-_LITTLE = 0.01  # of a bound: greatest miss of designs listed after those that meet all
-_ACCEPTED_LOSS = 0.01  # of a range: least loss that justifies looking for them
-_CLEARLY = 0.75  # of the previous loss: greatest loss that justifies a larger miss
-_TIE = 9  # decimals of a fraction of a range: smaller differences are rounding
+"""Numbers of steps to try on either side of the design; each is tried only if none before gave a feasible design."""
+_MOST, _MOST_ROBUST = 1 << 18, 1 << 13  # combinations to judge in one call
+_NEAREST = 8192  # maximum number of designs to evaluate over the cycle for those that miss more but lose less
+_BLOCK, _SLOW_BLOCK = 1 << 15, 1 << 8  # designs between two reports; fewer if a cycle is evaluated
+_LITTLE = 0.01  # relative to a bound: greatest miss of designs listed after the feasible ones
+_ACCEPTED_LOSS = 0.01  # relative to a range: least loss that justifies looking for them
+_CLEARLY = 0.75  # relative to the previous loss: greatest loss that justifies a larger miss
+_TIE = 9  # decimals for fractions of a range: smaller differences are rounding
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Progress of the search. stage: current activity. step, steps: number of designs so far, and in total."""
+    """Progress of the search. stage: current activity. step, steps: number of designs so far and in total."""
 
     stage: str
     step: int
@@ -51,7 +51,7 @@ class Stage:
 
 T = TypeVar("T")
 Steps = Generator[Stage, None, T]
-"""A search that yields its progress and returns its result; closing it ends it."""
+"""A search that yields its progress and returns its result; closing it ends the search."""
 
 
 def number_text(part: Problem, name: str, value: float) -> str:
@@ -71,7 +71,7 @@ class RoundingSearch:
         steps: Mapping[str, float],
         allowed: Mapping[str, float],
     ) -> None:
-        """Prepare; see `rounding.rounding`. Raises `InputError` for steps without a multiple."""
+        """Prepare; see `rounding.rounding`. Raises `InputError` for a step without a multiple in range."""
         self.part, self.design, self.span, self.steps, self.ranges = part, design, span, steps, part.ranges
         self.allowed = allowed
         self.constraints = constraints_of(part)
@@ -83,7 +83,7 @@ class RoundingSearch:
         self._ladders(1)
 
     def best(self, count: int) -> Steps[Array]:
-        """Return the best designs (n, 3 + v) from the smallest window with feasible ones; else the nearest.
+        """Return the best designs (n, 3 + v) from the smallest window with feasible ones; otherwise the nearest.
 
         Yields a `Stage` before every block of designs.
         """
@@ -102,7 +102,7 @@ class RoundingSearch:
             has_values = ~np.isnan(values).any(axis=1)
             if has_values.any():
                 break
-            misses[feasible_rows] = np.inf  # without a value of an objective
+            misses[feasible_rows] = np.inf  # an objective has no value
         self.judged, self.feasible_count = len(designs), int(has_values.sum())
         if not has_values.any():
             return (yield from self._nearest(designs, misses, rows, count))
@@ -121,20 +121,20 @@ class RoundingSearch:
         return self.part.evaluate(designs) if len(designs) else np.zeros((0, len(self.part.objectives)))
 
     def losses(self, values: Array) -> Array:
-        """Return the losses of objectives (n, m) against the design's, in units of `span`."""
+        """Return the losses of objectives (n, m) compared with the design's, in units of `span`."""
         now = all_minimised(self.part, values)
         with np.errstate(invalid="ignore"):
             lost = np.where(now == self.design_objectives, 0.0, now - self.design_objectives) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
 
     def constrained_values(self, designs: Array, constraints: Sequence[Constraint]) -> Array:
-        """Return the values (n, c) of the constrained quantities."""
+        """Return the constrained quantities' values (n, c)."""
         if not (len(designs) and len(constraints)):
             return np.zeros((len(designs), len(constraints)))
         return self.part.evaluate(designs, [constraint.quantity for constraint in constraints])
 
     def _violation_function(self, constraints: Sequence[Constraint]) -> Callable[[Array], Array]:
-        """Return a function from designs to their greatest violation of some constraints."""
+        """Return a function from designs to their greatest violation of the given constraints."""
         return partial(greatest_violation, self.part, constraints=constraints, allowed=self.allowed)
 
     def _in_blocks(
@@ -176,7 +176,7 @@ class RoundingSearch:
         return multiples
 
     def _reaches(self) -> list[int]:
-        """Return the increasing widths of the windows; fewer than usual for very many numbers."""
+        """Return the increasing half-widths of the windows; fewer than usual for very many numbers."""
         every = (*range(1, REACHES[0]), *REACHES)
         fitting = [window for window in every if math.prod(map(len, self._ladders(window))) <= self.most]
         if not fitting:
@@ -195,16 +195,16 @@ class RoundingSearch:
         return np.asarray(designs[clearly_turning(designs)])
 
     def _steps_away(self, designs: Array) -> Array:
-        """Return the greatest distance (n,) of designs from the given one, in steps."""
+        """Return the greatest distance (n,) in any number from the given design, in steps."""
         steps = np.array([self.steps.get(name, np.inf) for name in self.ranges])
         return np.asarray((np.abs(designs - self.design) / steps).max(axis=1))
 
     def _ranked(self, designs: Array, values: Array) -> Array:
-        """Return designs in order of greatest loss, then of the sum of losses, then of the distance in steps."""
+        """Return designs in order of greatest loss, then of total loss, then of distance in steps."""
         losses = self.losses(values)
         total = np.clip(losses, 0.0, None).sum(axis=1)
         order = np.lexsort((self._steps_away(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
-        if losses.shape[1] == 1:  # one dominates all others: the next best are worth knowing
+        if losses.shape[1] == 1:  # if one dominates all others, the next best are of interest
             return designs[order]
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
@@ -212,10 +212,10 @@ class RoundingSearch:
     def _nearest(
         self, designs: Array, misses: Array, exact: IntArray, count: int, max_loss: float = math.inf
     ) -> Steps[Array]:
-        """Return the nearest designs, see `rounding.rounding`; only those that lose no more than `max_loss`.
+        """Return the nearest designs, see `rounding.rounding`; only those that lose at most `max_loss`.
 
-        misses: (n,), exact in the rows `exact`; elsewhere a lower bound from closed forms. So designs are judged in
-        that order, and one is placed once all that may miss less or as much are judged.
+        misses: (n,), exact in the rows `exact`; elsewhere a lower bound from closed forms. Designs are judged in that
+        order, and each gets its rank once every design that may miss as little is judged.
         """
         is_exact = np.zeros(len(designs), dtype=bool)
         is_exact[exact] = True
@@ -244,7 +244,7 @@ class RoundingSearch:
         return np.asarray(designs[ranked])
 
     def _least_losses(self, designs: Array) -> Array:
-        """Return the greatest loss (n,) of the objectives with closed forms."""
+        """Return the greatest loss (n,) over the objectives with closed forms."""
         losses = np.full(len(designs), -np.inf)
         for place, objective in enumerate(self.part.objectives):
             if not costly(self.part.quantity(objective.quantity)):
@@ -253,7 +253,7 @@ class RoundingSearch:
         return losses
 
     def _staircase(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:
-        """Return the row that misses least, then those that miss more but lose clearly less."""
+        """Return the row with the least miss, then rows that miss more but lose clearly less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         ranked: list[int] = []
         least = np.inf
@@ -262,5 +262,5 @@ class RoundingSearch:
                 ranked.append(row)
                 least = loss
             if least <= 0.0:
-                break  # nothing is lost: there is no reason to miss more
+                break  # nothing is lost, so there is no reason to miss more
         return np.array(ranked, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""A front as a JSON file, and back without losing a bit; its problem is not in the file."""
+"""A front as a JSON file, written and read without losing a bit; the file does not contain its problem."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from .progress import Progress
 
 _FORM = 1
 _SAME = 1e-6
-"""Relative difference of an objective: versions of this software and its libraries differ by rounding."""
+"""Relative difference of an objective between versions of this software and its libraries that is only rounding."""
 _AS_THEY_ARE = ("status", "message", "hypervolume", "evaluations", "seconds", "seed", "versions")
 
 
 def saved_front(fields: Mapping[str, Any]) -> str:
-    """Return a front as JSON fields: arrays in SI, columns in their units; "inf", "-inf", "nan" as texts."""
+    """Return a front as JSON fields: arrays in SI, columns in their units; "inf", "-inf", "nan" as text."""
     columns, dimensions, active = fields["columns"], fields["dimensions"], fields["active"]
     record = {
         "form": _FORM,
@@ -48,7 +48,7 @@ def saved_front(fields: Mapping[str, Any]) -> str:
 
 
 def write_front(fields: Mapping[str, Any], file: Path) -> None:
-    """Write the fields of a front to a file, completely or not at all. Raises `OSError`."""
+    """Write a front's fields to a file, completely or not at all. Raises `OSError`."""
     unfinished = file.with_name(f".{file.name}.part")
     unfinished.write_text(saved_front(fields), encoding="utf-8")
     unfinished.replace(file)
@@ -57,7 +57,7 @@ def write_front(fields: Mapping[str, Any], file: Path) -> None:
 def front_fields(file: Path, problem: Problem) -> dict[str, Any]:
     """Return the fields of a saved front, for `ParetoFront`.
 
-    Raises `InputError` for a file that is not a saved front, and for the front of another problem.
+    Raises `InputError` for a file that is not a saved front, or for a front of another problem.
     """
     try:
         record = json.loads(file.read_text(encoding="utf-8"))
@@ -107,7 +107,7 @@ def _front_fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
 
 
 def _require_same(fields: dict[str, Any], objectives: list[Any], problem: Problem, file: Path) -> None:
-    """Raise `InputError` unless a problem has the objectives of a front, with the values of its first design."""
+    """Raise `InputError` unless a problem has a front's objectives, with the values of its first design."""
     remedy = "load it with the problem that it was solved for"
     if objectives != _objective_fields(problem):
         saved, stated = (
@@ -139,7 +139,7 @@ def _array_of_rows(rows: list[Any], width: int) -> Array:
 
 
 def _json_finite(value: Any) -> Any:
-    """Return a value with texts in place of numbers that JSON does not have."""
+    """Return a value with text in place of numbers that JSON lacks."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):

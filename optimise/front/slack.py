@@ -1,4 +1,4 @@
-"""Slack of a constraint: the distance of values from the nearer bound."""
+"""Slack of a constraint: distance of values from the nearer bound."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .constant_numbers import is_constant
 
 
 def slack_of(constraint: Constraint, values: Array) -> Array:
-    """Return the distances (n,) of values from the nearer bound, SI: 0 on it, negative beyond it.
+    """Return the distances (n,) of values from the nearer bound, SI: 0 on the bound, negative beyond it.
 
     Infinite for infinite values, NaN for missing ones.
     """
@@ -25,6 +25,6 @@ def slack_of(constraint: Constraint, values: Array) -> Array:
 
 
 def _distances_from_bound(values: Array, bound: float | None, slack: Array) -> Array:
-    """Return distances from a bound; 0 where a value differs from it only by rounding."""
+    """Return distances from a bound, with 0 for values that differ from it only by rounding."""
     on_it = is_constant(np.stack([values, np.full(len(values), bound or 0.0)]), size=0.0 if bound else 1.0)
     return np.where(on_it & np.isfinite(values), 0.0, slack)

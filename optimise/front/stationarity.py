@@ -1,12 +1,13 @@
-"""Stationarity of a design: the least-norm convex combination of objective gradients, less active constraints.
+"""Stationarity of a design: the least-norm combination of objective gradients and active constraint gradients.
 
-A design is Pareto-stationary if no direction improves every objective while the active constraints hold, that is, if
+A design is Pareto-stationary if no direction improves every objective while the active constraints hold, i.e. if
 
     min | sum_i lambda_i g_i + sum_j mu_j a_j |   with lambda >= 0, sum lambda = 1, mu >= 0
 
 is zero (Karush-Kuhn-Tucker conditions of the multi-objective problem; Miettinen, "Nonlinear Multiobjective
-Optimization", 1999, Thm 3.1.5). Kinks count through all their pieces. Solved as a non-negative least-squares problem:
-with sum lambda = 1 as one more weighted row, the minimiser is the same up to its length, the rest being homogeneous.
+Optimization", 1999, Thm 3.1.5). At a kink, all its pieces count. It is solved as a non-negative least-squares
+problem: sum lambda = 1 becomes one more weighted row, and the minimiser is the same up to its length, because the rest
+is homogeneous.
 """
 
 from __future__ import annotations
@@ -17,12 +18,12 @@ from ...model.arrays import Array, IntArray, row_lengths
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
-"""Residual, objectives scaled by their range, below which a design counts as stationary."""
-_STIFF = 1e3  # weight of the rows that fix the sums of weights, against gradient rows of size one
+"""Residual below which a design counts as stationary, with objectives scaled by their range."""
+_STIFF = 1e3  # weight of the rows that fix the sums of weights, relative to gradient rows of size one
 
 
 def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
-    """Return residual, lambda (p,), mu (q,) for gradients (p, k) of objectives and (q, k) of active constraints."""
+    """Return residual, lambda (p,), mu (q,) for objective gradients (p, k) and active constraint gradients (q, k)."""
     p, q = len(goals), len(active)
     size, lengths = _row_sizes(goals, active)
     matrix = np.zeros((goals.shape[1] + 1, p + q))
@@ -43,15 +44,15 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
 def strict_multipliers(
     goals: Array, owner: IntArray, active: Array, *, exactly: bool = False
 ) -> tuple[float, Array, Array]:
-    """Return residual, lambda (p,) and mu (q,) where every objective must carry weight.
+    """Return residual, lambda (p,) and mu (q,) with weight on every objective.
 
-    The optimality conditions of Benson's problem, least sum of objectives with none made worse:
+    These are the optimality conditions of Benson's problem, the least sum of objectives with none made worse:
 
-        min | sum_p lambda_p g_p + sum_j mu_j a_j |   with the weights lambda of each objective's pieces adding to >= 1.
+        min | sum_p lambda_p g_p + sum_j mu_j a_j | with each objective's weights lambda adding up to at least 1.
 
-    A design that only a zero weight makes stationary (two objectives oppose each other, a third could still improve for
-    free) fails here. The residual is not divided by the sum of the weights, which may grow without bound. exactly:
-    whether the weights of each objective add to exactly 1, the conditions of the least sum with none held.
+    This rejects a design that only a zero weight makes stationary: two objectives oppose each other while a third could
+    still improve for free. The residual is not divided by the sum of weights, which may grow without bound. exactly:
+    whether each objective's weights add up to exactly 1, as for the least sum without held objectives.
     """
     names = sorted(set(owner.tolist()))
     p, q, m = len(goals), len(active), len(names)
@@ -74,7 +75,7 @@ def strict_multipliers(
 
 
 def _row_sizes(goals: Array, active: Array) -> tuple[float, Array]:
-    """Return one size for all objective rows and the length of each active row, for equal weights at any scale."""
+    """Return a common size of the objective rows and the length of each active row, for scale-free weights."""
     lengths = row_lengths(active)
     lengths[lengths == 0.0] = 1.0
     return float(row_lengths(goals).max(initial=0.0)) or 1.0, lengths

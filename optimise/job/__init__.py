@@ -1,6 +1,6 @@
-"""Job files: an engineer's statement, read, checked and turned into a `Problem`.
+"""Job files: an engineer's specification, read, checked and converted to a `Problem`.
 
-`load_job` reads a file (TOML or JSON), `parse_job` the same as a dict, `job_schema` describes it.
+`load_job` reads a file (TOML or JSON), `parse_job` reads the same content as a dict, `job_schema` describes it.
 """
 
 from __future__ import annotations
@@ -48,17 +48,17 @@ def load_job(
     allow_user_code: bool = True,
     require_feasible: bool = True,
 ) -> Problem:
-    """Return the problem that a job file states, .toml or .json.
+    """Return the problem that a job file (.toml or .json) states.
 
-    values: numbers that replace those in the file, by their paths ("mechanism.slider.mass").
-    allow_user_code: whether a job may name Python functions ([quantity]); they run when the problem is solved, with all
-    the rights of the user. Refuse them in other people's jobs.
-    require_feasible: whether to refuse a job that no design can meet. A search needs that; the analysis of a given
-    design does not. A minimum above the maximum of the same formula is always refused.
+    values: numbers that replace those in the file, by path ("mechanism.slider.mass"). allow_user_code: whether a job
+    may name Python functions ([quantity]); they run when the problem is solved, with all the user's rights. Set it to
+    False for other people's jobs. require_feasible: whether to raise an error for a job that no design can meet. A
+    search requires this; the analysis of a given design does not. A minimum above the maximum of the same formula
+    always raises an error.
 
-    Warns with `InputWarning` about probable mistakes, such as a number without a unit; `warnings` of the problem has
-    the sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be
-    read, does not follow the schema, or contradicts itself; its subclass `InfeasibleError` if no design can meet it.
+    Issues an `InputWarning` for probable mistakes, such as a number without a unit; the problem's `warnings` has the
+    sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, violates the
+    schema or contradicts itself; raises its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file must be given by its path; got {type(path).__name__}; for tables use problem")
@@ -76,9 +76,10 @@ def load_job(
 
 
 def warn_of(problem: Problem) -> None:
-    """Raise a warning of Python for each warning of a problem, in the name of whoever calls the caller.
+    """Issue a Python warning for each warning of a problem, attributed to the caller's caller.
 
-    And for loads that drive it, loaded strokes that are fast in every design, offsets that a slow stroke leaves out.
+    Also warn about loads that drive it, loaded strokes that are fast in every design, and offsets that a slow stroke
+    excludes.
     """
     from ..search.driving_loads import driven_by_loads
     from ..search.loaded_stroke import expected_warnings
@@ -88,9 +89,9 @@ def warn_of(problem: Problem) -> None:
 
 
 def read_job(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return the unchecked tables of a job file, with points and options of files that it names in them.
+    """Return the unchecked tables of a job file, with points and options from the files that it names.
 
-    Raises JobError for files that cannot be read.
+    Raises JobError for an unreadable file.
     """
     with _naming_file(path):
         file = path_from_text(path)
@@ -98,9 +99,9 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
-    """Return a job with the content of the files that it names in their place. Raises JobError.
+    """Return a job with the contents of the files that it names in place of their names. Raises JobError.
 
-    files: the folder in which they lie, or their contents by name: texts, or the bytes on disk.
+    files: the folder that contains them, or their contents by name, as text or as bytes.
     """
     try:
         return with_catalogues(with_speeds(with_loads(with_points(data, files), files), files), files)
@@ -124,7 +125,7 @@ def _naming_file(path: str | PathLike[str]) -> Iterator[None]:
 
 
 def needed_files(path: str | PathLike[str]) -> list[Path]:
-    """Return the files beside a job file that it needs: tables, and modules of its own functions."""
+    """Return the files beside a job file that it needs: tables, and modules with its custom functions."""
     file = path_from_text(path)
     data, folder = read(file), file.parent
     files = [name for name in (points_file(data), speeds_file(data), *load_files(data), *catalogues(data)) if name]
@@ -139,9 +140,10 @@ def parse_job(
     allow_user_code: bool = True,
     require_feasible: bool = True,
 ) -> Problem:
-    """Return the problem that a job states, given as the tables of a job file. Raises JobError like `load_job`.
+    """Return the problem stated by a job that is given as the tables of a job file. Raises JobError like `load_job`.
 
-    folder: where the modules of its own functions lie, besides the working directory. The rest is as for `load_job`.
+    folder: a folder with the modules of its custom functions, besides the working directory. Other arguments are those
+    of `load_job`.
     """
     require_plain(data)
     data, _ = with_options(data)
@@ -163,7 +165,7 @@ def parse_job(
         heading = [count] if len(sentences) > 1 else []
         overflow = ["... and more"] if len(sentences) > MOST else []
         raise JobError("\n  ".join([*heading, *first_problems(sentences, data), *overflow])) from None
-    except InputError as error:  # a number that means another unit is a likely cause
+    except InputError as error:  # a number meant in another unit is a likely cause
         if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
             doubts += plain_bounds(error.problem, data)
         text = _with_doubts(str(error), doubts, everywhere=isinstance(error, InfeasibleError))
@@ -174,9 +176,9 @@ def parse_job(
 
 
 def _with_doubts(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: bool = False) -> str:
-    """Return an error message with the warnings of plain numbers that may be its cause, after its key.
+    """Return an error message with the plain-number warnings that may be its cause, after its key.
 
-    everywhere: whether those at other keys may be too.
+    everywhere: whether warnings at other keys may also be causes.
     """
     place = re.match(r"[a-z_][^:;=]*(?=: )", sentence)
     key = place[0] if place else ""

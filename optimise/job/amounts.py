@@ -1,4 +1,4 @@
-"""Amounts of options: numbers of a catalogue that are neither limits nor numbers of the job."""
+"""Amounts of options: catalogue columns that are neither limits nor numbers of the job."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_amo
 
 
 def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
-    """Return the kinds of the amounts of options, by name. options: their amounts; invalid ones are left out."""
+    """Return the kinds of the options' amounts, by name. options: their amounts; invalid ones are ignored."""
     kinds: dict[str, Kind] = {}
     for amounts in options:
         for name, value in amounts.items():
@@ -61,15 +61,15 @@ def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
 
 
 def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
-    """Return the amounts of options of a job, as far as they can be read."""
+    """Return the amounts of a job's options, as far as they can be read."""
     return (table_in(option, "amounts") for option in options_in(tables))
 
 
 def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Collection[str]) -> tuple[Amount, ...]:
-    """Return the amounts that the options of choices have, as quantities without values.
+    """Return the amounts that options of choices have, as quantities without values.
 
-    choices: amounts of the options of each choice, by name. custom_names: names of the job's custom quantities.
-    Raises JobError for a name that exists already or that two choices have.
+    choices: amounts of each choice's options, by name. custom_names: names of the job's custom quantities. Raises
+    JobError for a name that is already in use or that two choices share.
     """
     amounts: dict[str, Amount] = {}
     owners: dict[str, str] = dict.fromkeys(custom_names, "the table [quantity]")
@@ -97,16 +97,16 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Col
 
 
 def excluded_in_words(name: str, value: object, word: str, bound: object) -> str:
-    """Return in words that an amount is beyond a bound: "price 450 EUR, more than the 400 EUR allowed"."""
+    """Describe an amount beyond a bound: "price 450 EUR, more than the 400 EUR allowed"."""
     return f"{name.replace('_', ' ')} {value}, {_TOO[word].format(bound)}"
 
 
 def values_of(
     amounts: Mapping[str, Any], quantities: Mapping[str, Amount], option_name: str
 ) -> tuple[tuple[str, float], ...]:
-    """Return the amounts of an option, SI. Raises JobError.
+    """Return an option's amounts, SI. Raises JobError.
 
-    quantities: amounts of the job. option_name: of the option, for messages.
+    quantities: the job's amounts. option_name: name of the option, for messages.
     """
     try:
         return tuple((name, to_si(value, quantities[name].kind)) for name, value in amounts.items())

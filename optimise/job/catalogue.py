@@ -1,6 +1,6 @@
-"""A catalogue as a table: the options of a choice, a row each, screened before anything is solved.
+"""A catalogue as a table: the options of a choice, one per row, screened before a search.
 
-Each row has a name, numbers of the job, limits, and amounts and texts that are stored with designs. Dominated rows are
+Each row has a name, numbers of the job, limits, and amounts and text that are stored with designs. Dominated rows are
 not searched. Those that may be the smallest sufficient option for a design, see `catalogue_screening`, are only named.
 """
 
@@ -26,22 +26,22 @@ from .table_layout import of_numbers
 
 MOST_ROWS = 50_000
 MOST_OPTIONS = 200
-"""Rows that may be left after screening: each is solved."""
+"""Maximum number of rows after screening, because each is solved."""
 _FORMULA = ("=", "+", "@")
 _LONGEST = 60
 _LONGEST_NOTE = 200
 _ARTICLE = re.compile(r"[+-]?0\d.*|\d{7,}")
-"""A number that is none but the name of an article."""
+"""A numeric text that is really an article number."""
 
 
 @dataclass(frozen=True)
 class Catalogue:
     """A catalogue after screening.
 
-    name: of the choice. options: as in a job file, the smallest first; dominated ones only if they may be the smallest
-    sufficient option. rows: of the table. lost: rows that are not searched, each with the one that dominates it.
-    excluded: those whose amounts the job does not allow, each with the reason. compared: criteria of the comparison.
-    idle: headers of columns that no requirement concerns. added: headers without min, max or equals, with their
+    name: name of the choice. options: as in a job file, smallest first; dominated ones only if they may be the smallest
+    sufficient option. rows: number of rows. lost: rows that are not searched, each with the one that dominates it.
+    excluded: rows whose amounts the job does not allow, each with the reason. compared: criteria for the comparison.
+    idle: headers of columns that no requirement uses. added: headers without min, max or equals, with their
     interpretation. understood: summary of the file, in words.
     """
 
@@ -57,7 +57,7 @@ class Catalogue:
 
 
 def catalogues(data: Mapping[str, Any]) -> list[str]:
-    """Return the files that choices of a job name."""
+    """Return the files that a job's choices name."""
     return [part["file"] for part in tables_in(data, "choice") if _names_file(part)]
 
 
@@ -79,9 +79,9 @@ def with_catalogues(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 
 
 def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogue]]:
-    """Return a job with the options of its tables beside these, and the catalogues that they are from.
+    """Return a job with the options from its tables, and the catalogues that they come from.
 
-    Raises JobError for tables that cannot be read.
+    Raises JobError for unreadable tables.
     """
     job, screened_catalogues = dict(data), list[Catalogue]()
     names, choices = frozenset(table_in(data, "quantity")), data.get("choice")
@@ -109,10 +109,10 @@ def read_catalogue(
     tables: Mapping[str, Any] | None = None,
     name: str = "",
 ) -> Catalogue:
-    """Return the catalogue of a text, screened.
+    """Return the screened catalogue from a text.
 
-    file_name: the beginning of messages. custom_names: names of the job's custom quantities. tables: of the job, with
-    the numbers that columns set, objectives and constraints; without them only limits count. name: of the choice.
+    file_name: prefix for messages. custom_names: names of the job's custom quantities. tables: those of the job, with
+    the numbers that columns set, objectives and constraints; without them only limits count. name: name of the choice.
     Raises JobError, naming row, column and remedy.
     """
     try:
@@ -162,7 +162,7 @@ def _read_catalogue(
 
 
 def _require_names(table: TableFile) -> None:
-    """Refuse rows without a name, with a name twice, and too many."""
+    """Reject rows without a name, duplicate names, and too many rows."""
     if len(table) > MOST_ROWS:
         raise JobError(f"{table.name} must have at most {MOST_ROWS} rows; got more; keep those that you would buy")
     labels: dict[str, int] = {}
@@ -181,7 +181,7 @@ def _require_names(table: TableFile) -> None:
 
 
 def _with_cells(table: TableFile, column: Column) -> Column | None:
-    """Return a column, one that is kept as numbers or texts; None if it is empty. Texts are checked."""
+    """Return a column, one that is stored as numbers or text; None if it is empty. Texts are checked."""
     cells = table.texts(column.place)
     filled = [cell for cell in cells if cell]
     if not column.is_amount or column.unit or not filled:
@@ -199,7 +199,7 @@ def _with_cells(table: TableFile, column: Column) -> Column | None:
 
 
 def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
-    """Refuse a column that sets, or seems to set, a number which the job does not give."""
+    """Reject a column that sets, or seems to set, a number that the job does not state."""
     machine = table_in(tables, "mechanism")
     for column in columns:
         if column.is_amount and isinstance(machine.get(column.name), str | int | float):

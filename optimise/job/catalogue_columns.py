@@ -1,4 +1,4 @@
-"""The first line of a catalogue: meaning and unit of each column."""
+"""The header line of a catalogue: meaning and unit of each column."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ _RULE = (
     'max (N m)", or have a name of letters'
 )
 _GIVEN = {"motion", "proportions"}
-"""Parts of a form that ask for a quantity which is to have some value: neither more nor less of it is better."""
+"""Words in a formula that suggest a quantity with a desired value, for which neither more nor less is better."""
 _NEAR = 0.85
-"""Similarity above which the name of a column is taken for a misspelt quantity."""
+"""Similarity above which a column's name counts as a misspelt quantity."""
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column. header: as it is written. name: of a quantity, a path, or of a column that is kept with designs.
+    """A column. header: as written. name: name of a quantity, a path, or the name under which a column is stored.
 
-    word: of a limit; None for others. is_amount: whether it is neither a limit nor a number of the job. unit: as
-    written. kind: of a limit or an amount; None where the job knows it, and for a text. added: whether the word is not
-    in the header.
+    word: the limit's word; None for other columns. is_amount: whether it is neither a limit nor a number of the job.
+    unit: as written. kind: kind of a limit or an amount; None if only the job knows it, and for text. added: whether
+    the header lacks the word.
     """
 
     place: int
@@ -56,12 +56,12 @@ class Column:
     added: bool = False
 
     def value(self, cell: str) -> str | float:
-        """Return a cell as a value of a job file."""
+        """Return a cell as a value for a job file."""
         return f"{cell} {self.unit}" if self.unit else float(cell)
 
     @property
     def monotone(self) -> bool:
-        """Whether a looser limit only ever allows more designs."""
+        """Whether a looser limit can only allow more designs."""
         quantity = QUANTITIES.get(self.name)
         return self.word == "min" or (self.word == "max" and (quantity is None or quantity.floor is None))
 
@@ -72,11 +72,11 @@ class Column:
 
 
 def columns_of(header: Sequence[str], name: str, custom_names: frozenset[str]) -> list[Column]:
-    """Return the columns that a first line names, those that begin with # left out.
+    """Return the columns that a header line names, without those that begin with #.
 
-    A quantity without min, max or equals is limited on its bad side. Other columns that set no number of the job are
-    stored with designs, under names of small letters, digits and _. name: of the file. custom_names: of the job's
-    custom quantities. Raises JobError, naming column and remedy.
+    A quantity without min, max or equals becomes a limit on its bad side. Other columns that set no number of the job
+    are stored with designs, under names of lower-case letters, digits and _. name: name of the file. custom_names:
+    names of the job's custom quantities. Raises JobError, naming column and remedy.
     """
     if header[0] != "name":
         remedy = "rename it" if header[0].casefold() == "name" else "rename or move it"
@@ -135,19 +135,19 @@ def _read_column(place: int, text: str, column_name: str, custom_names: frozense
 
 
 def identifier(text: str) -> str:
-    """Return a text as a name of small letters, digits and _; empty where nothing is left of it."""
+    """Return a text as a name of lower-case letters, digits and _; empty if nothing remains."""
     plain = unicodedata.normalize("NFKD", text.casefold()).encode("ascii", "ignore").decode()
     return re.sub("[^a-z0-9]+", "_", plain).strip("_")
 
 
 @cache
 def _quantity_names() -> dict[str, str]:
-    """Return the names of the quantities, by name and by title."""
+    """Return the names of quantities by name and by title."""
     return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
 
 
 def _require_amount_name(text: str, name: str, unit: str, column_name: str, custom_names: frozenset[str]) -> None:
-    """Refuse a column without a name, and one that looks like a limit or a number of the job."""
+    """Reject a column without a name, or one that looks like a limit or a number of the job."""
     unit_text = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
     bare = (misplaced["after"] or misplaced["before"]) if misplaced is not None else ""
@@ -169,7 +169,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
         raise JobError(
             f"{column_name}: a number of the job must be named by its path; got {name}; write {number_path}{unit_text}"
         )
-    for formula in (name, text):  # text: the brackets at its end may be those of a function
+    for formula in (name, text):  # with text, because the brackets at its end may belong to a function
         if _is_known(formula, custom_names):
             limited, _ = _limited_quantity(formula, custom_names)
             raise JobError(
@@ -197,9 +197,9 @@ def _is_known(text: str, custom_names: frozenset[str]) -> bool:
 
 
 def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kind | None]:
-    """Return quantity or formula of a limit, as a job writes it, and its kind if known here.
+    """Return the quantity or formula of a limit, as a job writes it, and its kind if known here.
 
-    That of the job's own quantities and of numbers that vary the job knows. Raises InputError.
+    For custom quantities and extra variables, only the job knows the kind. Raises InputError.
     """
     known_names = frozenset((*FACTS, *DIMENSIONS, *custom_names))
     units = Units(known_names)
@@ -219,7 +219,7 @@ def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kin
 
 
 def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:
-    """Refuse a unit that does not fit the limited quantity. head: heading of the column, with the unit."""
+    """Reject a unit that does not fit the limited quantity. head: heading of the column, with the unit."""
     if kind.unit and not unit:
         raise JobError(
             f"{column_name}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"

@@ -1,11 +1,11 @@
 """Screening of a catalogue: rows to search, and rows that may be the smallest sufficient option for a design.
 
-Rows are compared in their limits, unless the constraints of the job are tighter, and in the amounts that are objectives
-or constraints. Consider two rows with the same numbers of the job, the first nowhere worse in this comparison. The
-first allows every design that the second allows, with objectives at least as good. The front of all rows therefore does
-not need the second, which is dominated. Of equal rows the smallest stays. Limits that are equalities are comparable
-only if equal. The same holds for maxima of quantities whose floor depends on them (see `violation.constraints_of`), and
-for amounts in a formula.
+Rows are compared in their limits, unless the job's constraints are tighter, and in the amounts that are objectives or
+constraints. Consider two rows with the same numbers of the job, where the first is nowhere worse in this comparison.
+The first then allows every design that the second allows, with objectives at least as good. So the front of all rows
+does not need the second, which is dominated. Among equal rows, the smallest stays. Limits that are equalities can be
+compared only if equal. The same applies to maxima of quantities whose floor depends on them (see
+`violation.constraints_of`), and to amounts in a formula.
 """
 
 from __future__ import annotations
@@ -27,24 +27,27 @@ from .catalogue_columns import Column
 from .raw_tables import table_in
 
 ORDER = ("price", "mass")
-"""Amounts by which one row is less than another, before their limits."""
+"""Amounts that make one row smaller than another, compared before their limits."""
 
 
 @dataclass(frozen=True)
 class _Request:
-    """Requirement of a job on an amount. way: 1 for low, -1 for high, 0 for a value. bound: beyond it all are equal."""
+    """A job's requirement on an amount.
+
+    way: 1 if low is better, -1 if high is, 0 for a value. bound: values beyond it are equal.
+    """
 
     way: int
     bound: float | None = None
 
 
 def _requirements_on_amounts(tables: Mapping[str, Any], columns: Sequence[Column]) -> dict[str, _Request]:
-    """Return the requirements of a job on the amounts of a catalogue."""
+    """Return a job's requirements on the amounts of a catalogue."""
     objectives, constraints, quantity_tables = (
         table_in(tables, name) for name in ("objectives", "constraints", "quantity")
     )
     plain = {column.name for column in columns if column.is_amount}
-    words: set[str] = set()  # in formulas, through which they may count either way
+    words: set[str] = set()  # names in formulas, where more or less may be better
     for key, value in (*objectives.items(), *constraints.items()):
         words |= set() if key in plain else set(words_of(key))
         words |= {word for bound in value.values() for word in words_of(bound)} if isinstance(value, Mapping) else set()
@@ -70,17 +73,18 @@ _WAYS = {"minimise": 1, "minimize": 1, "max": 1, "maximise": -1, "maximize": -1,
 def _si(value: Any, column: Column) -> float | None:
     try:
         return None if column.kind is None else to_si(value, column.kind)
-    except InputError:  # a formula, or wrong
+    except InputError:  # a formula, or invalid
         return None
 
 
 @dataclass(frozen=True)
 class Screened:
-    """Rows after screening. order: places of the rows to search or name, the smallest first.
+    """Rows after screening. order: positions of the rows to search or name, smallest first.
 
-    searched: places of the rows to search. lost: places of others, each with one that dominates it. excluded: places of
-    rows that lack a required amount, or have one that the job's constraints exclude, each with the reason in words;
-    empty if that excludes every row. compared: criteria of the comparison. requested: the amounts among them.
+    searched: positions of the rows to search. lost: positions of other rows, each with one that dominates it. excluded:
+    positions of rows that lack a required amount, or have one that the job's constraints exclude, each with the reason
+    in words; empty if that excludes every row. compared: criteria for the comparison. requested: the amounts among
+    them.
     """
 
     order: list[int]
@@ -96,8 +100,8 @@ def screened(
 ) -> Screened:
     """Return which rows to search, and which may be the smallest sufficient option.
 
-    columns: with checked cells. rows: cells. tables: of the job, with its requirements. file_name: beginning of
-    messages. Raises JobError if no row has all required amounts.
+    columns: columns with checked cells. rows: cells. tables: the job's tables, with its requirements. file_name: prefix
+    for messages. Raises JobError if no row has all required amounts.
     """
     requests, constraints = _requirements_on_amounts(tables, columns), table_in(tables, "constraints")
     fixed, costs = list[Array](), list[Array]()
@@ -155,9 +159,9 @@ def screened(
 def _excluded_rows(
     bounds: Mapping[str, Any], column: Column, values: Array, rows: Sequence[list[str]]
 ) -> dict[int, str]:
-    """Return which rows have an amount beyond the job's own constraints on it, each with the reason in words.
+    """Return which rows have an amount beyond the job's own constraints, each with the reason in words.
 
-    values: of the amount, SI.
+    values: values of the amount, SI.
     """
     reasons: dict[int, str] = {}
     for word, bound in bounds.items():
@@ -174,18 +178,18 @@ def _excluded_rows(
 
 
 def _limit_cost(bounds: Mapping[str, Any], column: Column, side: float) -> float:
-    """Return the cost of the job's own limit on the quantity of a column, below which rows are equal.
+    """Return the cost of the job's own limit on a column's quantity, below which rows are equal.
 
-    side: 1 of a least value, -1 of a greatest one.
+    side: 1 for a minimum, -1 for a maximum.
     """
     limits = [_si(bounds[word], column) for word in (column.word, "equals") if word and word in bounds]
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 
 def _order_rows(columns: Sequence[Column], rows: Sequence[list[str]]) -> IntArray:
-    """Return the rows, the least first: by price, mass and limits, the tighter first, as far as there are columns.
+    """Return the rows, smallest first: by price, mass and limits, tighter first, as far as there are columns.
 
-    A blank price, mass or limit comes last, and of equal rows the first one first.
+    A blank price, mass or limit comes last; equal rows keep their order.
     """
     amounts = {column.name: (1.0, column) for column in columns if column.is_amount and column.kind is not None}
     limits = [(-1.0 if column.word == "min" else 1.0, column) for column in columns if column.word is not None]
@@ -202,20 +206,20 @@ def _side_by_side(columns: Sequence[Array], count: int) -> Array:
 
 
 def _row_groups(columns: Sequence[Array], count: int) -> IntArray:
-    """Return a number of each row that rows have in common which are equal in some columns."""
+    """Return a number for each row that is the same for rows with equal values in some columns."""
     if not columns:
         return np.zeros(count, np.int64)
     return np.asarray(np.unique(_side_by_side(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
 
 
 def _undominated_rows(costs: Array) -> IntArray:
-    """Return the rows (n, k) that none dominates; of equal ones the first."""
+    """Return the rows (n, k) that no other row dominates; of equal ones, the first."""
     from ..front.dominance import nondominated  # brings what computes
 
     if not costs.shape[1] or not len(costs):
         return np.arange(min(1, len(costs)))
     _, first = np.unique(costs, axis=0, return_index=True)
     different = np.sort(first)
-    # By their places in order: limits that are none are infinite, which moocore does not take.
+    # Ranks replace the values, because missing limits are infinite, which moocore does not accept.
     places = [np.unique(column, return_inverse=True)[1].ravel() for column in costs[different].T]
     return np.asarray(different[nondominated(np.stack(places, axis=1).astype(np.float64))], np.int64)

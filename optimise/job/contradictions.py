@@ -1,7 +1,7 @@
-"""Contradictions within a job, found before anything runs.
+"""Contradictions within a job, detected before a search.
 
-Only certain contradictions are refused: each test holds for every design within the ranges. The optimiser finds and
-reports subtler ones.
+Only certain contradictions raise an error: each test holds for every design within the ranges. The optimiser detects
+and reports subtler ones.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ from .possible_values import Box, require_reachable
 
 
 def require_consistent(problem: Problem) -> None:
-    """Raise, naming key, rule, value and remedy, if the problem contradicts itself.
+    """Raise an error, naming key, rule, value and remedy, if the problem contradicts itself.
 
-    `InfeasibleError` if its parts are valid but no design meets them all, else `JobError`.
+    It is an `InfeasibleError` if the parts are valid but no design meets them all, otherwise a `JobError`.
     """
     for key, quantity, word, value in _bounds_and_targets(problem):
         _require_possible(problem, key, quantity, word, value)
@@ -60,11 +60,12 @@ def require_consistent(problem: Problem) -> None:
 
 
 _ONE_MATERIAL = 0.05
-"""Relative difference of densities up to which they may be of one material: steels lie between 7,700 and 8,000."""
+"""Relative difference in density within which two bars may have the same material: steels lie between 7,700 and
+8,000."""
 
 
 def _require_one_density(problem: Problem) -> None:
-    """Refuse a bar of the material of [sections] that has another material's density; one that varies is its own."""
+    """Reject a bar with another density than the material in [sections]; a density that varies is exempt."""
     machine = problem.mechanism
     if machine.strength is None:
         return
@@ -82,7 +83,7 @@ def _require_one_density(problem: Problem) -> None:
 
 
 def require_eyes_wider_than_pins(problem: Problem) -> None:
-    """Raise `InfeasibleError` if stresses are requested and no choice has eyes wider than their pins."""
+    """Raise `InfeasibleError` if stresses are required and no choice has eyes wider than their pins."""
     names = {*(item.quantity for item in problem.constraints), *(item.quantity for item in problem.objectives)}
     stresses = [item for item in map(problem.quantity, names) if isinstance(item, LinkStress)]
     if not stresses:
@@ -98,7 +99,7 @@ def require_eyes_wider_than_pins(problem: Problem) -> None:
 
 
 def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
-    """Return why the eyes of a link have no net section, whatever the numbers that vary."""
+    """Return why a link's eyes have no net section, whatever the values of the extra variables."""
     width = max(_number_range(mechanism, f"{link}.width"))
     return [
         f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got "
@@ -121,7 +122,7 @@ def _number_range(mechanism: Mechanism, path: str) -> tuple[float, ...]:
 
 
 def _require_delivery(problem: Problem) -> None:
-    """Refuse compressors whose clearance volume is so large that no stroke of the ranges delivers, in every variant."""
+    """Reject compressors whose clearance is too large for any stroke within the ranges, in every variant."""
     reasons = [_why_nothing_delivered(part) for part in problem.parts()]
     if reasons and all(reasons):
         raise InfeasibleError(reasons[0])
@@ -130,8 +131,8 @@ def _require_delivery(problem: Problem) -> None:
 def _why_nothing_delivered(part: Problem) -> str:
     """Return why a compressor of a problem without choices delivers in no design, or "".
 
-    The gas left in the clearance must not fill the swept volume once it has expanded to the suction pressure. A stroke
-    is at most 2 sqrt(r l), that of e = l - r.
+    After expansion to the suction pressure, the gas left in the clearance must not fill the swept volume. A stroke is
+    at most 2 sqrt(r l), reached at e = l - r.
     """
     stroke_limits = [item.upper for item in part.constraints if item.quantity == STROKE.name and item.upper is not None]
     stroke = min([2.0 * math.sqrt(part.crank.upper * part.rod.upper), *stroke_limits])
@@ -156,7 +157,7 @@ def _why_nothing_delivered(part: Problem) -> str:
 
 
 def _require_reachable_restated(problem: Problem) -> None:
-    """Raise `InfeasibleError` if formulas require values of known quantities out of reach in the ranges."""
+    """Raise `InfeasibleError` if formulas require values of known quantities beyond those within the ranges."""
     restated = {item.quantity: restate(problem, item) for item in problem.constraints}
     keys = [key_of(["constraints", name]) for name, item in restated.items() if item.quantity != name]
     if not keys:
@@ -188,10 +189,11 @@ def _bounds_and_targets(problem: Problem) -> Iterator[tuple[str, str, str, float
 
 
 def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:
-    """Refuse a value that a quantity has for no linkage at all."""
+    """Reject a value that a quantity cannot have in any linkage."""
     quantity = problem.quantity(name)
     value_text = f"got {word} {value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
-    turning = problem.motion is None or isinstance(quantity, SwingQuantity)  # below one, proportions may swing
+    # A swing may exceed the domain that full rotation imposes.
+    turning = problem.motion is None or isinstance(quantity, SwingQuantity)
     if turning and quantity.domain is not None and quantity.domain.refuses(value, least=word == "min"):
         raise JobError(f"{key}: {quantity.domain.rule}; {value_text}; {quantity.domain.remedy}")
     if not quantity.signed and value < 0.0:
@@ -199,7 +201,7 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
 
 
 def _require_free(problem: Problem, name: str) -> None:
-    """Refuse an objective that is the same for every design."""
+    """Reject an objective that is the same for every design."""
     equality = next(
         (c for c in problem.constraints if c.equality and name in (c.quantity, restate(problem, c).quantity)), None
     )
@@ -210,7 +212,7 @@ def _require_free(problem: Problem, name: str) -> None:
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
-        # Along a speed profile a ratio of times is also the same for every design, though not 1.
+        # Along a speed profile, a ratio of times is also the same for every design, though not 1.
         values = {_in_line_value(part, name) for part in problem.parts()}
         if len(values) > 1:
             return
@@ -222,16 +224,16 @@ def _require_free(problem: Problem, name: str) -> None:
 
 
 def _in_line_value(part: Problem, name: str) -> str:
-    """Return as text the value of a quantity that is the same for every design without offset."""
+    """Return the value, as text, of a quantity that is the same for every design without offset."""
     design = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
     value = float(part.quantity(name).evaluate(part.mechanism, design).values[0])
     return "infinite" if value == math.inf else f"{value:.6g}"
 
 
 def require_slow_stroke(problem: Problem) -> None:
-    """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the requested slow stroke.
+    """Raise `InfeasibleError`, naming rule, value and remedy, if no design has the required slow stroke.
 
-    The ranges must be known to have designs that turn fully.
+    Call it only if some designs within the ranges rotate fully.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -240,7 +242,7 @@ def require_slow_stroke(problem: Problem) -> None:
     ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
     require_longer_slow_stroke(problem)
     if any(part.mechanism.speed_profile is not None for part in parts):
-        return  # then neither the sign of the offset nor a closed form decides which stroke is slow
+        return  # neither the offset's sign nor a closed form then decides which stroke is slow
     ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]
     narrowed = replace(
         problem,

@@ -1,4 +1,4 @@
-"""Costs of tolerances in a job file, [costs], and their conversion to the costs of an allocation."""
+"""Costs of tolerances in a job file, [costs], converted to the costs for an allocation."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _Exponent = Annotated[PositiveRatio, Limited("from 0.25 to 4", "processes have 0
 
 
 class _CostPart(Checked[Cost]):
-    """The fields that all costs have. Any currency, the same in all."""
+    """Fields common to all costs. Any currency, the same for all."""
 
     makes = Cost
     renamed: ClassVar = {"min": "least", "max": "greatest"}
@@ -57,7 +57,7 @@ class AngleCostPart(_CostPart):
 
 
 class CostsPart(Built[Costs]):
-    """Costs of holding each tolerance, for the allocation of tolerances; one without a cost stays as given."""
+    """Costs of holding each tolerance, for the allocation of tolerances; a tolerance without a cost stays unchanged."""
 
     makes = Costs
 

@@ -1,4 +1,4 @@
-"""Crank speed as a job states it: by speed, cycle time, or strokes per minute."""
+"""Crank speed as a job states it: as speed, cycle time, or strokes per minute."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
 """Keys that state how fast the crank turns; a job has one of them."""
 TIME_KEYS = SPEED_KEYS[1:]
-"""Keys that state a time, so that a profile gives only the shape."""
+"""Keys that state a time, with which a profile gives only the shape."""
 _RPM = 30.0 / math.pi
 
 
 _FASTEST, _SLOWEST = 2e-5, TIME.limit
-"""s, of a turn: the limits of all three keys."""
+"""Limits on the time per turn, s, for all three keys."""
 _HINT = "others are beyond any machine; check the unit"
-_ROUNDING = 1e-12  # relative, of a speed in rpm
+_ROUNDING = 1e-12  # relative error of a speed in rpm
 _CYCLE_TIME = Within(TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, greatest=_SLOWEST)
 _STROKES = Within(
     STROKE_RATE,
@@ -38,7 +38,7 @@ _STROKES = Within(
 
 
 class _CrankSpeed(Within):
-    """Marks a crank speed: either way, within the limits of a turn's time."""
+    """Marks a crank speed: in either direction, within the limits on the time per turn."""
 
     def read(self, value: object) -> float:
         """Return the value in rad/s; raises InputError."""
@@ -63,7 +63,7 @@ _SPEED = _CrankSpeed(
 
 
 class CrankSpeedPart(Part):
-    """Crank speed and its variation over the turn."""
+    """Crank speed and its variation over a turn."""
 
     speed: Annotated[float, _SPEED] | None = optional(
         "crank speed, positive counter-clockwise, negative clockwise; not for a swing",
@@ -92,9 +92,9 @@ class CrankSpeedPart(Part):
         return tuple(key for key in SPEED_KEYS if getattr(self, key) is not None)
 
     def crank_speed(self, turns: int) -> float:
-        """Return the mean speed over the crank angle, rad/s, 0 if none is stated. turns: of the crank per cycle.
+        """Return the mean speed over the crank angle, rad/s, 0 if none is stated. turns: turns of the crank per cycle.
 
-        A turn takes the time 2 pi / (speed s), where s is the profile's mean over time divided by its mean over angle.
+        A turn takes 2 pi / (speed s), where s is the profile's mean over time divided by its mean over angle.
         """
         if self.speed is not None:
             return self.speed
@@ -128,7 +128,7 @@ class CrankSpeedPart(Part):
         return self
 
     def _require_repeating_cycle(self, key: str) -> None:
-        """Raise `InputError` if the crank has no cycle of a given time."""
+        """Raise `InputError` unless the crank has a cycle of known duration."""
         if self.acceleration:
             raise InputError(
                 f"{key} needs a cycle that repeats; got an acceleration of {self.acceleration:g} rad/s^2; give speed, "

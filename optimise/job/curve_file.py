@@ -1,8 +1,8 @@
-"""Curves in files of a job: values over crank angle, time or slider position, recognised by their units.
+"""Curves in a job's files: values over crank angle, time or slider position, recognised by their units.
 
-A head has its unit in brackets or at its end: "force (N)", "force [N]", "force_N", "force in N". A column whose head
-begins with # is passed over. Rows may go down instead of up, begin at any angle, run over 360 deg to 0 deg, and repeat
-the first one at the end.
+A heading has its unit in brackets or at its end: "force (N)", "force [N]", "force_N", "force in N". Columns whose
+heading begins with # are ignored. Rows may descend, begin at any angle, wrap from 360 deg to 0 deg, and repeat the
+first one at the end.
 """
 
 from __future__ import annotations
@@ -23,16 +23,17 @@ from ...objectives.units import per_si, quote, squeezed, symbol_in, without_in
 from .table_file import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
-_CLOSE = 1e-3  # relative: a record that ends this near to whole turns ends with them, unless half its last step is less
+# A record that ends closer to whole turns, relative to a turn, ends with them, unless half its last step is less.
+_CLOSE = 1e-3
 _TURNS = {"deg": 360.0}  # exactly
 SHARE = 5e-4
-"""Greatest change of a thinned curve over the difference of its greatest and its least value."""
+"""Greatest change in a thinned curve, relative to its range."""
 MOST_POINTS = 1000
-"""Points of a curve that stays as it is."""
+"""Number of points up to which a curve is not thinned."""
 
 
 class Head(NamedTuple):
-    """Column of a table: its position, heading, kind of values, and unit as jobs write it."""
+    """A table column: position, heading, kind of values, and unit as jobs write it."""
 
     place: int
     text: str
@@ -42,7 +43,10 @@ class Head(NamedTuple):
 
 @dataclass(frozen=True)
 class Curve:
-    """Values over places, both in the units of their headings. notes: how the file was read and converted, in words."""
+    """Values over arguments, both in the units of their headings.
+
+    notes: how the file was read and converted, in words.
+    """
 
     name: str
     argument_head: Head
@@ -53,27 +57,27 @@ class Curve:
 
     @property
     def turn(self) -> float:
-        """A turn of the crank in the unit of its angle."""
+        """A full turn of the crank in the unit of its angle."""
         return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * per_si(self.argument_head.unit))
 
     @property
     def span(self) -> float:
-        """Turns from the first point to the last one."""
+        """Number of turns from the first to the last point."""
         return float(self.arguments[-1] - self.arguments[0]) / self.turn
 
     def texts(self) -> tuple[list[str], list[str]]:
-        """Return places and values as a job has them."""
+        """Return arguments and values as a job has them."""
         columns = ((self.argument_head.unit, self.arguments), (self.value_head.unit, self.values))
         places, values = ([f"{number!r} {unit}" for number in numbers.tolist()] for unit, numbers in columns)
         return places, values
 
     def source(self, file: str) -> str:
-        """Return a summary of what was read from a file."""
+        """Return a summary of the content read from a file."""
         return f"{file}: {'; '.join(self.notes)}"
 
 
 def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequence[Kind]) -> Curve:
-    """Return the curve of a table's columns with units of some kinds. Raises `InputError` for none or several."""
+    """Return the curve from a table's columns whose units have some kinds. Raises `InputError` for none or several."""
     kinds = (*argument_kinds, *value_kinds)
     heads = [head for place, text in enumerate(table.heads) if (head := _read_heading(place, text, kinds)) is not None]
     if not heads and len(table.heads) == 2:
@@ -103,7 +107,10 @@ def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequ
 
 
 def _read_heading(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
-    """Return the meaning of a head by its unit; None without one of some kinds. Of several units the name decides."""
+    """Return the meaning of a heading by its unit; None if it has no unit of these kinds.
+
+    If several units fit, the name decides.
+    """
     if text.startswith("#"):
         return None
     meanings = [
@@ -117,7 +124,7 @@ def _read_heading(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
 
 
 def _units_in(text: str) -> list[str]:
-    """Return possible units in a heading, the likeliest first: text in brackets, then words at its end."""
+    """Return possible units in a heading, likeliest first: text in brackets, then words at its end."""
     words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
     units = [*_BRACKETS.findall(text)[::-1], *sorted(endings, key=lambda ending: ending.startswith("in "))]
@@ -129,7 +136,7 @@ def _names_kind(text: str, kind: Kind) -> bool:
 
 
 def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
-    """Raise `InputError` for a head whose name says another kind than its unit."""
+    """Raise `InputError` for a heading whose name contradicts its unit."""
     named = [kind for kind in kinds if _names_kind(head.text, kind)]
     if named and head.kind not in named:
         raise InputError(
@@ -149,7 +156,7 @@ def _heading_remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
 
 
 def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
-    """Return the only one of some columns, or of several of one kind the only one that names it."""
+    """Return the only column, or, among several of one kind, the only one that names the kind."""
     named = [head for head in heads if _names_kind(head.text, head.kind)]
     candidates = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
     if len(candidates) == 1:
@@ -168,7 +175,7 @@ def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> He
 
 
 def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
-    """Return a curve with ascending places: reversed if they descend, continued over full turns if they start again."""
+    """Return a curve with ascending arguments: reversed if they descend, continued over full turns if they restart."""
     at, values, notes = curve.arguments, curve.values, curve.notes
     steps = np.diff(at)
     if (steps < 0.0).sum() > (steps > 0.0).sum():
@@ -188,7 +195,7 @@ def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
 
 
 def over_angle(curve: Curve, speed: float) -> Curve:
-    """Return a curve over time as a curve over the crank angle at constant speed, rad/s; any other curve unchanged."""
+    """Return a curve over time as a curve over crank angle at constant speed, rad/s; any other curve unchanged."""
     if curve.argument_head.kind is not TIME:
         return curve
     wrong = np.flatnonzero(np.diff(curve.arguments) < 0.0)
@@ -204,9 +211,9 @@ def over_angle(curve: Curve, speed: float) -> Curve:
 
 
 def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
-    """Return the first cycle of a curve over the crank angle, and its turns: those given, else one or two.
+    """Return a crank-angle curve's first cycle, and its number of turns: the given one, otherwise one or two.
 
-    A record that ends nearly with whole turns ends with them. Raises `InputError` for one between one turn and two.
+    A record that ends close to whole turns ends with them. Raises `InputError` for a record between one turn and two.
     """
     near = (
         min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.turn)
@@ -236,9 +243,10 @@ def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
 
 
 def opened(curve: Curve) -> Curve:
-    """Return a curve over one turn without a last point that repeats the first one.
+    """Return a curve over one turn without a last point that repeats the first.
 
-    Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two at one place.
+    Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two points at the same
+    argument.
     """
     twice = np.flatnonzero(np.diff(curve.arguments) == 0.0)
     if len(twice):
@@ -260,10 +268,10 @@ def opened(curve: Curve) -> Curve:
 
 
 def thinned(curve: Curve) -> Curve:
-    """Return a curve of more than `MOST_POINTS` points without those that straight lines replace; steps stay.
+    """Return a curve of more than `MOST_POINTS` points without those that straight lines can replace; steps stay.
 
     No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1
-    (1972) 244, with the deviation along the values, which is greatest at a point that is left out.
+    (1972) 244, with the deviation measured along the values, where it is greatest at an omitted point.
     """
     if len(curve.arguments) <= MOST_POINTS:
         return curve

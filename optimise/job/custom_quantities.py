@@ -1,4 +1,4 @@
-"""The tables [quantity.NAME] of a job file: functions and formulas of your own; and functions that packages install."""
+"""The tables [quantity.NAME] in a job file: custom functions and formulas, and functions from installed packages."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def _check_unit(text: str) -> str:
 
 
 def require_one_line(text: str) -> str:
-    """Return a text; refuse one that is empty or of several lines."""
+    """Return a text; reject one that is empty or has several lines."""
     if not text.strip() or not text.isprintable():
         raise InputError(f"must be one line of text, not empty; got {quote(text)}")
     return text
@@ -98,7 +98,7 @@ class FunctionPart(Part):
 
 
 class FormulaPart(Part):
-    """A formula as a quantity; its name then stands in [objectives], [constraints] and other formulas."""
+    """A formula as a quantity; its name may be used in [objectives], [constraints] and other formulas."""
 
     formula: Annotated[str, Field(max_length=20_000)] = required(
         "formula of quantities, dimensions, variables, numbers with units, + - * / ** and functions",
@@ -110,7 +110,7 @@ class FormulaPart(Part):
     )
 
     def build(self) -> formulas.Stated:
-        """Return the formula as it is stated, to be read once its names are known."""
+        """Return the formula as stated; it is parsed once its names are known."""
         return formulas.Stated(self.formula, self.title, self.unit)
 
 
@@ -124,12 +124,12 @@ QuantityPart = Annotated[
     Discriminator(_KINDS.tag),
     BeforeValidator(_KINDS.require_one),
 ]
-"""A quantity of a job's own: a function, or a formula."""
+"""A custom quantity of a job: a function, or a formula."""
 Parts = dict[str, FunctionPart | FormulaPart]
 
 
 def named(parts: Parts) -> Parts:
-    """Refuse names that are taken, or that a table could not have as a column."""
+    """Reject names that are already in use, or that cannot name a column."""
     for name, part in parts.items():
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
             raise InputError(
@@ -142,7 +142,7 @@ def named(parts: Parts) -> Parts:
 
 
 def functions_of(parts: Parts, folder: Path | None) -> Iterator[OwnQuantity]:
-    """Yield the functions of a job as the problem has them. folder: where their modules may lie."""
+    """Yield a job's functions in the form that the problem uses. folder: where to look for their modules."""
     for name, part in parts.items():
         if isinstance(part, FunctionPart):
             yield part.build(name, folders_of(folder))
@@ -157,7 +157,7 @@ def formulas_of(parts: Parts) -> dict[str, formulas.Stated]:
 class Declared:
     """The quantities that a job adds to the built-in ones.
 
-    tables: facts by name, for the keys of [objectives] and [constraints]. installed: those from packages. formulas:
+    tables: facts by name, for the keys of [objectives] and [constraints]. installed: functions from packages. formulas:
     names of formulas.
     """
 
@@ -167,9 +167,9 @@ class Declared:
 
 
 def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
-    """Return the quantities that a job declares or names of installed packages; raises JobError for code not allowed.
+    """Return the quantities that a job declares or takes from packages; raise JobError for code that is not allowed.
 
-    Lenient otherwise: the validation of the job reports mistakes in a declaration.
+    It ignores other mistakes in a declaration, because validation reports them.
     """
     parts = data.get("quantity", {})
     names = _formula_names(parts)
@@ -200,7 +200,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     requested = [name for table in (table_in(data, "objectives"), *limits) for name in _used_names(table)]
     requested += [word for name in names for word in words_of(parts[name]["formula"])]
     known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
-    # Formulas stand among the names; looking for packages takes longer than reading a job.
+    # Formulas are looked up first, because finding packages takes longer than reading a job.
     unknown = [name for name in dict.fromkeys(requested) if name not in known_names and name.isidentifier()]
     packages = quantity_entry_points() if unknown else {}
     installed_quantities = tuple(installed(name) for name in unknown if name in packages)
@@ -210,7 +210,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
 
 
 def _formula_names(parts: object) -> tuple[str, ...]:
-    """Return the names of those parts that are formulas and nothing else."""
+    """Return the names of the parts that are only formulas."""
     entries = parts.items() if isinstance(parts, Mapping) else ()
     return tuple(
         name
@@ -224,21 +224,21 @@ def _stated_quantity(title: str, kind: Kind) -> Stated:
 
 
 def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the names in the keys and the bounds of a table, those in formulas too."""
+    """Yield the names in a table's keys and bounds, including those in formulas."""
     for key, value in table.items():
         yield from words_of(key)
         for bound in value.values() if isinstance(value, Mapping) else ():
-            if not (isinstance(bound, str) and is_value(bound)):  # the words of a value are units
+            if not (isinstance(bound, str) and is_value(bound)):  # words in a value are units
                 yield from words_of(bound)
 
 
 def folders_of(folder: Path | None) -> list[str]:
-    """Return where modules of a job may lie: beside the job file, then in the working directory."""
+    """Return the folders to search for a job's modules: that of the job file, then the working directory."""
     return [str(place.resolve()) for place in ((folder,) if folder else ()) + (Path(),)]
 
 
 def function_modules(data: Mapping[str, Any], folder: Path) -> list[Path]:
-    """Return the files beside a job file that its functions come from."""
+    """Return the files beside a job file that contain its functions."""
     parts = data.get("quantity", {})
     functions = [part.get("function") for part in parts.values() if isinstance(part, Mapping)] if parts else []
     files = [folder / f"{text.partition(':')[0]}.py" for text in functions if isinstance(text, str)]

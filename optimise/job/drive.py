@@ -1,4 +1,4 @@
-"""Drive of the crank in a job file, [drive], and its conversion to the drive of the model."""
+"""The crank's drive in a job file, [drive], converted to the drive of the model."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from .values import (
 
 
 class ConstantMotor(Built[model.Motor]):
-    """A motor with the same torque at every speed."""
+    """A motor with constant torque at any speed."""
 
     makes = model.ConstantTorque
 
