@@ -48,7 +48,7 @@ class LineMotor(Built[model.Motor]):
 
 
 class RatedMotor(Checked[model.Motor]):
-    """A motor whose torque is linear in speed, by its rated point and its no-load (synchronous) speed."""
+    """A motor whose torque is linear in speed, given by its rated point and its no-load (synchronous) speed."""
 
     makes = model.LinearMotor.through
     renamed: ClassVar = {"rated_torque": "torque", "rated_speed": "speed"}
@@ -59,7 +59,7 @@ class RatedMotor(Checked[model.Motor]):
 
 
 class TableMotor(Checked[model.Motor]):
-    """A motor by its torque at several speeds, joined by a smooth curve without overshoot."""
+    """A motor given by its torque at several speeds, joined by a smooth curve without overshoot."""
 
     makes = model.TorqueTable
 
@@ -74,7 +74,7 @@ class TableMotor(Checked[model.Motor]):
     )
 
 
-# The key that tells a kind of motor, in the order in which kinds are told apart.
+# The key that identifies each kind of motor, in the order of the tests.
 _KINDS = Kinds(
     {
         "torque": ConstantMotor,
@@ -97,7 +97,7 @@ AnyMotor = Annotated[
 
 
 class DrivePart(Checked[model.Drive]):
-    """The motor and what turns with it; it turns the crank the way the sign of mechanism.speed says."""
+    """The motor and the rotating parts; they turn the crank in the direction given by the sign of mechanism.speed."""
 
     makes = model.Drive
 
@@ -123,7 +123,7 @@ class DrivePart(Checked[model.Drive]):
 
 
 def torque_warnings(mechanism: Mechanism, tables: Mapping[str, Any]) -> list[str]:
-    """Return a warning if the motor gives more torque continuously than briefly, as stated and for all designs.
+    """Return a warning if the motor's continuous torque exceeds its brief torque, as stated and for all designs.
 
     tables: those of the job, for the change that swaps the two.
     """

@@ -1,4 +1,4 @@
-"""Reading of job files: bytes into tables. Refuses everything that is not a job file."""
+"""Reading of job files: from bytes to tables. Rejects everything that is not a job file."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ from .messages import DEEPEST, key_of
 from .toml_errors import in_words
 
 LARGEST = 1_000_000
-"""Bytes. A job of as many values as are allowed takes half of it, of ten characters each."""
+"""Bytes. A job with the maximum number of values takes half of it, at ten characters each."""
 MOST = 50_000
-"""Values, lists and tables of a job: enough for two [[load]] tables of 10,000 points. Each takes up to 30 us."""
-# Possessive, and a text that is not closed ends with the file: the search takes a time in proportion to its length.
+"""Maximum number of values, lists and tables in a job: enough for two [[load]] tables with 10,000 points. Each takes up
+to 30 us."""
+# Possessive, and an unclosed text ends with the file, so the search time is proportional to the file's length.
 _WORD = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"?+|'[^'\n]*+'?+)"""
 _TEXT = r'''"""(?:[^"\\]|\\.|"(?!""))*+(?:"""|\Z)|''' + r"""'''(?:[^']|'(?!''))*+(?:'''|\Z)"""
 _DOT = r"[ \t]*+\.[ \t]*+"
@@ -31,7 +32,7 @@ _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_
 
 
 def read(path: Path) -> dict[str, Any]:
-    """Return the tables of a job file, TOML or JSON by its ending. Raises JobError."""
+    """Return the tables of a job file, as TOML or JSON according to its suffix. Raises JobError."""
     if path.suffix.casefold() not in (".toml", ".json"):
         raise JobError(
             f"the name of a job file must end in .toml or .json; got {quote(path.suffix or path.name)}; rename the file"
@@ -101,9 +102,9 @@ def _parse_tables(text: str, suffix: str) -> dict[str, Any]:
 def toml_tables(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text. Raises JobError.
 
-    Dotted keys of more than `DEEPEST` words are refused before the text is parsed: `tomllib` takes a time and a memory
-    for one that grow with the square of its length. So are texts of far more values than a job has: each has one or two
-    of the signs that are counted.
+    Dotted keys with more than `DEEPEST` words raise an error before the text is parsed: for these, `tomllib` takes time
+    and memory that grow with the square of their length. So do texts with far more values than a job may have; each
+    value has one or two of the counted signs.
     """
     if _DEEP_KEY.match(text):
         raise _too_deep()
@@ -129,7 +130,7 @@ def _too_long() -> JobError:
 
 
 def _object_without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return an object, refusing a key that comes twice: JSON would silently keep the last."""
+    """Return an object; reject duplicate keys: JSON would silently use the last one."""
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]
@@ -146,7 +147,7 @@ def _too_many(count_text: str) -> JobError:
 
 
 def require_few(tables: object) -> None:
-    """Raise JobError for data of more values, lists and tables than a job has."""
+    """Raise JobError for data with more values, lists and tables than a job may have."""
     left, count = [tables], -1
     while left:
         count += 1
@@ -158,9 +159,9 @@ def require_few(tables: object) -> None:
 
 
 def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
-    """Refuse data of too many values or nested too deeply, keys that are not text, and nulls. Raises JobError.
+    """Reject data with too many values or too many levels, keys that are not text, and nulls. Raises JobError.
 
-    at: its path in the job.
+    at: path of the data in the job.
     """
     if not at:
         if not isinstance(value, Mapping):

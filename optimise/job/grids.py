@@ -1,7 +1,7 @@
-"""Values that a number may have: multiples of a step, preferred numbers, a list; as a job writes them.
+"""Values that a number may have, as a job writes them: multiples of a step, preferred numbers, a list.
 
 Preferred numbers are those of ISO 3:1973, the rounded values of its basic series R5, R10, R20 and R40, times powers of
-ten in the unit that `min` is written in.
+ten in the unit of `min`.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from ...model.errors import InputError
 from ...objectives.units import quote
 
 KEYS = frozenset({"min", "max", "step", "series", "values"})
-"""Keys of a table that says the values of a variable."""
+"""Keys of a table that states the values of a variable."""
 MOST = 10_000
-"""Values of one variable."""
+"""Maximum number of values for one variable."""
 _R40 = (
     *("1", "1.06", "1.12", "1.18", "1.25", "1.32", "1.4", "1.5", "1.6", "1.7"),
     *("1.8", "1.9", "2", "2.12", "2.24", "2.36", "2.5", "2.65", "2.8", "3"),
@@ -29,34 +29,40 @@ _R40 = (
     *("5.6", "6", "6.3", "6.7", "7.1", "7.5", "8", "8.5", "9", "9.5"),
 )
 SERIES = {f"R{count}": tuple(map(Decimal, _R40[:: 40 // count])) for count in (5, 10, 20, 40)}
-"""Preferred numbers of a decade, by series."""
+"""Preferred numbers in one decade, by series."""
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*?)\s*")
 _FRACTION = re.compile(r"\s*([+-]?\d{1,9})\s*/\s*(\d{1,9})\s*([A-Za-z].*)", re.ASCII)
-_ROUNDING = 1e-9  # relative: a multiple at the very end of a range counts
+_ROUNDING = 1e-9  # relative: a multiple within this distance beyond the end of a range counts
 
 
 @dataclass(frozen=True)
 class Grid:
-    """The values, SI, ascending, and the rule that gives them, in words."""
+    """The values, SI, ascending, and the rule behind them, in words."""
 
     values: tuple[float, ...]
     rule: str
 
 
 def swap(lower: object, upper: object) -> str:
-    """Return the remedy for ends of a range that cross. A number beside a value with a unit mostly lacks its unit."""
+    """Return the remedy for a range whose ends cross.
+
+    A plain number beside a value with a unit usually lacks its unit.
+    """
     plain = [end for end in (lower, upper) if isinstance(end, float | int) and end]
     mixed = len(plain) == 1 and any(isinstance(end, str) for end in (lower, upper))
     return f"give {plain[0]:g} its unit" if mixed else "swap the two"
 
 
 def says_values(value: object) -> bool:
-    """Return whether a value of a job has a key of a table of values."""
+    """Return whether a value in a job has a key of a table of values."""
     return isinstance(value, Mapping) and not KEYS.isdisjoint(value)
 
 
 def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
-    """Return the values that a table says. read: gives a value in SI, by the rules of its key. Raises `InputError`."""
+    """Return the values that a table states.
+
+    read: converts a value to SI, by the rules of its key. Raises `InputError`.
+    """
     for key in table:
         if key not in KEYS:
             raise InputError(
@@ -123,17 +129,17 @@ def _grid_of_multiples(
             f"step must give at most {MOST} values; got {quote(table['step'])}, which gives "
             f"{(upper - lower) / step:.4g}; use a larger step, or a range [lower, upper]"
         )
-    exact = Decimal(repr(step))  # a multiple as it is written: the step's decimals times a whole number, rounded once
+    exact = Decimal(repr(step))  # a multiple as written: the step's decimals times a whole number, rounded once
     every = (float(exact * k) for k in range(math.floor(lower / step), math.ceil(upper / step) + 1))
     written = table["step"].strip() if isinstance(table["step"], str) else f"{table['step']:g}"
     return [value for value in every if lower <= value <= upper], f"multiples of {written}"
 
 
 def step_of(value: object, read: Callable[[object], float]) -> float:
-    """Return a step, SI. A fraction of a unit is one of its whole numbers: "1/32 in". Raises `InputError`."""
+    """Return a step, SI. A fraction of a unit is allowed: "1/32 in". Raises `InputError`."""
     fraction = _FRACTION.fullmatch(value) if isinstance(value, str) else None
     if fraction is not None and int(fraction[2]):
-        with contextlib.suppress(InputError):  # told below, with the text as it is
+        with contextlib.suppress(InputError):  # reported below, with the text as written
             return read(f"{fraction[1]} {fraction[3]}") / int(fraction[2])
     return read(value)
 
@@ -150,7 +156,7 @@ def _grid_of_preferred_numbers(
             "list"
         )
     number, unit = _number_and_unit_text(table["min"])
-    # The unit in SI, without the rounding of the division.
+    # The unit in SI, without the rounding error of the division.
     factor = Decimal(f"{read(table['min']) / float(number):.15g}")
     first, last = (math.floor(math.log10(end / float(factor))) for end in (lower, upper))
     every = (number.scaleb(k) * factor for k in range(first - 1, last + 2) for number in SERIES[name])
@@ -165,7 +171,7 @@ def _number_and_unit_text(value: object) -> tuple[Decimal, str]:
 
 
 def grid_schema(entryschemas: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Return the JSON Schemas of the tables that say values. entryschemas: those of a value."""
+    """Return the JSON Schemas of the tables that state values. entryschemas: schemas of a single value."""
     value = {"anyOf": entryschemas}
     ends = {"min": value, "max": value}
     fraction = {"type": "string", "pattern": f"^{_FRACTION.pattern}$", "examples": ["1/32 in"]}

@@ -1,4 +1,4 @@
-"""Formulas of a job that may be incomplete: unit of each, or the mistake in it, and possible names."""
+"""Formulas of a job that may be incomplete: the unit of each, or its mistake, and the names that it may use."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from .raw_tables import table_in
 from .variables import varying_in
 
 _MOST = 200
-"""Maximum number of formulas that are read, and of names that are reported."""
+"""Maximum number of formulas to read, and of names to report."""
 
 
 @dataclass(frozen=True)
 class FormulaName:
-    """A name that formulas of this job alone may have. kind: of its values; None while that is not known."""
+    """A name that is specific to formulas in this job. kind: kind of its values; None while it is unknown."""
 
     name: str
     title: str
@@ -40,9 +40,9 @@ class FormulaName:
 
 @dataclass(frozen=True)
 class StatedFormula:
-    """A formula of a job. key: its place, as in messages. kind: of its values, None if not known.
+    """A formula in a job. key: its location, as in messages. kind: kind of its values, None if unknown.
 
-    wrong: the mistake in it, as a sentence; None if there is none.
+    wrong: its mistake, as a sentence; None if there is none.
     """
 
     key: str
@@ -51,7 +51,7 @@ class StatedFormula:
 
 
 def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
-    """Return the names that formulas may have in this job alone: its own quantities, and the numbers that vary."""
+    """Return the names that formulas may use in this job alone: its custom quantities and extra variables."""
     kinds = _Kinds(tables)
     names = [
         FormulaName(name, _part_title(name, part), kinds.quantity_kind(name)) for name, part in kinds.stated.items()
@@ -63,7 +63,7 @@ def formula_names(tables: Mapping[str, Any]) -> list[FormulaName]:
 def stated_formulas(tables: Mapping[str, Any]) -> list[StatedFormula]:
     """Return the formulas of a job: named ones, keys of [constraints] and [objectives], and bounds.
 
-    Checks only units and names: ranges and the machine may still be missing.
+    Checks only units and names, because ranges and the machine may still be missing.
     """
     kinds = _Kinds(tables)
     return [_read_formula(key, text, kinds) for key, text in islice(_stated_formulas(tables, kinds), _MOST)]
@@ -98,10 +98,10 @@ def _part_title(name: str, part: Mapping[str, Any]) -> str:
 
 
 class _Kinds:
-    """Kinds of the names that formulas of a job may have. Incomplete names raise no error: their kind is None."""
+    """Kinds of the names that formulas of a job may use. Incomplete names raise no error; their kind is None."""
 
     def __init__(self, tables: Mapping[str, Any]) -> None:
-        with suppress(InputError):  # a table that is wrong, which the job says
+        with suppress(InputError):  # an invalid table, which validation reports
             tables = with_options(tables)[0]
         self.amounts = kinds_of_amounts(amounts_in(tables))
         entries = islice(table_in(tables, "quantity").items(), _MOST)
@@ -113,7 +113,7 @@ class _Kinds:
         self._units = Units(self.names)
 
     def formula_kind(self, text: str) -> Kind | None:
-        """Return the kind of a formula; None while that of a name in it is not known. Raises InputError."""
+        """Return the kind of a formula; None while the kind of a name in it is unknown. Raises InputError."""
         if not text.strip():
             raise InputError('is missing; write a formula such as "offset - 2 * crank"')
         node = parse(text, self._units)
@@ -126,9 +126,9 @@ class _Kinds:
         return kind_of_formula(node, known_kinds) if len(known_kinds) == len(kinds) else None
 
     def quantity_kind(self, name: str) -> Kind | None:
-        """Return the kind of a quantity of the job's own; None while it is not known."""
+        """Return the kind of a custom quantity; None while it is unknown."""
         if name not in self._known:
-            self._known[name] = None  # until it is found: of one that defines itself it stays so
+            self._known[name] = None  # until it is determined; it stays None for a quantity that depends on itself
             self._known[name] = self._stated_kind(self.stated[name])
         return self._known[name]
 

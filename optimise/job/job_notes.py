@@ -1,4 +1,4 @@
-"""Notes on valid content of a job that is often a mistake: reported, not refused."""
+"""Notes on valid content in a job that is often a mistake: reported without an error."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .model import Job, job_with
 from .named_files import SOURCE
 from .plain_numbers import read_noting
 
-_MOST = 6  # plain numbers that are told one by one
+_MOST = 6  # plain numbers to report one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
 _SPEED_WORDS = {"speed": "speed", "cycle_time": "time", "strokes_per_minute": "strokes", "direction": "direction"}
 
 
 def notes_of(data: Mapping[str, Any]) -> list[str]:
-    """Return notes on the tables of a valid job, each a sentence: plain numbers, masses without gravity, screening.
+    """Return notes on the tables of a valid job, one sentence each: plain numbers, masses without gravity, screening.
 
-    Also on a speed or tables that a swing ignores, and on exponents of a liquid. Signs of a machine other than the
-    intended one are warnings of the problem instead.
+    Also on a speed or tables that a swing ignores, and on a liquid's exponents. If signs suggest another machine than
+    the intended one, the problem has a warning instead.
     """
     data, tables = with_options(data)
     job, plain = read_noting(job_with(declared(data, allowed=True)), data)
@@ -67,7 +67,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
 
 
 def _of_catalogue(table: Catalogue) -> Iterator[str]:
-    """Yield which rows of a catalogue are not searched and why, and columns that may mean something else."""
+    """Yield notes on catalogue rows that are not searched and why, and on columns that may mean something else."""
     few = [f"{row} to {better}" for row, better in table.lost.items()]
     left = table.rows - len(table.lost) - len(table.excluded)
     has_omissions = bool(table.lost or table.excluded)
@@ -99,7 +99,7 @@ def _join_first(lines: Sequence[str]) -> str:
 
 
 def sources_of(data: Mapping[str, Any]) -> list[str]:
-    """Return a summary of each file of a valid job, after the key of its table."""
+    """Return a summary of each file of a valid job, after its table's key."""
     mechanism = data["mechanism"]
     places: list[tuple[list[object], Any]] = [
         (["mechanism", "speed_profile"], mechanism.get("speed_profile")),
@@ -113,7 +113,7 @@ def sources_of(data: Mapping[str, Any]) -> list[str]:
 
 
 def _pin_notes(job: Job) -> list[str]:
-    """Return notes on pins that rub at another radius than [sections] has them, or that vary while that stays."""
+    """Return notes on pins whose friction radius differs from [sections], or varies while [sections] stays fixed."""
     notes: list[str] = []
     if job.sections is None:
         return notes

@@ -31,7 +31,7 @@ class PinPart(Built[Pin]):
 
 
 class FrictionPart(Built[Friction]):
-    """Coulomb friction; a joint that is left out has none."""
+    """Coulomb friction; an omitted joint has none."""
 
     makes = Friction
 
@@ -41,9 +41,9 @@ class FrictionPart(Built[Friction]):
     slider_pin: PinPart | None = optional("between connecting rod and slider", {"radius": "8 mm", "coefficient": 0.08})
 
     def with_pins(self, pins: PinsPart | None) -> Friction:
-        """Return the friction, pins without a radius as thick as those of [sections].
+        """Return the friction; pins without a radius have the diameters of [sections].
 
-        Raises JobError where [sections] is missing then.
+        Raises JobError if it then needs [sections] and that is missing.
         """
         friction = self.build()
         for name in PinsPart.model_fields:
@@ -61,7 +61,7 @@ class FrictionPart(Built[Friction]):
 
 
 class ClearancePart(Checked[Clearance]):
-    """A pin joint whose journal is loose in its bearing."""
+    """A pin joint with a loose journal in its bearing."""
 
     makes = Clearance
     renamed: ClassVar = {"radial_clearance": "radius"}

@@ -1,7 +1,7 @@
-"""Linear requirements on dimensions and varying numbers that exclude each other within the ranges.
+"""Linear requirements on dimensions and extra variables that exclude each other within the ranges.
 
-Whether some point of the ranges meets them all is a linear programme, of crank, rod, |offset| and varying numbers for
-either sign of the offset; full rotation, rod >= crank + |offset|, is a row of it.
+For either sign of the offset, a linear programme in crank, rod, |offset| and extra variables decides whether some point
+meets them all; full rotation, rod >= crank + |offset|, is one of its rows.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from ..search.elimination import signs
 from ..search.linear_rules import linear_equations, with_offset_size
 from .messages import key_of
 
-_UNIT = 1e3  # lengths in mm: rounding of the programme is 1e-7 of its unit
+_UNIT = 1e3  # lengths in mm: the solver's tolerance is 1e-7 of its unit
 _ANY: dict[str, tuple[float, float]] = {"crank": (1e-6, math.inf), "rod": (1e-6, math.inf), "offset": (0.0, math.inf)}
-"""Ranges, m, that no job widens further."""
+"""Ranges, m, that no job can exceed."""
 _NONE = 2
-"""Status of `linprog` where nothing meets all rows."""
+"""Status of `linprog` if no point meets all rows."""
 
 
 @dataclass(frozen=True)
 class _Row:
-    """A requirement as a sum that is zero (`exact`), or not above zero. name: the quantity that it is on."""
+    """A requirement as a sum that is zero (`exact`) or at most zero. name: its quantity."""
 
     name: str
     sum: Linear
@@ -56,7 +56,7 @@ def require_compatible(problem: Problem) -> None:
 
 
 def _conflict_text(part: Problem) -> str:
-    """Return which requirements of a problem exclude each other, as few as do on either sign of the offset."""
+    """Describe a small set of requirements that exclude each other on either sign of the offset."""
     sides = [_linear_rows(part, sign) for sign, _ in signs(part)]
     names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))
     for name in list(names):
@@ -93,7 +93,7 @@ def _conflict_text(part: Problem) -> str:
 
 
 def _linear_rows(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
-    """Return the linear requirements on one sign of the offset, if a formula is among them, and the ranges."""
+    """Return the linear requirements for one sign of the offset, and the ranges."""
     sizes = next(sizes for side, sizes in signs(part) if side == sign)
     ends = {
         "crank": (part.crank.lower, part.crank.upper),
@@ -110,7 +110,7 @@ def _linear_rows(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tupl
 
 
 def _formula_bounds(part: Problem, sign: float) -> Iterator[_Row]:
-    """Yield least and greatest values of linear formulas; quotients would need the sign of their divisors."""
+    """Yield the bounds on linear formulas; quotients would need the sign of their divisors."""
     for item in part.constraints:
         quantity = part.quantity(item.quantity)
         if item.equality or not isinstance(quantity, FormulaQuantity):
@@ -125,7 +125,7 @@ def _formula_bounds(part: Problem, sign: float) -> Iterator[_Row]:
 
 
 def _has_common_point(rows: Sequence[_Row], ends: dict[str, tuple[float, float]], *, turning: bool) -> bool:
-    """Return whether some point of the ranges meets all rows, as far as a linear programme can tell."""
+    """Return whether some point within the ranges meets all rows, as far as a linear programme can tell."""
     from scipy.optimize import linprog
 
     turned = unknown("crank").plus(unknown("offset")).plus(unknown("rod"), Fraction(-1))

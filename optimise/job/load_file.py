@@ -19,12 +19,12 @@ from .stated_speed import stated_speed
 
 
 def load_files(data: Mapping[str, Any]) -> list[str]:
-    """Return the files that loads of a job name."""
+    """Return the files that a job's loads name."""
     return [part["file"] for part in tables_in(data, "load") if isinstance(part.get("file"), str)]
 
 
 def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
-    """Return a job with each file of a load replaced by its points. Raises `InputError`."""
+    """Return a job with each load's file replaced by its points. Raises `InputError`."""
     job = dict(data)
     if load_files(data):
         job["load"] = [_fill_from_files(part, place, files, data) for place, part in enumerate(job["load"])]
@@ -79,14 +79,14 @@ def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any
 
 
 def tables_of_points() -> list[tuple[Table, Entry, Entry]]:
-    """Return the tables of loads with points, each with its entries of where they are and of their values."""
+    """Return the tables of loads with points, each with its entries for the arguments and for the values."""
     every = [table for kind in kinds() for table in kind.tables]
     pairs = [(table, [entry for entry in table.entries if entry.several]) for table in every]
     return [(table, pair[0], pair[1]) for table, pair in pairs if len(pair) == 2]
 
 
 def _kind_of_entry(entry: Entry) -> Kind:
-    """Return the kind of the values of an entry."""
+    """Return the kind of an entry's values."""
     marked: Any = getattr(values, str(entry.kind))
     kind: Kind = marked.__metadata__[0].kind
     return kind

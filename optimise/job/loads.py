@@ -1,4 +1,4 @@
-"""The loads in a job file, [[load]]: each a table as its kind of load declares it. Several add up."""
+"""Loads in a job file, [[load]]: each is a table in the form that its kind of load declares. Several add up."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .values import Checked, optional
 
 
 def increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
-    """Return the points of a table in SI, refusing any that is not above the one before."""
+    """Return a table's points in SI; reject any that is not above the one before."""
     points: tuple[float, ...] = handler(typed)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:
@@ -58,12 +58,12 @@ class LoadPart(Checked[model.Load]):
 
     @cached_property
     def built(self) -> model.Load:
-        """The load for the model; takes a moment for a long table."""
+        """The load for the model; building a long table takes a moment."""
         return super().build()
 
 
 def _part_of_table(table: model.Table) -> type[LoadPart]:
-    """Return the table of a job file that a kind of load declares."""
+    """Return the job-file table that a kind of load declares."""
     fields: dict[str, Any] = {entry.name: (_entry_type(entry), _entry_field(entry)) for entry in table.entries}
     if any(entry.several for entry in table.entries):
         fields[SOURCE] = (values.Source, values.source())
@@ -90,7 +90,7 @@ def _entry_field(entry: model.Entry) -> Any:
 
 
 def _file_part() -> type[LoadPart]:
-    """Return the load whose points are in a file, with the entries of all tables that may be there."""
+    """Return a load whose points are in a file, with the possible entries of all tables."""
     entries: dict[str, list[model.Entry]] = {}
     for table, *_ in tables_of_points():
         for entry in table.entries:

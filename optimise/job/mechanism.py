@@ -1,4 +1,4 @@
-"""The machine in a job file: links, masses, gravity, loads, tolerances, and how each becomes a part of the model."""
+"""The machine in a job file: links, masses, gravity, loads and tolerances, and their conversion to the model."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ During = Literal["cycle", "outward stroke", "inward stroke"]
 
 
 class SectionLink(Built[Link]):
-    """A link as a round-ended bar of rectangular section: its mass and inertia follow its length."""
+    """A link as a round-ended bar with rectangular section: its mass and inertia follow from its length."""
 
     makes = Bar
 
@@ -50,7 +50,7 @@ class SectionLink(Built[Link]):
 
 
 class MassLink(Built[Link]):
-    """A link by its mass properties, the same for every length."""
+    """A link given by its mass properties, the same for every length."""
 
     makes = RigidLink
 
@@ -73,7 +73,7 @@ _MASS = frozenset(MassLink.model_fields)
 
 
 def _one_way(value: object) -> object:
-    """Refuse a link that is not a table, or has both a section and mass properties."""
+    """Reject a link that is not a table, or has both a section and mass properties."""
     if isinstance(value, Part):
         return value
     if not isinstance(value, Mapping):
@@ -117,7 +117,7 @@ class CounterweightPart(Built[Counterweight]):
 
 
 class CylindersPart(Checked[Arrangement]):
-    """Identical cylinders on one crankshaft, each a machine of this job."""
+    """Identical cylinders on one crankshaft; each is a machine as in this job."""
 
     makes = Arrangement
 
@@ -160,7 +160,7 @@ class SliderPart(Part):
 
     @property
     def distances(self) -> SliderDistances:
-        """The distances as the model has them."""
+        """The distances in the form that the model uses."""
         return SliderDistances(
             dead_centre=self.dead_centre,
             touch=self.touch_distance,
@@ -212,7 +212,7 @@ class MechanismPart(CrankSpeedPart):
         """Gravity along and across the slider line, m/s^2."""
         size = self.gravity or 0.0
         angle = 1.5 * math.pi if self.gravity_direction is None else self.gravity_direction
-        # Rounding of pi would leave 1e-16 of gravity along an axis that it is normal to.
+        # Rounding of pi would leave 1e-16 of gravity along an axis normal to it.
         axial, lateral = (0.0 if abs(part) < 1e-12 else size * part for part in (math.cos(angle), math.sin(angle)))
         return axial, lateral
 
@@ -227,7 +227,7 @@ def _split_ends(ends: tuple[float, float]) -> tuple[float, float]:
 
 
 class ClearancesPart(Built[Clearances]):
-    """Radial clearances of the joints: half the difference of the diameters of bearing and pin."""
+    """Radial clearances of the joints: half the difference between bearing and pin diameters."""
 
     makes = Clearances
 
@@ -238,7 +238,7 @@ class ClearancesPart(Built[Clearances]):
 
 
 class TolerancesPart(Part):
-    """Tolerances of dimensions and crank angle, and the part of the cycle over which the error counts."""
+    """Tolerances of dimensions and crank angle, and the part of the cycle where the error counts."""
 
     crank: LengthTolerance = optional("of the crank, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
     rod: LengthTolerance = optional("of the rod, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
@@ -256,7 +256,7 @@ class TolerancesPart(Part):
     )
 
     def build(self) -> Tolerances:
-        """Return the tolerances as the model has them."""
+        """Return the tolerances in the form that the model uses."""
         return Tolerances(
             crank=ToleranceOf.build(self.crank),
             rod=ToleranceOf.build(self.rod),

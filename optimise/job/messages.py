@@ -1,4 +1,7 @@
-"""Messages on mistakes in a job, in the words of the job file: key, rule, value, remedy. No jargon of the validator."""
+"""Messages on mistakes in a job, in the words of the job file: key, rule, value, remedy.
+
+They avoid the validator's jargon.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +16,16 @@ from ...objectives.registry import FACTS
 from ...objectives.units import closest, printable_name, quote
 from .suggested_bounds import suggested_bounds
 
-_MOST_KEYS = 20  # that are told where none is near
+_MOST_KEYS = 20  # keys to list if none is similar
 
 MOST = 8
-"""Number of problems of one job that are listed."""
+"""Number of mistakes in one job that are listed."""
 
 DEEPEST = 8
-"""Tables within tables; a job has five at most."""
+"""Levels of nested tables; a job has five at most."""
 
 LONGEST = 100
-"""Number of problems that are looked at: each costs a search for a near key."""
+"""Number of mistakes to examine; each costs a search for a similar key."""
 
 SEVERAL, SINGLE = "each {0} begins with [[{0}]], in double brackets", "there is one [{0}] only, in single brackets"
 
@@ -55,22 +58,23 @@ _LIMITS = {
     "literal_error": ("must be {}", "expected"),
     "enum": ("must be {}", "expected"),
 }
-"""Sentences of kinds of errors, by their names in pydantic, and the value of the context that each names."""
+"""Sentences for kinds of errors, by their pydantic names, and the context value that each uses."""
 
 
 def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | None = None) -> list[str]:
-    """Return one sentence for each problem, the most useful first.
+    """Return one sentence for each mistake, most useful first.
 
-    schema: the JSON Schema of the job, which says the allowed keys and an example for each. tables: what was read, for
-    the order of its keys. Unknown keys come first: a misspelt key explains the missing one, which is then left out.
+    schema: the JSON Schema of the job, with the allowed keys and an example for each. tables: the tables as read, for
+    the order of their keys. Unknown keys come first, because a misspelt key explains the missing one, which is then
+    omitted.
     """
     unknown, wrong, missing, explained = dict[tuple[Any, ...], str](), list[str](), dict[str, str](), set[str]()
-    misplaced_objectives = set[str]()  # own quantities too, which the schema does not name
+    misplaced_objectives = set[str]()  # includes custom quantities, which the schema does not name
     listed = error.errors(include_url=False)[:LONGEST]
     parents = {details["loc"][:steps] for details in listed for steps in range(len(details["loc"]))}
     for details in listed:
         if details["type"] == "too_short" and details["loc"] in parents:
-            continue  # a list that is too short for want of the entries that were refused
+            continue  # a list that is too short only because entries were rejected
         path = keys_of(details["loc"])
         if details["type"] == "extra_forbidden":
             unknown[details["loc"]], near = _unknown_key_message(details["loc"], details["input"], schema)
@@ -106,17 +110,17 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
 
 
 def _is_tag(part: object) -> bool:
-    """Whether a step of a location is the form that a value takes, "(by mass)", rather than a key."""
+    """Whether a step of a location is the form of a value, "(by mass)", rather than a key."""
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
 
 
 def keys_of(loc: Sequence[Any]) -> list[Any]:
-    """Return a location in the tables of a job, without the tags of a validator's location."""
+    """Return a location in the tables of a job, without the validator's tags."""
     return [part for part in loc if not _is_tag(part)]
 
 
 def key_of(path: Sequence[object]) -> str:
-    """Return a location as a job file has it: mechanism.slider.mass, load #2.force."""
+    """Return a location as a job file writes it: mechanism.slider.mass, load #2.force."""
     text = ""
     for part in path:
         if isinstance(part, int):
@@ -129,13 +133,13 @@ def key_of(path: Sequence[object]) -> str:
 
 
 def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> tuple[str, str]:
-    """Return the message on an unknown key, and the key that was probably meant; "" if none is near.
+    """Return the message on an unknown key, and the key that was probably meant; "" if none is similar.
 
-    Of a table that comes in kinds, such as a load, only the keys of its own kind are possible.
+    In a table with several kinds, such as a load, only the keys of its own kind are possible.
     """
     table, key = loc[:-1], loc[-1]
     path = keys_of(table)
-    allowed = sorted(_possible_keys(schema, table), key=FACTS.__contains__)  # a job's own quantities first
+    allowed = sorted(_possible_keys(schema, table), key=FACTS.__contains__)  # custom quantities first
     left_over = (
         f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
     )
@@ -159,7 +163,7 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
 
 
 def place_of(key: str, schema: Schema) -> str:
-    """Return in words where a key that its table does not have belongs; "" if no table has it either."""
+    """Say where a key belongs that its table lacks; "" if no table has it either."""
     if key in schema["properties"] and not headings([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
     owners = _tables_with_keys([key], schema)
@@ -167,7 +171,7 @@ def place_of(key: str, schema: Schema) -> str:
 
 
 def _tables_with_keys(keys: Sequence[str], schema: Schema) -> list[str]:
-    """Return the headings of the tables that have all of some keys."""
+    """Return the headings of the tables that have all of the given keys."""
     names = schema["properties"]
     return [
         heading
@@ -178,7 +182,7 @@ def _tables_with_keys(keys: Sequence[str], schema: Schema) -> list[str]:
 
 
 def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
-    """Return the heading of a table, none if it is another entry, with the keys that may stand below it."""
+    """Return a table's heading, none if it is another entry, with the keys allowed below it."""
     (first, *rest), name = words, ".".join(words)
     tops: list[list[Any]] = [[first], [first, 0]] if rest else [[first]]
     places = [place for top in tops for place in ((f"[{name}]", [*top, *rest]), (f"[[{name}]]", [*top, *rest, 0]))]
@@ -186,14 +190,14 @@ def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
 
 
 def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
-    """Return the keys that tell those kinds of a table that have a key."""
+    """Return the keys that identify those kinds of a table that have a key."""
     having = [node for node in nodes_at(schema, path) if key in node.get("properties", {})]
     keys = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
     return list(dict.fromkeys(filter(None, keys)))
 
 
 def sentence_of(details: ErrorDetails, schema: Schema) -> str:
-    """Return rule, value and remedy of one problem."""
+    """Return rule, value and remedy for one mistake."""
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = example_of(schema, path)
     write = f"; write for example {example}" if example else ""
@@ -208,7 +212,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
     if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
         return f"{SINGLE.format(table)}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
-        # Of loads, tables of several kinds have keys of one name: the words of this one are the validator's.
+        # Tables for different kinds of load share key names, so this description comes from the validator.
         expected = re.findall(r"'([^']*)'", str(context.get("expected", "")))
         words = expected or list(dict.fromkeys(_allowed_words(nodes_at(schema, path))))
         near = closest(value, words) if isinstance(value, str) else None
@@ -232,7 +236,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
 
 
 def rule_of(details: Mapping[str, Any]) -> str:
-    """Return the rule that a value breaks, from a validator's finding but without words of Python."""
+    """Return the rule that a value breaks, from the validator's finding but without Python terms."""
     kind, context = details["type"], details.get("ctx", {})
     if kind in _LIMITS:
         words, name = _LIMITS[kind]
@@ -246,7 +250,7 @@ def _any_of(words: Sequence[str]) -> str:
 
 
 def example_of(schema: Schema, path: Sequence[Any]) -> str:
-    """Return an example of the key, written as in a job file; "" if the schema has none."""
+    """Return an example of the key, as in a job file; "" if the schema has none."""
     for node in nodes_at(schema, path):
         if node.get("examples"):
             key = next((str(part) for part in reversed(keys_of(path)) if isinstance(part, str)), "")
@@ -255,7 +259,7 @@ def example_of(schema: Schema, path: Sequence[Any]) -> str:
 
 
 def toml(value: object) -> str:
-    """Return a value in the notation of TOML, on one line."""
+    """Return a value in TOML notation, on one line."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{key_of([key])} = {toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
@@ -279,7 +283,7 @@ def _allowed_words(nodes: Sequence[Schema]) -> Iterator[str]:
 
 
 def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
-    """Return every alternative of the schema at a location; after a tag, those with its key."""
+    """Return every alternative of the schema at a location; after a tag, only those with its key."""
     nodes = _schema_alternatives(schema, schema)
     for part in path:
         if _is_tag(part):
@@ -298,13 +302,13 @@ def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
 
 
 def _by_pattern(node: Schema, part: object) -> Schema | None:
-    """Return the schema of keys of a pattern, such as formulas."""
+    """Return the schema of keys that match a pattern, such as formulas."""
     patterns = node.get("patternProperties", {}).items() if isinstance(part, str) else ()
     return next((inner for pattern, inner in patterns if re.search(pattern, str(part))), None)
 
 
 def _schema_alternatives(schema: Schema, node: Schema) -> list[Schema]:
-    """Return a node, and what it refers to or offers a choice of."""
+    """Return a node, and the nodes that it refers to or offers as alternatives."""
     nodes = [node]
     if "$ref" in node:
         nodes += _schema_alternatives(schema, schema["$defs"][node["$ref"].rsplit("/", 1)[1]])

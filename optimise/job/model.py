@@ -1,4 +1,4 @@
-"""The job: the content of a job file, key by key. Also the JSON body of a request. Once read, every value is in SI."""
+"""The job: content of a job file, key by key. Also the JSON body of a request. After reading, every value is in SI."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ EXAMPLE = {
     "constraints": {"transmission_angle": {"min": "40 deg"}},
     "objectives": {"time_ratio": "maximise", "peak_torque": "minimise"},
 }
-"""Of the tables that name quantities."""
+"""Maximum length of the tables that name quantities."""
 
 LARGEST_SEED = 2**53 - 1
-"""So that no reader of JSON changes it: a browser keeps whole numbers as floats."""
+"""JSON readers must not change it, and a browser stores whole numbers as floats."""
 
 
 class _MethodName:
-    """The name of a method, as an enumeration of all methods there are."""
+    """The name of a method; the schema lists all methods."""
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
         return core_schema.literal_schema(list(methods()))
@@ -91,7 +91,7 @@ def _require_objective(objectives: ObjectivesPart) -> ObjectivesPart:
 
 
 class Job(Part):
-    """A slider-crank to be sized: what is given, what may vary, what must hold and what is wanted."""
+    """A slider-crank to be sized: what is fixed, what may vary, what must hold, and the objectives."""
 
     name: Annotated[str, Field(max_length=80), AfterValidator(require_one_line)] = required(
         "name of the job and of its run", "Vibrating sieve"
@@ -197,13 +197,14 @@ class Job(Part):
 
 
 def job_with(declared: Declared) -> type[Job]:
-    """Return the job whose [objectives] and [constraints], of options too, may name quantities of its own."""
+    """Return the job type whose [objectives] and [constraints], also those of options, may name custom quantities."""
     if not declared.tables and not declared.formulas:
         return Job
     return _job_with(tuple(declared.tables.items()), declared.formulas)
 
 
-@lru_cache(maxsize=16)  # a form asks for the same job again and again, and each takes as long as reading ten others
+# A form requests the same job type repeatedly, and building one takes as long as reading ten jobs.
+@lru_cache(maxsize=16)
 def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
     constraints, objectives = tables(dict(custom_facts), formulas)
     choice: Any = choice_with(constraints)

@@ -79,7 +79,7 @@ def _swing_of_table(
 
 
 def _law_points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -> tuple[tuple[float, float], ...]:
-    """Return the points of a law that is a table. Raises `InputError` for lists of different lengths."""
+    """Return the points of a law that is stated as a table. Raises `InputError` for lists of different lengths."""
     if law == "table" and not times:
         raise InputError(
             "a motion law by a table needs fractions of the time and of the travel; got no law_times; add for example "
@@ -99,7 +99,10 @@ _SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
 
 
 def _stated_ends(keys: set[str]) -> Stated:
-    """Return the kind of the ends of a swing. Raises `InputError` unless there is a start, and an end or a span."""
+    """Return the kind of a swing's ends.
+
+    Raises `InputError` unless there are a start and an end, or a start and a span.
+    """
     stated_kinds = [end_kind for end_kind in _STARTS if keys & {_STARTS[end_kind], _ENDS[end_kind], _SPANS[end_kind]}]
     if len(stated_kinds) > 1:
         raise InputError(
@@ -130,19 +133,19 @@ _EXAMPLES: dict[Stated, str] = {
 
 
 class _Motion(Checked[Swing | None]):
-    """How the crank moves: it rotates fully, or it swings back and forth between two angles."""
+    """Motion of the crank: it rotates fully, or it swings back and forth between two angles."""
 
     makes: ClassVar = _swing_of_table
 
     @property
     def start(self) -> Start:
-        """Where the swing starts, for a start that designs choose."""
+        """Ranges of the swing's start, if designs choose it."""
         keys = _STARTS["crank"], _STARTS["slider"]
         return Start(angle=getattr(self, keys[0]), place=getattr(self, keys[1]))
 
     @property
     def requested_margin(self) -> float | None:
-        """Least transmission angle of the swing that the table asks for, rad."""
+        """Minimum transmission angle of the swing that the table requires, rad."""
         return cast("float | None", getattr(self, "margin"))  # noqa: B009
 
 
@@ -200,12 +203,12 @@ _ENTRIES: dict[str, Any] = {
 }
 if TYPE_CHECKING:
     MotionPart: TypeAlias = _Motion
-else:  # "from" is no name of a field in a class
+else:  # a class cannot have a field named "from"
     MotionPart = create_model("MotionPart", __base__=_Motion, __doc__=_Motion.__doc__, **_ENTRIES)
 
 
 def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Part) -> None:
-    """Raise JobError if a job asks for a quantity of a swing that its motion does not have."""
+    """Raise JobError if a job requires a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
         for quantity in swing_facts():
             if getattr(part, quantity.name) is None:
@@ -221,7 +224,7 @@ def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Par
 
 
 def require_no_speed(varying: Iterable[str]) -> None:
-    """Raise JobError for a swing with a varying crank speed. varying: paths that variables and options set."""
+    """Raise JobError for a swing with a varying crank speed. varying: paths set by variables and options."""
     for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
             raise JobError(
@@ -232,9 +235,9 @@ def require_no_speed(varying: Iterable[str]) -> None:
 def require_speed(
     mechanism: CrankSpeedPart, machine: Mechanism, quantities: Iterable[Quantity], slow_stroke: bool
 ) -> None:
-    """Raise JobError for a fully rotating crank without a speed on which a requirement or objective depends.
+    """Raise JobError if a fully rotating crank has no speed but a requirement or objective depends on it.
 
-    quantities: of objectives and constraints. slow_stroke: whether the job states the slow stroke.
+    quantities: those in objectives and constraints. slow_stroke: whether the job states the slow stroke.
     """
     if mechanism.speed_keys:
         return
@@ -253,7 +256,10 @@ def require_speed(
 
 
 def require_start(varying: Mapping[str, bool]) -> None:
-    """Raise JobError where another number of [motion] than the start is to vary. varying: paths, and whether chosen."""
+    """Raise JobError if a number of [motion] other than the start varies.
+
+    varying: paths, and whether they are chosen.
+    """
     free = {f"motion.{name}" for name in _STARTS.values()}
     for path, chosen in varying.items():
         if path.startswith("motion.") and path not in free:
@@ -270,7 +276,7 @@ def require_start(varying: Mapping[str, bool]) -> None:
 
 
 def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
-    """Raise JobError if starts may lie on both sides of a fixed end: the best swing would vanish."""
+    """Raise JobError if starts may lie on both sides of a fixed end, because the best swing would vanish."""
     if motion is None or motion.follows:
         return
     name = _STARTS[motion.stated_for]
@@ -286,7 +292,7 @@ def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...])
 
 
 def with_margin(constraints: tuple[Constraint, ...], margin: float | None) -> tuple[Constraint, ...]:
-    """Return constraints with the margin of a swing. Raises JobError where both tables ask for one."""
+    """Return constraints with a swing's margin. Raises JobError if both tables require one."""
     if margin is None:
         return constraints
     name = SWING_TRANSMISSION_ANGLE.name

@@ -11,13 +11,13 @@ from ...objectives.units import quote
 from .table_file import TableFile, bytes_of, read_table, text_of
 
 Files = Path | Mapping[str, str | bytes]
-"""The folder in which the files lie, or their contents by name."""
+"""The folder that contains the files, or their contents by name."""
 MOST_POINTS = 10_000
-"""Maximum number of points of a curve in a job; a curve from a file is thinned to that."""
+"""Maximum number of points on a curve in a job; a curve from a file is thinned to this number."""
 LARGEST = 10_000_000
 """Maximum size of a file, bytes."""
 SOURCE = "source"
-"""Key of a table filled from a file, with a summary of the file in words; not part of the problem."""
+"""Key that summarises the file that filled a table, in words; not part of the problem."""
 
 
 def read_named_table(files: Files, key: str, file: str) -> TableFile:
@@ -40,7 +40,7 @@ def read_named_text(files: Files, key: str, file: str) -> str:
 
 
 def unread_file_error(file: str, instead: str) -> InputError:
-    """Return the error for a file that was not read. instead: keys that may replace it."""
+    """Return the error for an unread file. instead: keys that may replace it."""
     return InputError(
         f"a file must lie beside the job file, or be sent with the job (API: files), and replaces {instead}; got file "
         f"{quote(file)}; send it, or give only the {instead}"
@@ -48,7 +48,7 @@ def unread_file_error(file: str, instead: str) -> InputError:
 
 
 def require_point_count(count: int, name: str, least: int) -> None:
-    """Raise `InputError` for more points than a job takes, or fewer than `least`. name: of the file, for messages."""
+    """Raise `InputError` for more points than a job may have, or fewer than `least`. name: file name for messages."""
     if count < least:
         raise InputError(f"{name} must have at least {least} different points; got {count}; add rows")
     if count > MOST_POINTS:

@@ -1,4 +1,4 @@
-"""Options of choices that no design can have, as far as ranges and requirements tell before a search."""
+"""Options of choices that no design can have, as far as ranges and requirements show before a search."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ...model.errors import InfeasibleError, InputError
 from ..problem.problem import Problem
 from .possible_values import SLACK, Box
 
-_MOST = 5  # told one by one
+_MOST = 5  # combinations to report one by one
 
 
 def require_options(problem: Problem) -> None:
@@ -23,7 +23,7 @@ def require_options(problem: Problem) -> None:
 
 
 def idle_options(problem: Problem) -> list[str]:
-    """Return in words which combinations of options no design can have, and why."""
+    """Describe which combinations of options no design can have, and why."""
     impossible = [*problem.left_out, *impossible_options(problem)]
     left_over = f", and {len(impossible) - _MOST} more" if len(impossible) > _MOST else ""
     reasons = "; ".join(f"{label}: {why}" for label, why in impossible[:_MOST])
@@ -42,7 +42,7 @@ def impossible_options(problem: Problem) -> list[tuple[str, str]]:
 def _reasons_against(problem: Problem, variant: int) -> Iterator[str]:
     try:
         part = problem.part(variant)
-    except InputError as error:  # of requirements that leave nothing together
+    except InputError as error:  # requirements exclude each other
         yield str(error)
         return
     if part.motion is not None:

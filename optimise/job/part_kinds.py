@@ -1,4 +1,4 @@
-"""Parts of a job of several kinds, such as loads and motors. A key that no other kind has identifies each."""
+"""Parts of a job with several kinds, such as loads and motors. A key that no other kind has identifies each."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from .values import Part
 
 @dataclass(frozen=True)
 class Kinds:
-    """The kinds of a part, each by its key. choice: all of them, for messages. remedy: where a table is of several.
+    """The kinds of a part, each by its key.
 
-    synonyms: keys by other words that people try for them.
+    choice: all of them, for messages. remedy: advice if a table matches several.
+
+    synonyms: other words that people try for these keys.
     """
 
     parts: Mapping[str, type[Part]]
@@ -23,7 +25,7 @@ class Kinds:
     synonyms: Mapping[str, str] = field(default_factory=dict)
 
     def require_one(self, value: object) -> object:
-        """Return the value; refuse one that is not a table, or matches no kind or several kinds."""
+        """Return the value; reject one that is not a table, or matches no kind or several kinds."""
         if isinstance(value, Part):
             return value
         if not isinstance(value, Mapping):
@@ -39,7 +41,7 @@ class Kinds:
         return value
 
     def tag(self, value: object) -> str:
-        """Return the tag of a table's kind, its key in brackets; empty for a table of no kind."""
+        """Return the tag of a table's kind, its key in brackets; empty if the table matches no kind."""
         if isinstance(value, Part):
             return next(f"({key})" for key, kind in self.parts.items() if isinstance(value, kind))
         keys = value if isinstance(value, Mapping) else ()

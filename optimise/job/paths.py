@@ -14,9 +14,9 @@ from .values import Part
 
 
 def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[str, Any]:
-    """Return a job, or its tables, with a value put at a path; whatever the path passes stays as read.
+    """Return a job, or its tables, with a value set at a path; parts along the path stay as read.
 
-    Raises `LookupError` where the job gives no number or text.
+    Raises `LookupError` if the job states no number or text there.
     """
     root, *rest = path.split(".")
     if root not in ROOTS:
@@ -26,7 +26,7 @@ def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[st
 
 
 def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
-    """Return the message for a path without a number, or a crank speed under another key."""
+    """Return the message for a path without a number, or for a crank speed under another key."""
     table, _, key = path.partition(".")
     entries = tables.get(table)
     speed_keys = (
@@ -53,7 +53,7 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
 
 
 def _not_one_value_message(path: str, tables: Mapping[str, Any]) -> str:
-    """Return the message for a path to a table, a list or a value in one; else ""."""
+    """Return the message for a path to a table, a list or a value in one; otherwise ""."""
     part, is_complete = _innermost_part(path, tables)
     if isinstance(part, list | tuple) and part and not any(isinstance(item, Mapping) for item in part):
         return (
@@ -73,7 +73,7 @@ def stated(part: Any) -> dict[str, Any]:
 
 
 def _innermost_part(path: str, tables: Mapping[str, Any]) -> tuple[Any, bool]:
-    """Return the innermost part of a job that a path leads into, and whether the path ends there."""
+    """Return the innermost part of a job along a path, and whether the path ends there."""
     part: Any = tables
     steps = path.split(".")
     for step in steps if steps[0] in ROOTS else ():
@@ -117,7 +117,7 @@ def _is_number(value: object) -> bool:
 
 
 def _walk_values(data: Any, root: str) -> Iterator[tuple[str, Any]]:
-    """Yield path and value of everything in a job that is no table; places in lists count from 1."""
+    """Yield path and value of everything in a job that is not a table; list positions count from 1."""
     if isinstance(data, Mapping):
         for name, item in data.items():
             if root or name in ROOTS:

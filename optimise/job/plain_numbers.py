@@ -1,4 +1,4 @@
-"""Numbers of a job without a unit, read in SI: their keys, and which ones probably mean another unit."""
+"""Numbers without a unit in a job, read in SI: their keys, and which of them probably mean another unit."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from .paths import with_number
 from .values import PLAIN, Part, Table, plain_in, values_in
 from .variables import leaves_of, varying_in
 
-_LONGEST = 60  # of a value that a warning repeats
+_LONGEST = 60  # maximum length of a value that a warning repeats
 
 
 @dataclass(frozen=True)
 class PlainNumbers:
-    """A value of a job with numbers without a unit. key: where it stands. kind: of the numbers."""
+    """A value of a job with numbers without a unit. key: its location. kind: kind of the numbers."""
 
     key: str
     value: Any
@@ -34,13 +34,13 @@ class PlainNumbers:
 
     @property
     def note(self) -> str:
-        """The first of the numbers as it is read."""
+        """The first of the numbers with its interpretation."""
         number = plain_in(self.value)[0]
         return f"{self.key} = {number:g} is {number:g} {self.kind.unit}{self._usual(number, ' = {}')}"
 
     @property
     def warning(self) -> str | None:
-        """Warning for numbers of a size that is not believed, or beside others with a unit; None for others."""
+        """Warning for numbers of implausible size, or beside others with a unit; None for others."""
         numbers = plain_in(self.value)
         doubtful = [number for number in numbers if not self.kind.is_plausible(number)]
         mixed = any(isinstance(value, str) for value in values_in(self.value))
@@ -67,7 +67,7 @@ class PlainNumbers:
         return Remark(sentence, self._writing(number, usual))
 
     def _writing(self, number: float, text: str) -> Change | None:
-        """Return the change that writes the number as a text, if it is the value or an entry of it."""
+        """Return the change that writes the number as text, if it is the value or one of its entries."""
         if self.value == number:
             return Change(self.key, text, f"Write {text}")
         if isinstance(self.value, list | tuple) and number in self.value:
@@ -75,18 +75,21 @@ class PlainNumbers:
         return None
 
     def _list_in(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
-        """Return a list with a unit after each number but zero; None for others, or if some are credible."""
+        """Return a list with a unit after each number except zero.
+
+        None for other values, or if some numbers are plausible.
+        """
         numbers = self.value if isinstance(self.value, list | tuple) else ()
         if len(numbers) < 2 or len(doubtful) + sum(number == 0 for number in numbers) < len(numbers):
             return None
         return [f"{number:g} {unit}" if number else number for number in numbers]
 
     def concerns(self, key: str) -> bool:
-        """Return whether the value stands at a key of the job, in it, or in the table of it."""
+        """Return whether the value is at a key of the job, within it, or in a table that contains it."""
         return any(f"{inner}.".startswith(f"{outer}.") for inner, outer in ((self.key, key), (key, self.key)))
 
     def _usual(self, number: float, form: str) -> str:
-        """Return the number in the usual unit in a form of words; "" if that is the SI unit."""
+        """Return the number in the usual unit, in the given phrase; "" if that is the SI unit."""
         usual = self.kind.metric
         return form.format(f"{usual.factor * number:.6g} {usual.symbol}") if usual.symbol != self.kind.unit else ""
 
@@ -94,9 +97,9 @@ class PlainNumbers:
 def read_noting(
     job: type[Table], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
 ) -> tuple[Table, list[PlainNumbers]]:
-    """Return the tables of a job as read, and their numbers without a unit except ratios and counts.
+    """Return the tables of a job as read, and its numbers without a unit except ratios and counts.
 
-    values: put in place of numbers of the job, by their paths, in what is noted. Raises `ValidationError`.
+    values: replacements for numbers of the job, by path, in the report. Raises `ValidationError`.
     """
     read, placed_numbers = _tables_as_read(job, data)
     read = job.model_validate(data) if read is None else read
@@ -111,7 +114,7 @@ def read_noting(
     for _, path, value in varying:
         try:
             tried = _with_number_at(tried, path, plain_in(value)[0])
-        except LookupError:  # a word of the table, such as the name of a series
+        except LookupError:  # a word in the table, such as the name of a series
             continue
     kinds = {path: kind for path, _, _, kind in _tables_as_read(job, tried)[1]}
     further = [PlainNumbers(key, value, kinds[path]) for key, path, value in varying if path in kinds]
@@ -124,7 +127,7 @@ def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]
 
 
 def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
-    """Yield the bounds and targets without a unit of formulas, whose kinds the problem of a job knows."""
+    """Yield formulas' bounds and targets without a unit; their kinds come from the job's problem."""
     for table in ("constraints", "objectives"):
         for name, bounds in data.get(table, {}).items():
             if name not in FACTS and isinstance(bounds, Mapping):
@@ -135,9 +138,9 @@ def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNum
 
 
 def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
-    """Return the tables of a valid job without such numbers as read, else None, and the numbers without a unit.
+    """Return the tables as read if none of a valid job's numbers lacks a unit, otherwise None; and those numbers.
 
-    Of each that has a place of its own dotted path, key, value and kind.
+    For each number with its own entry: dotted path, key, value and kind.
     """
     placed = []
     try:
@@ -146,7 +149,7 @@ def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | 
         for details in error.errors(include_url=False):
             if details["type"] == PLAIN:
                 keys = keys_of(details["loc"])
-                keys = keys[:-1] if isinstance(keys[-1], int) else keys  # of a list, as a whole
+                keys = keys[:-1] if isinstance(keys[-1], int) else keys  # report a list as a whole
                 value = reduce(getitem, keys, data)
                 path = ".".join(str(key + 1) if isinstance(key, int) else key for key in keys)
                 placed.append((path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]))
@@ -154,7 +157,7 @@ def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | 
 
 
 def _varying_values(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
-    """Yield key, path and value of what variables and options say of numbers that have their places elsewhere."""
+    """Yield key, path and value for numbers that variables and options set elsewhere in the job."""
     for path, value in varying_in(data).items():
         yield f"variables.{path}", path, value
     for part in data.get("choice", ()):

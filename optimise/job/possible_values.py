@@ -1,4 +1,4 @@
-"""Possible values within the ranges of crank, rod and offset, by the `Reach` of quantities."""
+"""Possible values within the ranges of crank, rod and offset, from the `Reach` of quantities."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
 
 SLACK = 1e-9
-"""Requirements at the very edge are left to the optimiser: rounding must not make them contradictions."""
+"""Requirements at the very edge are left to the optimiser, so that rounding does not make them contradictions."""
 STROKE_RATIOS = (TIME_RATIO, CRANK_ANGLE_RATIO)
-"""Ratios of the strokes that conflict with the transmission angle."""
+"""Stroke ratios that conflict with the transmission angle."""
 _CELLS = 10_000
 _OTHERS = "the other requirements on the dimensions"
 _ACTIVE = 1e-6
-"""Relative distance from a bound within which a rule is active at a design that was searched for."""
+"""Relative distance from a bound within which a rule counts as active at the best design."""
 _ANY = Range(lower=0.0, upper=1.0)
 
 
@@ -45,18 +45,18 @@ class Box:
 
     @classmethod
     def from_problem(cls, problem: Problem) -> Box:
-        """Return the ranges of a problem, narrowed by nothing yet."""
+        """Return the ranges of a problem, not yet narrowed."""
         return cls(crank=problem.crank, rod=problem.rod, offset=_offset_sizes(problem.offset))
 
     def possible(self, quantity: Quantity) -> tuple[float, float]:
-        """Return bounds of a quantity that has a reach, SI; needs `turns`."""
+        """Return bounds on a quantity that has a reach, SI; needs `turns`."""
         assert quantity.bounds is not None
         ends = ((ends.lower, ends.upper) for ends in (self.crank, self.rod, self.offset))
         return quantity.bounds.compute(LengthRanges(*(end for pair in ends for end in pair)))
 
     @property
     def turns(self) -> bool:
-        """Whether a linkage within the ranges may turn fully."""
+        """Whether some linkage within the ranges may rotate fully."""
         clear = self.rod.upper > (self.crank.lower + self.offset.lower) * CLEAR
         return clear and self.rod.upper * (1.0 - self.share.lower) > self.crank.lower
 
@@ -83,7 +83,7 @@ def require_reachable(problem: Problem) -> None:
 
 
 def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
-    """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise InfeasibleError if nothing is left."""
+    """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise InfeasibleError if nothing remains."""
     if box.offset.upper == 0.0:
         raise InfeasibleError(
             f"constraints.{ROD_TO_OFFSET.name}: needs an offset; the offset is fixed at 0; give variables.offset a "
@@ -131,9 +131,9 @@ def _require_within(quantity: Quantity, constraint: Constraint, box: Box, proble
 
 
 def _possible_values_text(problem: Problem, constraint: Constraint) -> tuple[str, list[str]]:
-    """Return the possible values of a quantity that cannot meet its constraint, in words, and active rules.
+    """Describe the possible values of a quantity that cannot meet its constraint, and return the active rules.
 
-    With rod / offset, which narrows the ranges, and with all other rules on the dimensions if these allow anything.
+    Considers rod / offset, which narrows the ranges, and all other rules on the dimensions if these allow any design.
     """
     ranges = "within the ranges of crank, rod and offset"
     if not problem.variants and all(ends.fixed for ends in (problem.crank, problem.rod, problem.offset)):
@@ -144,7 +144,7 @@ def _possible_values_text(problem: Problem, constraint: Constraint) -> tuple[str
     narrowing = tuple(c for c in problem.constraints if c.quantity == ROD_TO_OFFSET.name and c is not constraint)
     requirements = _rules_on_dimensions(problem)
     nearest, active = _nearest_relaxation(problem, constraint, requirements)
-    if nearest is None:  # the other rules contradict one another
+    if nearest is None:  # the other rules contradict each other
         requirements = (constraint, *narrowing)
         (nearest, _), active = _nearest_relaxation(problem, constraint, requirements), [*narrowing]
     if nearest is None:
@@ -171,9 +171,10 @@ def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
 def _nearest_relaxation(
     problem: Problem, constraint: Constraint, requirements: tuple[Constraint, ...]
 ) -> tuple[Relaxation | None, list[Constraint]]:
-    """Return the reachable value for one of the constraints that are kept, and which of the others are active there.
+    """Return the reachable value for one of the constraints, and which of the others are active there.
 
-    None where even then nothing is reachable. Active are single bounds; none are reported where there are choices.
+    None if nothing is reachable even then. Each active constraint is a single bound; none are reported if there are
+    choices.
     """
     from ..feasibility.best import Best, best_on_dimensions
     from ..feasibility.relaxation import Relaxation, relaxations
@@ -194,7 +195,7 @@ def _nearest_relaxation(
 
 
 def _active_bounds(problem: Problem, rule: Constraint, design: Array) -> list[Constraint]:
-    """Return the active bounds of a rule at the best design of a search, each as a separate rule."""
+    """Return a rule's active bounds at the best design of a search, each as a separate rule."""
     value = float(problem.quantity(rule.quantity).evaluate(problem.mechanism, design[None]).values[0])
     if rule.equality:
         return [rule]
@@ -204,9 +205,9 @@ def _active_bounds(problem: Problem, rule: Constraint, design: Array) -> list[Co
 
 
 def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY) -> str | None:
-    """Return why no linkage can meet a ratio of `STROKE_RATIOS` and the transmission angle; None if one may.
+    """Return why no linkage can meet both a ratio of `STROKE_RATIOS` and the transmission angle; None if one may.
 
-    share: where offset / rod may lie.
+    share: range of offset / rod.
     """
     constraints = {
         constraint.quantity: constraint
@@ -234,11 +235,11 @@ def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY)
 
 
 def greatest_time_ratio(cosine: float, share: Range) -> float:
-    """Return an upper bound on the time ratio while (r+a)/l <= cosine and a/l lies in `share`.
+    """Return an upper bound on the time ratio for (r+a)/l <= cosine and a/l within `share`.
 
-    With p = r / l and q = a / l the excess angle rises with both, so that the greatest lies on p + q = cosine. It is
-    cut into cells of p, each bounded by its greatest p and its greatest q: never below the true maximum, and above it
-    by about 1 / cells.
+    With p = r / l and q = a / l, the excess angle increases with both, so its greatest value lies on p + q = cosine.
+    That line is divided into cells of p, each bounded by its greatest p and its greatest q: the bound is never below
+    the true maximum, and above it by about 1 / cells.
     """
     best = 0.0
     top = max(cosine - share.lower, 0.0)

@@ -45,8 +45,9 @@ def problem_of(
 ) -> Problem:
     """Return the problem that a job states. Raises JobError.
 
-    folder: where the modules of its functions lie. installed: quantities of packages that it names. require_feasible:
-    whether `InfeasibleError` is raised if no design can meet the job; a search needs that, a given design does not.
+    folder: folder with the modules of its functions. installed: quantities from packages that it names.
+    require_feasible: whether to raise `InfeasibleError` if no design can meet the job; a search needs that, a given
+    design does not.
     """
     variables, motion = job.variables, job.motion.build()
     machine = _machine_of(job, motion)
@@ -72,7 +73,7 @@ def problem_of(
     if choices and not variants:
         if require_feasible:
             raise no_option(left_out)
-        choices, catalogue = (), ()  # what a design is judged by does not depend on them
+        choices, catalogue = (), ()  # the quantities that judge a design do not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     named = {*named_quantities, *(item.quantity for item in limits)}
     if motion is None:
@@ -133,7 +134,7 @@ def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
 
 
 def _require_shorter(problem: Problem) -> None:
-    """Refuse a tolerance that is as long as its link may be: a unit is wrong."""
+    """Reject a tolerance that may be as long as its link, because its unit must be wrong."""
     for part in problem.variants or (problem,):
         for name, ends in (("crank", part.crank), ("rod", part.rod)):
             limit = getattr(part.mechanism.fullest.tolerances, name).limit(ends.lower)
@@ -145,9 +146,9 @@ def _require_shorter(problem: Problem) -> None:
 
 
 def _join_by_formula(constraints: Iterable[Constraint], formulas: Formulas) -> tuple[Constraint, ...]:
-    """Return constraints, those on one formula as one: a formula may be written in several ways.
+    """Return constraints, with those on the same formula merged, because a formula may be written in several ways.
 
-    Raises `InfeasibleError` if they leave nothing.
+    Raises `InfeasibleError` if they exclude every value.
     """
     joined: dict[str, Constraint] = {}
     for constraint in constraints:
@@ -169,7 +170,7 @@ def _possible_variants(
     quantities: Mapping[str, Quantity],
     required: Iterable[Quantity],
 ) -> tuple[tuple[Variant, ...], tuple[tuple[str, str], ...]]:
-    """Return the variants whose limits leave something of the job's constraints; labels of the others, and why not.
+    """Return the variants whose limits are compatible with the job's constraints; labels of the others, with reasons.
 
     quantities: quantities by name. required: amounts that a variant must have.
     """
@@ -184,7 +185,7 @@ def _possible_variants(
 
 
 def _missing_amount(variant: Variant, required: Iterable[Quantity]) -> str | None:
-    """Return in words which required amount a variant lacks; None if it lacks none."""
+    """Say which required amount a variant lacks; None if it lacks none."""
     amounts = dict(variant.amounts)
     return next(
         (f"no {quantity.title}, which the job requires" for quantity in required if quantity.name not in amounts), None
@@ -194,7 +195,7 @@ def _missing_amount(variant: Variant, required: Iterable[Quantity]) -> str | Non
 def _contradiction_of(
     variant: Variant, constraints: Iterable[Constraint], quantities: Mapping[str, Quantity]
 ) -> str | None:
-    """Return in words which limit of a variant leaves nothing of a constraint; None if there is no such."""
+    """Say which limit of a variant excludes every value that a constraint allows; None if none does."""
     constraint_by_name = {item.quantity: item for item in constraints}
     for name, value in variant.amounts:
         constraint = constraint_by_name.get(name)
@@ -218,7 +219,7 @@ def _contradiction_of(
 
 
 def _bounds_text(constraints: Iterable[Constraint], quantity: Quantity) -> str:
-    """Return in words the bounds that constraints set on a quantity."""
+    """Describe the bounds that constraints set on a quantity."""
     sides = (side for item in constraints for side in item.sides)
     return " and ".join(
         f"{word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip() for word, bound in sides

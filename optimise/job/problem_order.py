@@ -1,4 +1,4 @@
-"""Order of the problems of a job: that of its keys in the file."""
+"""Order of the mistakes in a job, which follows its keys in the file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .messages import MOST, key_of
 
 
 def first_problems(sentences: list[str], tables: Mapping[str, Any]) -> list[str]:
-    """Return at most `MOST` sentences: of more, the first in the order of the keys that they begin with."""
+    """Return at most `MOST` sentences: the first ones in the order of the keys that they begin with."""
     if len(sentences) <= MOST:
         return sentences
     order = {key: place for place, key in enumerate(_keys_in_order(tables, ()))}
@@ -26,7 +26,7 @@ def first_problems(sentences: list[str], tables: Mapping[str, Any]) -> list[str]
 
 
 def key_above(key: str) -> str:
-    """Return the key of the table or list that contains a key, "" at the top of the file."""
+    """Return the key of the table or list that contains a key, "" at the top level of the file."""
     return re.sub(r"(\.| #)?[^.#]*$", "", key)
 
 

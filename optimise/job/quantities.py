@@ -1,6 +1,7 @@
-"""Constraints and objectives in a job file: one optional key for each quantity, its values in the unit's dimension.
+"""Constraints and objectives in a job file: one optional key per quantity, with values in its dimension.
 
-Besides the quantities, [constraints] has `slow_stroke`, a word. Keys of both tables and bounds may also be formulas.
+Besides the quantities, [constraints] may have the key `slow_stroke`, whose value is a word. Keys of both tables and
+bounds may also be formulas.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from .values import Part, Physical, of_spread, optional, required
 
 
 class Bounds(Part):
-    """Bounds of a quantity: min, max or both, or equals alone. The fields follow from its unit."""
+    """Bounds of a quantity: min, max or both, or equals alone. The fields depend on its unit."""
 
     @model_validator(mode="wrap")
     @classmethod
@@ -64,7 +65,7 @@ class Bounds(Part):
             raise InputError(
                 f"equals cannot be combined with min or max; got {bounds_text}; leave out equals or the other"
             )
-        both_numbers = isinstance(lower, float) and isinstance(upper, float)  # a formula is a text still
+        both_numbers = isinstance(lower, float) and isinstance(upper, float)  # a formula is still text
         if both_numbers and lower > upper:
             raise InputError(_crossed_bounds_text(data if isinstance(data, Mapping) else {"min": lower, "max": upper}))
         return bounds
@@ -78,16 +79,16 @@ def _crossed_bounds_text(bounds: Mapping[Any, object]) -> str:
 
 
 class Target(Part):
-    """A value to come near to. The field follows from the unit of the quantity."""
+    """A value to approach as closely as possible. The field depends on the quantity's unit."""
 
 
 _NAMED = "[A-Za-z_]{3}"
-"""Pattern of bounds that are formulas: a name is in them."""
+"""Pattern of bounds that are formulas, which contain a name."""
 
 
 @dataclass(frozen=True)
 class _Bound(Physical):
-    """Marks a bound: a physical value, or a formula, which stays a text until its names are known."""
+    """Marks a bound: a physical value, or a formula, which stays text until its names are known."""
 
     names: frozenset[str] = frozenset()
 
@@ -106,7 +107,7 @@ class _Bound(Physical):
 
 
 class _Raw(Physical):
-    """Marks a bound of a formula, which is read once the kind of the formula is known."""
+    """Marks a bound on a formula, which is parsed once the formula's kind is known."""
 
     def read(self, value: object) -> Any:
         if isinstance(value, bool) or not isinstance(value, str | int | float):
@@ -121,7 +122,7 @@ _RAW = Annotated[Any, _Raw(RATIO)]
 
 
 class FormulaBounds(Bounds):
-    """Bounds of a formula, values of its kind or formulas."""
+    """Bounds on a formula: values of its kind, or formulas."""
 
     min: _RAW | None = optional("least", "1 mm")
     max: _RAW | None = optional("greatest", "400 mm")
@@ -129,19 +130,19 @@ class FormulaBounds(Bounds):
 
 
 class FormulaTarget(Target):
-    """A value of a formula to come near to."""
+    """Target value for a formula."""
 
     target: _RAW = required("to come near to", "2 mm")
 
 
 WORDS: tuple[Word, ...] = ("min", "max", "equals")
 SLOW_STROKE = "slow_stroke"
-"""The requirement that is a word."""
+"""The requirement that is a single word."""
 _SENSES = '"minimise", "maximise" or { target = value }'
 
 
 def _check_sense(value: object) -> object:
-    """Refuse a value that is neither a known word nor a table."""
+    """Reject a value that is neither a known word nor a table."""
     if isinstance(value, str):
         if value in SENSES and value != "target":
             return SENSES[value]
@@ -154,19 +155,19 @@ def _check_sense(value: object) -> object:
 
 
 _KEY = "(formulas)"
-"""Key of formulas within a table, in brackets, so that messages leave it out."""
+"""Key of formulas within a table, in brackets, so that messages omit it."""
 _PATTERN = rf"[^A-Za-z0-9_]|^({'|'.join(DIMENSIONS)})$"
 _IS_FORMULA = re.compile(_PATTERN)
 
 
 def _pattern_of(schema: dict[str, Any]) -> None:
-    """Turn the formulas of a table into a pattern of keys of its JSON Schema."""
+    """Convert a table's formulas to a key pattern in its JSON Schema."""
     inner = schema["properties"].pop(_KEY)
     schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
 
 
 def _undotted_key(path: str, value: object) -> tuple[str, object]:
-    """Return the first path of a key that dots made tables of, and the value given for it."""
+    """Return the first path of a key that dots split into tables, and its value."""
     while isinstance(value, Mapping) and value and not {*WORDS, "target"} & set(value):
         key, value = next(iter(value.items()))
         path = f"{path}.{key}"
@@ -174,7 +175,7 @@ def _undotted_key(path: str, value: object) -> tuple[str, object]:
 
 
 class _Table(Part):
-    """A table whose keys are quantities or formulas. named: formulas that have a name in the job."""
+    """A table whose keys are quantities or formulas. named: formulas with a name in the job."""
 
     model_config = ConfigDict(json_schema_extra=_pattern_of)
     named: ClassVar[frozenset[str]] = frozenset()
@@ -182,7 +183,7 @@ class _Table(Part):
     @model_validator(mode="before")
     @classmethod
     def _split_formulas(cls, data: Any) -> Any:
-        """Put formulas into a table of their own."""
+        """Move formulas to a separate table."""
         if not isinstance(data, Mapping):
             return data
         for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
@@ -197,7 +198,7 @@ class _Table(Part):
 
     @model_serializer(mode="wrap")
     def _together(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Return the table as in a job file, with its formulas among the other keys."""
+        """Return the table as in a job file, with formulas among the other keys."""
         data: dict[str, Any] = handler(self)
         formulas: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
         return data | formulas
@@ -209,7 +210,7 @@ class _Table(Part):
 
 
 class Stated(NamedTuple):
-    """Facts of a quantity for the tables of a job: title, kind, usual value and usual bound."""
+    """Facts about a quantity for the tables of a job: title, kind, usual value and usual bound."""
 
     title: str
     kind: Kind
@@ -218,9 +219,9 @@ class Stated(NamedTuple):
 
 
 def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
-    """Return the tables [constraints] and [objectives]: one optional key for each quantity.
+    """Return the tables [constraints] and [objectives], with one optional key per quantity.
 
-    custom_facts: quantities that a job has besides those that every job has. named: its formulas that have a name.
+    custom_facts: a job's quantities besides those that every job has. named: its formulas with a name.
     """
     limits: dict[str, Any] = {}
     wishes: dict[str, Any] = {}
@@ -249,7 +250,10 @@ def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tup
 
 
 def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, Any]:
-    """Return the types of the bounds and of the objective of a quantity of one kind. names: of formulas in bounds."""
+    """Return the types of the bounds and of the objective for quantities of one kind.
+
+    names: names for formulas in bounds.
+    """
     value, bound = Annotated[float, Physical(kind)], Annotated[Any, _Bound(kind, names=names)]
     name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
@@ -262,7 +266,7 @@ def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, 
 
 
 def _target_type(target: type[Target]) -> Any:
-    """Return the type of an objective whose target is of a type."""
+    """Return the type of an objective whose target has a given type."""
     words = Literal["minimise", "maximise", "minimize", "maximize"]
     return Annotated[
         Annotated[words, Tag("(word)")] | Annotated[target, Tag("(target)")],
@@ -271,7 +275,7 @@ def _target_type(target: type[Target]) -> Any:
     ]
 
 
-if TYPE_CHECKING:  # a type checker cannot follow fields that are made from the list of quantities
+if TYPE_CHECKING:  # type checkers cannot follow fields that are created from the list of quantities
     ConstraintsPart: TypeAlias = Part
     ObjectivesPart: TypeAlias = Part
 else:
@@ -281,9 +285,9 @@ else:
 def constraints_of(
     part: ConstraintsPart, formulas: Formulas | None = None, key: str = "constraints."
 ) -> Iterator[Constraint]:
-    """Return the constraints of a job for the problem. formulas: of the job; None if its tables have none.
+    """Return a job's constraints for the problem. formulas: those of the job; None if its tables have none.
 
-    key: their key, for messages. Raises JobError for a wrong formula, and for bounds of one that exclude every value.
+    key: their key, for messages. Raises JobError for an invalid formula, and for bounds that exclude every value.
     """
     for name, bounds in _table_entries(part):
         if name == SLOW_STROKE:
@@ -296,7 +300,7 @@ def constraints_of(
 
 
 def _bounds_of_formula(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
-    """Yield the constraints of a formula, or of a quantity bounded by formulas: those on one quantity together."""
+    """Yield the constraints on a formula, or on a quantity bounded by formulas; those on one quantity are merged."""
     of = formulas.quantity(name, key)
     merged_bounds: dict[str, dict[Word, float]] = {}
     for word, value in bounds.items():
@@ -314,7 +318,7 @@ def _ends_of_bounds(bounds: Mapping[Word, Any]) -> dict[str, float | None]:
 
 
 def _table_entries(part: Part) -> Iterator[tuple[str, Any]]:
-    """Yield name and value of what a table has: quantities, then formulas."""
+    """Yield name and value of a table's entries: quantities, then formulas."""
     for name in type(part).model_fields:
         value = getattr(part, name)
         if name == "formulas":
@@ -324,12 +328,12 @@ def _table_entries(part: Part) -> Iterator[tuple[str, Any]]:
 
 
 def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
-    """Return which stroke a job wants to be the slow one."""
+    """Return which stroke the job requires to be the slow one."""
     return cast(SlowStroke | None, getattr(part, SLOW_STROKE))
 
 
 def objectives_of(part: ObjectivesPart, formulas: Formulas) -> Iterator[Objective]:
-    """Return the objectives of a job as the problem has them. Raises JobError for a wrong formula."""
+    """Return a job's objectives in the form that the problem uses. Raises JobError for an invalid formula."""
     for name, wish in _table_entries(part):
         key = f"objectives.{key_of([name])}"
         of = formulas.quantity(name, key)

@@ -1,4 +1,4 @@
-"""Tables of a job that is not validated yet: missing tables, and those of another type, count as empty."""
+"""Tables of a job before validation: missing tables, and values of another type, count as empty."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 
 def table_in(tables: Mapping[str, Any], name: str) -> Mapping[Any, Any]:
-    """Return the table under a key; keys of its own that are not text are refused later."""
+    """Return the table under a key; keys in it that are not text raise an error later."""
     table = tables.get(name)
     return table if isinstance(table, Mapping) else {}
 
@@ -19,5 +19,5 @@ def tables_in(tables: Mapping[str, Any], name: str) -> list[Mapping[str, Any]]:
 
 
 def options_in(tables: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Return the options of all choices of a job."""
+    """Return the options of all choices in a job."""
     return [option for choice in tables_in(tables, "choice") for option in tables_in(choice, "option")]

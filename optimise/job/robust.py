@@ -18,7 +18,7 @@ from .values import Checked, optional
 
 
 class RobustPart(Checked[Robust]):
-    """Tolerances within the optimisation; each quantity by itself. Equalities, targets, position errors stay as is."""
+    """Tolerances within the optimisation, per quantity; equalities, targets and position errors stay unchanged."""
 
     makes = Robust
     renamed: ClassVar = {"spread": "shape"}
@@ -49,7 +49,7 @@ class RobustPart(Checked[Robust]):
 
 
 def robustly(problem: Problem, part: RobustPart | None) -> Problem:
-    """Return the problem made robust if the job asks for it. Raises JobError if it cannot be."""
+    """Return the problem made robust if the job requests it. Raises JobError if that is impossible."""
     if part is None:
         return problem
     if problem.motion is not None:

@@ -10,13 +10,13 @@ from pydantic import BaseModel
 
 @lru_cache(maxsize=16)
 def schema_of(job: type[BaseModel]) -> dict[str, Any]:
-    """Return the JSON Schema of a job, without its nulls; not to be changed, as it is kept."""
+    """Return the JSON Schema of a job, without nulls; do not change it, because it is cached."""
     schema = job.model_json_schema(mode="validation")
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
 
 
 def _without_null(node: Any) -> Any:
-    """Return a schema without nulls: optional keys are left out instead."""
+    """Return a schema without nulls, because optional keys are omitted instead."""
     if isinstance(node, list):
         return [_without_null(item) for item in node]
     if not isinstance(node, dict):

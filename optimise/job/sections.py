@@ -1,4 +1,4 @@
-"""The table [sections] of a job file: material, pins and safety of crank and rod as bars."""
+"""The table [sections] of a job file: material, pins and safety factors of crank and rod as bars."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ EXAMPLE = {
     },
     "pins": dict.fromkeys(("crank_pivot", "crank_pin", "slider_pin"), "15 mm"),
 }
-"""The least that the table holds. Pins of half the width of their bars, which are 30 mm wide in the other examples."""
+"""Minimum content of the table. The pins are half as wide as their bars, which are 30 mm wide in the other examples."""
 
 
 _OF_STRENGTH = ("criterion", "eye_concentration", "wear_coefficient")
@@ -78,7 +78,7 @@ _Bearing = Annotated[
         greatest=5e9,
     ),
 ]
-"""Solid bars of any material, from soft plastics to fibres, lie far within: what does not has another unit."""
+"""Solid bars of any material, from soft plastics to fibres, lie well within; a value beyond has another unit."""
 
 
 class MaterialPart(Checked[Material]):
@@ -95,7 +95,7 @@ class MaterialPart(Checked[Material]):
 
 
 class PinsPart(Part):
-    """Diameters of the three pins. Half the width of the bar is a usual start."""
+    """Diameters of the three pins. Half the bar's width is a usual start."""
 
     crank_pivot: PositiveLength = required("between frame and crank", "15 mm")
     crank_pin: PositiveLength = required("between crank and connecting rod", "15 mm")
@@ -103,7 +103,7 @@ class PinsPart(Part):
 
 
 class SectionsPart(Checked[SectionLimits]):
-    """Material, pins, sizes that can be made and safety factors of crank and rod as rectangular bars."""
+    """Material, pins, available sizes and safety factors of crank and rod as rectangular bars."""
 
     material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
     pins: PinsPart = required("diameters, usually about half the width of the bar", EXAMPLE["pins"])
@@ -127,14 +127,14 @@ class SectionsPart(Checked[SectionLimits]):
     )
 
     def build(self) -> SectionLimits:
-        """Return the limits as the sizing has them."""
+        """Return the limits in the form that the sizing uses."""
         entries = dict(self)
         for name in ("material", "pins", "wear_coefficient"):
             entries.pop(name)
         return SectionLimits(**dict(self.pins), **entries)
 
     def strength(self) -> Strength:
-        """Return material and pins as quantities have them."""
+        """Return material and pins in the form that quantities use."""
         return Strength(
             material=self.material.build(), **dict(self.pins), **{name: getattr(self, name) for name in _OF_STRENGTH}
         )

@@ -18,7 +18,7 @@ from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_p
 from .raw_tables import table_in
 from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
 
-_TOLERANCE = 1e-3  # relative, for the mean of a table against the speed and the end of a turn against 360 deg
+_TOLERANCE = 1e-3  # relative tolerance for a table's mean against the speed, and for the end of a turn against 360 deg
 
 
 def _profile(**given: Any) -> Profile:
@@ -63,7 +63,7 @@ class SpeedProfilePart(Checked[Profile]):
     source: Source = source()
 
     def require_mean(self, speed: float) -> None:
-        """Raise `InputError` unless the mean of points is the given speed, rad/s."""
+        """Raise `InputError` unless the points' mean is the given speed, rad/s."""
         built = self.build()
         if isinstance(built, SpeedTable) and abs(built.mean - speed) > _TOLERANCE * abs(speed):
             mean = built.mean * 30.0 / math.pi
@@ -74,14 +74,14 @@ class SpeedProfilePart(Checked[Profile]):
 
 
 def speeds_file(data: Mapping[str, Any]) -> str | None:
-    """Return the file that a job's speed profile names alone; None if it names none."""
+    """Return the file that a job's speed profile consists of; None if it names none."""
     part = table_in(table_in(data, "mechanism"), "speed_profile")
     file = part.get("file") if len(part) == 1 else None
     return file if isinstance(file, str) else None
 
 
 def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
-    """Return a job with the points of its profile's file in place of the file. Raises `InputError`."""
+    """Return a job with its speed profile's file replaced by the points in it. Raises `InputError`."""
     file, job = speeds_file(data), dict(data)
     if file is None:
         return job
@@ -94,7 +94,7 @@ def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 
 
 def _over_turn(curve: Curve) -> Curve:
-    """Return a curve over time as one over the crank angle, deg: the first turn, from crank angle 0 on."""
+    """Return a curve over time as a curve over crank angle, deg: the first turn, from crank angle 0."""
     from scipy.interpolate import CubicSpline
 
     at, rpm = (
@@ -106,7 +106,7 @@ def _over_turn(curve: Curve) -> Curve:
             f"{curve.name}: times must increase and be at least four; got {len(at)}; sort them and remove repeated "
             "times"
         )
-    angles = 6.0 * CubicSpline(at, rpm).antiderivative()(at)  # deg, of rpm and s
+    angles = 6.0 * CubicSpline(at, rpm).antiderivative()(at)  # deg, from rpm and s
     way = 1.0 if angles[-1] >= 0.0 else -1.0
     turned = way * angles
     if np.any(np.diff(turned) <= 0.0):
@@ -115,14 +115,15 @@ def _over_turn(curve: Curve) -> Curve:
             "running"
         )
     last = max(1, int(np.argmin(abs(turned - 360.0))))
-    near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))  # so that no step is mistaken for rounding
+    # The limit of half a step ensures that a step is not mistaken for rounding.
+    near = min(360.0 * _TOLERANCE, 0.5 * (turned[last] - turned[last - 1]))
     if 360.0 - near <= turned[-1] < 360.0:
         turned *= 360.0 / turned[-1]
     if turned[-1] < 360.0 - near:
         raise InputError(
             f"{curve.name}: a record over time must cover at least one turn; got {turned[-1]:.6g} deg; record longer"
         )
-    in_turn = np.flatnonzero(turned < 360.0 - near)  # a point closer than that repeats the first one
+    in_turn = np.flatnonzero(turned < 360.0 - near)  # a closer point repeats the first one
     end = float(CubicSpline(turned, rpm)(360.0))
     if abs(end - rpm[0]) > 0.02 * abs(rpm[0]):
         raise InputError(

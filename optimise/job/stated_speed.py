@@ -1,4 +1,4 @@
-"""The constant crank speed of a job that is not validated yet, for files over time."""
+"""The constant crank speed of a job before validation, for files over time."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .variables import set_by_options, varying_in
 
 
 def stated_speed(data: Mapping[str, Any], name: str) -> float:
-    """Return the constant speed that the tables of a job state, rad/s, for a file over time. Raises `InputError`.
+    """Return the constant speed that a job's tables state, rad/s, for a file over time. Raises `InputError`.
 
-    name: of the file, for messages.
+    name: file name for messages.
     """
     stated_mechanism = table_in(data, "mechanism")
     varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(varying_in(data)) | set_by_options(data))

@@ -16,10 +16,10 @@ _FORMS = {
 
 
 def suggested_bounds(value: str | float, kind: Kind | None) -> list[dict[str, Any]]:
-    """Return the tables of bounds that a value may mean, the likeliest first.
+    """Return the tables of bounds that a value may mean, likeliest first.
 
-    A plain number gets the unit that its size suggests: 180 is "180 mm" as a stroke, and 0.18 is "0.18 m". kind: that
-    of the quantity, None for an unknown one.
+    A plain number gets the unit that its size suggests: 180 is "180 mm" as a stroke, and 0.18 is "0.18 m". kind: kind
+    of the quantity, None if unknown.
     """
     kind = kind or RATIO
     if isinstance(value, str):
@@ -31,7 +31,7 @@ def suggested_bounds(value: str | float, kind: Kind | None) -> list[dict[str, An
 
 
 def _with_unit(value: str | float, kind: Kind) -> str | float:
-    """Return a number with a unit, or unchanged without one; other texts unchanged."""
+    """Return a number with its unit, or unchanged without one; other text stays unchanged."""
     parts = number_and_unit(str(value))
     if parts is None or parts[1]:
         return value

@@ -1,10 +1,10 @@
-"""Tables in text files, as loggers and spreadsheets of any language write them.
+"""Tables in text files, as loggers and spreadsheets write them in any language.
 
-The first line with content names the columns; a commented one does where no other line can. Empty lines and lines that
-begin with #, % or // are skipped. Commas, semicolons, tabs, bars or blanks separate the cells: the sign with which most
-lines have as many cells as the first, unless a line such as "sep=;" states it. A line of units may follow the names.
-`csv` splits the cells. Its `Sniffer`, which pandas also uses, mistakes a decimal comma for a separator and cannot name
-the line of a wrong cell.
+The first line with content names the columns; a comment line does if no other line can. Empty lines and lines that
+begin with #, % or // are skipped. Commas, semicolons, tabs, bars or blanks separate the cells. The separator is the
+sign that gives most lines as many cells as the first, unless a line such as "sep=;" states it. A line with units may
+follow the names. `csv` splits the cells. Its `Sniffer`, which pandas also uses, mistakes a decimal comma for a
+separator and cannot name the line of an invalid cell.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ from .table_layout import (
 )
 
 _MOST_COLUMNS = 1000
-_NAMED = 6  # columns in what is said of a file
-_BATCH = 50_000  # rows of which the cells are kept as single texts
+_NAMED = 6  # columns in a file's summary
+_BATCH = 50_000  # rows whose cells are stored as single texts
 _MARKS = (
     (codecs.BOM_UTF8, "utf-8"),
     (codecs.BOM_UTF32_LE, "utf-32-le"),
@@ -52,13 +52,16 @@ _MARKS = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _BINARY = ("PK\x03\x04", "ÐÏ\x11à", "%PDF")
-"""How spreadsheets and documents begin, as Latin-1 as Windows has it."""
-_BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a cell in quotes
+"""First bytes of spreadsheets and documents, decoded as Windows' Latin-1."""
+_BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a quoted cell
 _NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){EXPONENT}", re.ASCII)
 
 
 def bytes_of(path: Path, name: str, limit: int) -> bytes:
-    """Return the content of a file of at most `limit` bytes. Raises `InputError`; name: how messages call the file."""
+    """Return the content of a file of at most `limit` bytes.
+
+    Raises `InputError`; name: name of the file in messages.
+    """
     try:
         with path.open("rb") as file:
             content = file.read(limit + 1)
@@ -77,7 +80,7 @@ def bytes_of(path: Path, name: str, limit: int) -> bytes:
 
 
 def text_of(content: bytes, name: str) -> str:
-    """Return a file's text: in the encoding that its mark says, else UTF-8, else Latin-1 as Windows has it."""
+    """Return a file's text: in the encoding of its byte order mark, otherwise UTF-8, otherwise Windows' Latin-1."""
     if content[:4].decode("cp1252", "replace") in _BINARY:
         raise _binary_file_error(name)
     for mark, encoding in _MARKS:
@@ -107,7 +110,7 @@ def _decode_text(content: bytes, encoding: str, name: str) -> str:
 
 @dataclass(frozen=True)
 class _Portion:
-    """Some rows: the numbers of their lines, and the cells of each column as one text, a line each."""
+    """Some rows: their line numbers, and the cells of each column as one text, with a line for each cell."""
 
     lines: Array
     columns: list[str]
@@ -115,7 +118,9 @@ class _Portion:
 
 @dataclass
 class TableFile:
-    """A table that was read. name: of the file, for messages. heads: of its columns. notes: of separator and signs.
+    """A table read from a file.
+
+    name: name of the file, for messages. heads: its headings. notes: on separator and signs.
 
     signs: decimal sign and thousands separator, known once numbers have been read.
     """
@@ -159,7 +164,7 @@ class TableFile:
         return [cell for portion in self.portions for cell in portion.columns[place].split("\n")]
 
     def numbers(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[Array]:
-        """Return columns of numbers, NaN for cells without one in columns that may be `missing` some.
+        """Return columns of numbers, NaN for cells without a number in columns that may be `missing` some.
 
         Raises `InputError` for other cells.
         """
@@ -172,7 +177,7 @@ class TableFile:
         ]
 
     def digits(self, places: Sequence[int], *, missing: Collection[int] = ()) -> list[list[str]]:
-        """Return columns of numbers as they are written, with decimal points; some of those `missing` may be empty.
+        """Return columns of numbers as written, with decimal points; cells may be empty in `missing` columns.
 
         Raises `InputError` for other cells.
         """
@@ -186,7 +191,7 @@ class TableFile:
         return columns
 
     def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
-        """Return the cells of columns with decimal points and without signs that part thousands."""
+        """Return the cells of columns with decimal points and without thousands separators."""
         parts = [(portion, {n: with_plain_signs(portion.columns[n]) for n in places}) for portion in self.portions]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
         decimal, grouping = self.signs = self._decimal(signs)
@@ -202,13 +207,13 @@ class TableFile:
         wrong = re.compile(rf"^(?!{in_threes}$).*\{grouping}.*$", re.MULTILINE | re.ASCII)
         for _, cells in parts:
             for n, text in cells.items():
-                if grouping in text:  # what is not parted in threes is no number
+                if grouping in text:  # a number must be grouped in threes
                     text = wrong.sub(lambda cell: cell[0].replace(grouping, "?"), text).replace(grouping, "")
                 cells[n] = text.replace(decimal, ".")
         return parts
 
     def _decimal(self, signs: _Signs) -> tuple[str, str]:
-        """Return the decimal sign of a file's numbers and the one that parts thousands."""
+        """Return a file's decimal sign and its thousands separator."""
         point, comma = signs.first_match(_certain_form(".", ",")), signs.first_match(_certain_form(",", "."))
         if point is not None and comma is not None:
             raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
@@ -224,7 +229,7 @@ class TableFile:
         return (".", ",") if comma is None else (",", ".")
 
     def _floats(self, place: int, portion: _Portion, text: str, *, missing: bool) -> Array:
-        """Return the numbers of cells that have decimal points, the quick way where all are numbers."""
+        """Return the numbers in cells with decimal points, by a fast path if all are numbers."""
         cells = text.split("\n")
         try:
             numbers = np.array([float(cell) if cell else np.nan for cell in cells])
@@ -251,12 +256,12 @@ class TableFile:
         raise InputError(f"{self.cell_name(int(portion.lines[n]), place)}: must be a number; got {why}")
 
     def cell_name(self, line: int, place: int) -> str:
-        """Return the words for a cell in messages."""
+        """Return the name of a cell for messages."""
         return f"{self.name}, row {line}, column {quote(self.heads[place])}"
 
 
 class _Signs:
-    """Texts of cells in which the first one of a form is looked for."""
+    """Cell texts to search for the first cell of a given form."""
 
     def __init__(self, texts: Sequence[str]) -> None:
         self._texts = [text for text in texts if "." in text or "," in text]
@@ -268,7 +273,7 @@ class _Signs:
 
 
 def _ambiguous_form(sign: str) -> str:
-    """Return the form of a number whose one sign is decimal or parts thousands: 1.300, but not 0.300."""
+    """Return the form of a number whose only sign may be decimal or a thousands separator: 1.300, but not 0.300."""
     return rf"[+-]?[1-9]\d{{0,2}}\{sign}\d{{3}}"
 
 
@@ -280,9 +285,9 @@ def _certain_form(decimal: str, grouping: str) -> str:
 
 
 def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
-    """Return the table of a text. Raises `InputError`, naming row and remedy, for what is none.
+    """Return the table in a text. Raises `InputError`, naming row and remedy, if the text is not a table.
 
-    name: of the file, for messages. ragged: whether rows may end before their last cells.
+    name: name of the file, for messages. ragged: whether rows may lack their last cells.
     """
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     if text[:4] in _BINARY or "\0" in text:
@@ -339,7 +344,7 @@ def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
 
 
 def _row_portions(rows: Iterable[tuple[int, list[str]]], width: int, name: str, *, ragged: bool) -> Iterator[_Portion]:
-    """Yield some rows at a time, each of `width` cells; short ones are filled up if they may be `ragged`."""
+    """Yield portions of rows, each with `width` cells; short rows are padded if they may be `ragged`."""
     rows = iter(rows)
     while block := list(itertools.islice(rows, _BATCH)):
         for place, cells in block:

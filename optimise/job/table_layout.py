@@ -22,16 +22,16 @@ SAMPLE = 200
 """Number of lines from which separators and title lines are inferred."""
 _LIKE_A_NUMBER = re.compile(rf"[+-]?[.,]?\d[\d.,]*{EXPONENT}", re.ASCII)
 _BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))")
-"""Signs that part thousands and mean nothing else."""
+"""Signs that can only be thousands separators."""
 
 
 def with_plain_signs(text: str) -> str:
-    """Return cells without blanks that part thousands, and with plain minus signs."""
+    """Return cells without blanks as thousands separators, and with plain minus signs."""
     return _BLANKS.sub("", text).replace("\u2212", "-")
 
 
 def content_lines(text: str) -> Iterator[str]:
-    """Yield the lines of a text, with comments and a line that states the separator replaced by empty ones."""
+    """Yield the lines of a text; comments and a line that states the separator become empty lines."""
     has_content = False
     for line in io.StringIO(text):
         empty = _COMMENT.match(line) or not line.strip()
@@ -40,7 +40,7 @@ def content_lines(text: str) -> Iterator[str]:
 
 
 def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of each line with content."""
+    """Yield the line number and the cells of each line with content."""
     if separator == " ":
         lines = (line.replace("\t", " ") for line in lines)
     reader = csv.reader(lines, delimiter=separator, strict=True)
@@ -49,12 +49,12 @@ def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]
             if any(cell.strip() for cell in cells):
                 yield reader.line_num, [cell for cell in cells if cell] if separator == " " else cells
     except csv.Error as error:
-        why = str(error).encode("unicode_escape").decode()  # it names the sign between the values, perhaps a tab
+        why = str(error).encode("unicode_escape").decode()  # it quotes the separator, which may be a tab
         raise csv.Error(f"{why} in row {reader.line_num}") from None
 
 
 def separator_of(text: str) -> str:
-    """Return the sign between cells: that of a first line such as "sep=;", or that which splits most lines alike."""
+    """Return the separator: from a first line such as "sep=;", or the sign that splits most lines alike."""
     if stated := stated_separator(text):
         return stated
     sample = [line for line in itertools.islice(content_lines(text), 10 * SAMPLE) if line.strip()][:SAMPLE]
@@ -80,10 +80,10 @@ def separator_of(text: str) -> str:
 
 
 def title_lines(rows: Sequence[Sequence[str]]) -> int:
-    """Return the number of rows above the names of the columns, such as title and date of a measurement.
+    """Return the number of rows above the column names, such as the title and date of a measurement.
 
-    0 where this is uncertain. The names are the last row of texts above rows that contain only numbers, one for each
-    number. In other tables they are the first row without numbers that has as many cells as all rows below it, if no
+    0 if uncertain. The names are the last row of text above rows that contain only numbers, with one name for each
+    number. In other tables, they are the first row without numbers that has as many cells as all rows below it, if no
     row above has as many.
     """
     first = next((n for n, row in enumerate(rows) if all(map(_is_number, row))), len(rows))
@@ -104,19 +104,19 @@ def title_lines(rows: Sequence[Sequence[str]]) -> int:
 
 
 def _is_number(cell: str) -> bool:
-    """Whether a cell is a number or says that there is none."""
+    """Whether a cell is a number or a mark for a missing one."""
     return cell.strip().casefold() in MISSING or of_numbers([cell])
 
 
 def stated_separator(text: str) -> str:
-    """Return the sign between cells that the first line with content says; empty if it says none."""
+    """Return the separator that the first line with content states; empty if it states none."""
     first = next((line for line in io.StringIO(text) if line.strip() and not _COMMENT.match(line)), "")
     statement = _SAID.fullmatch(first)
     return "" if statement is None else statement[1].replace("\\t", "\t")
 
 
 def of_units(cells: Sequence[str]) -> bool:
-    """Whether a line has units alone, two at least, as loggers write them below the names."""
+    """Whether a line has only units, at least two, as loggers write them below the names."""
     units = [_unit(cell) for cell in cells if _unit(cell)]
     return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
 
@@ -126,19 +126,19 @@ def _unit(cell: str) -> str:
 
 
 def with_units(heads: list[str], units: Sequence[str]) -> list[str]:
-    """Return names of columns with the units of a line below them, if it has as many cells."""
+    """Return the column names with the units from a line below them, if it has as many cells."""
     if len(units) != len(heads):
         return heads
     return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
 
 
 def of_numbers(cells: Sequence[str]) -> bool:
-    """Whether all of some cells are numbers, with any signs."""
+    """Whether all of the cells are numbers, with any decimal and thousands signs."""
     return any(cells) and all(_LIKE_A_NUMBER.fullmatch(with_plain_signs(cell.strip())) for cell in cells if cell)
 
 
 def commented(text: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of columns in the last comment before the numbers that has as many; None without one."""
+    """Return the column names in the last comment before the numbers that has as many; None without one."""
     names = None
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
@@ -151,7 +151,7 @@ def commented(text: str, separator: str, width: int) -> list[str] | None:
 
 
 def named_in(line: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of `width` columns in a line, also of several words each; None without them."""
+    """Return the names of `width` columns in a line; names may have several words. None without them."""
     ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
     if separator == " ":
         ways += [re.split(pattern, line.strip()) for pattern in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]

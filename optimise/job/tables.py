@@ -1,4 +1,4 @@
-"""Problems stated in Python: the tables of a job file as a dict, own functions as objects."""
+"""Problems stated in Python: the tables of a job file as a dict, with custom functions as objects."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def problem(
 ) -> Problem:
     """Return the problem that the tables of a job file state, given as a dict.
 
-    Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays will do. The function of
-    a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in this
-    process, without a time limit. folder: where the files lie that the tables name, such as catalogues, the working
-    directory if left out; modules named by text may lie in either. require_feasible: as for `load_job`.
-    Warns, and raises `JobError`, naming key, rule, value and remedy, like `load_job`.
+    Values are strings with a unit ("80 mm"), or numbers in SI (0.08); NumPy numbers and arrays are allowed. The
+    function of a table [quantity.NAME] may be a Python function instead of the text "module:function"; it then runs in
+    this process, without a time limit. folder: folder with the files that the tables name, such as catalogues; by
+    default the working directory; modules named by text may be in either. require_feasible: as for `load_job`. Issues
+    warnings, and raises `JobError`, naming key, rule, value and remedy, like `load_job`.
 
     >>> from slidercrank import problem
     >>> found = problem(
@@ -52,7 +52,7 @@ def problem(
         for name, part in quantity_tables.items():
             if isinstance(part, dict) and callable(part.get("function")):
                 functions[name] = part["function"]
-                part["function"] = "given:function"  # in the place of a name, for the validation
+                part["function"] = "given:function"  # a placeholder name for the validation
     stated_problem = parse_job(
         with_files(data, Path() if folder is None else Path(folder)),
         folder=None if folder is None else Path(folder),
@@ -73,7 +73,7 @@ def _with_functions(item: Quantity, functions: Mapping[str, Function]) -> Quanti
 
 
 def _plain_copy(value: object) -> object:
-    """Return tables and lists as dicts and lists of Python's own numbers, copied."""
+    """Return tables and lists as copies with plain Python dicts, lists and numbers."""
     if isinstance(value, Mapping):
         return {key: _plain_copy(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

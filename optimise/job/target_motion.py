@@ -20,7 +20,7 @@ from .values import Angle, Checked, Length, Part, Source, optional, source
 
 
 class TargetMotionPart(Checked[TargetMotion]):
-    """A desired motion of the slider as points; the deviations from it are the quantities motion_deviation(_rms)."""
+    """A desired motion of the slider as points; deviations from it are the quantities motion_deviation(_rms)."""
 
     makes = TargetMotion
 
@@ -59,7 +59,7 @@ class TargetMotionPart(Checked[TargetMotion]):
 
 
 def require_target(target: TargetMotionPart | None, objectives: Part, constraints: Part) -> None:
-    """Raise JobError if a job asks for a deviation without saying from what."""
+    """Raise JobError if a job uses a deviation without a target motion."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
         for name in DEVIATIONS if target is None else ():
             if getattr(part, name) is not None:
@@ -76,7 +76,7 @@ def points_file(data: Mapping[str, Any]) -> str | None:
 
 
 def with_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
-    """Return a job with the points of its target motion's file in place of the file. Raises `InputError`."""
+    """Return a job with its target motion's file replaced by the points in it. Raises `InputError`."""
     file, job = points_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job

@@ -1,6 +1,6 @@
 """Mistakes in TOML syntax, in words: line and key, rule, typed text, and correction.
 
-The parser says only where it stops. So the line is tried with each of some edits; the one with which most of it can be
+The parser only says where it stops. So the line is tried with each of some edits; the one with which most of it can be
 read is kept, until all of it can be. A remedy is therefore always a line that the parser takes.
 """
 
