@@ -80,6 +80,9 @@ class AllowedModel(BaseModel):
     slow_strokes: list[str] = Field(examples=[["inward", "outward"]])
     feasible_share: float = Field(examples=[0.4])
     sampled: int = Field(examples=[512])
+    met_by_all: list[str] = Field(
+        description="requirements that each sample meets: exact values and narrow bands", examples=[["stroke"]]
+    )
     hardest: str | None = Field(examples=["transmission_angle"])
     hardest_share: float | None = Field(examples=[0.6])
     unchecked: list[str] = Field(examples=[["position_error"]])
@@ -154,6 +157,9 @@ class SwingPreview(BaseModel):
     )
     feasible_share: float = Field(examples=[0.3])
     sampled: int = Field(examples=[512])
+    met_by_all: list[str] = Field(
+        description="requirements that each sample meets: exact values and narrow bands", examples=[["stroke"]]
+    )
     unchecked: list[str] = Field(examples=[[]])
     example: SwingExample | None = Field(description="a linkage that makes the swing; null where none does")
 
@@ -246,6 +252,7 @@ def _allowed(look: Look) -> AllowedModel | None:
         slow_strokes=list(possible.slow_strokes),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
+        met_by_all=list(possible.met_by_all),
         hardest=possible.hardest[0] if possible.hardest else None,
         hardest_share=possible.hardest[1] if possible.hardest else None,
         unchecked=look.unchecked,
@@ -290,6 +297,7 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
         travel_mm=_scaled_ends(1e3, possible.travel),
         feasible_share=possible.feasible,
         sampled=possible.sampled,
+        met_by_all=list(possible.met_by_all),
         unchecked=list(possible.unchecked),
         example=None if possible.example is None else _swing_example(possible, possible.example),
     )

@@ -58,7 +58,8 @@ class Possible:
     dimensions hold; None if no sample meets these. They include the floor of the transmission angle if it has no other
     requirement. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
     rotate fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet
-    every checked requirement. hardest: requirement that the fewest fully rotating designs meet, and their fraction.
+    every checked requirement. met_by_all: requirements that each sample meets: exact values and narrow bands. hardest:
+    requirement that the fewest fully rotating designs meet, and their fraction.
     nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if none meets all.
     example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no
     design rotates fully. unchecked: requirements too slow to check.
@@ -71,6 +72,7 @@ class Possible:
     slow_strokes: tuple[str, ...]
     feasible: float
     sampled: int
+    met_by_all: tuple[str, ...]
     hardest: tuple[str, float] | None
     nearest: float | None
     example: tuple[float, float, float] | None
@@ -100,6 +102,7 @@ def possible(problem: Problem) -> Possible:
         slow_strokes=_slow_strokes(light, sample.designs[feasible] if feasible.any() else box[turning]),
         feasible=sample.feasible,
         sampled=sample.sampled,
+        met_by_all=sample.met_by_all,
         hardest=hardest,
         nearest=None
         if hardest is None or feasible.any()

@@ -39,13 +39,14 @@ _VALUES = 8  # within bands, each with as many samples as the others
 class Screening:
     """Designs (n, 3) with minimised objectives (n, m) and greatest relative violation (n,).
 
-    is_uniform: whether each is one of the uniform samples.
+    is_uniform: whether each is one of the uniform samples. met_by_all: names of the exact values and narrow bands.
     """
 
     designs: Array
     objectives: Array
     violation: Array
     is_uniform: NDArray[np.bool_]
+    met_by_all: tuple[str, ...]
 
     @property
     def is_feasible(self) -> NDArray[np.bool_]:
@@ -113,7 +114,9 @@ def screened(problem: Problem) -> Screening:
                 uniform.append(np.full(len(violation), is_uniform))
                 if time.monotonic() > end:
                     break
-    return Screening(*map(np.concatenate, (designs, objectives, violations, uniform)))
+    return Screening(
+        *map(np.concatenate, (designs, objectives, violations, uniform)), elimination_branches(parts[0])[0].eliminated
+    )
 
 
 def _exact_parts(problem: Problem) -> list[Problem]:

@@ -35,6 +35,7 @@ class PossibleSwing:
 
     travel (m): ends of its range, for designs that keep the margin and the other checked requirements, if any do; None
     if no design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
+    met_by_all: requirements that each sample meets: exact values.
     example: crank, rod and offset, m; None if no design makes the swing. example_swing: its swing, between crank
     angles. unchecked: requirements too slow to check, or that need the rest of the job.
     """
@@ -46,6 +47,7 @@ class PossibleSwing:
     travel: Ends | None
     feasible: float
     sampled: int
+    met_by_all: tuple[str, ...]
     example: tuple[float, float, float] | None
     example_feasible: bool
     unchecked: tuple[str, ...]
@@ -114,6 +116,7 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
         feasible=sample.feasible,
         sampled=sample.sampled,
+        met_by_all=sample.met_by_all,
         example=lengths_of(example),
         example_feasible=bool(good.any()),
         unchecked=unchecked,

@@ -80,7 +80,9 @@ def test_slow_strokes_are_those_of_all_designs_that_meet_the_job_not_of_the_exam
 def test_the_example_is_a_linkage_within_the_ranges_that_meets_the_requirements(
     shared: httpx.Client, feeder: Job
 ) -> None:
-    example = preview(shared, feeder)["example"]
+    found = preview(shared, feeder)
+    assert set(found["allowed"]["met_by_all"]) == {"stroke", "rod_to_offset"}
+    example = found["example"]
     assert example["feasible"]
     assert example["clockwise"]
     linkage = Linkage(*(1e-3 * example[f"{name}_mm"] for name in ("crank", "rod", "offset")))

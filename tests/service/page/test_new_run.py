@@ -272,6 +272,7 @@ def test_a_job_in_inches_is_the_same_job_and_whoever_prefers_inches_begins_with_
     page.get_by_role("button", name="Start over").click()
     ready(page)
     assert text_of(page)["constraints"]["stroke"] == {"equals": "4 in"}
+    assert text_of(page)["mechanism"]["gravity"] == "386.09 in/s^2"
 
 
 @pytest.mark.slow
@@ -614,6 +615,9 @@ def test_what_the_ranges_allow_has_every_slow_stroke(form: Open, store: Store) -
     beside = page.get_by_role("complementary")
     slow = beside.locator("dt", has_text="slow stroke").locator("xpath=following-sibling::dd[1]")
     expect(slow).to_have_text("outward")
+    expect(beside).to_contain_text("tried, all with the requested stroke and rod to offset")
+    for length in ("crank", "rod", "offset", "stroke"):  # the drawing is of one design, in numbers
+        expect(beside.locator(".sketch + .row")).to_contain_text(re.compile(rf"{length} [\d.]+\smm"))
     page.get_by_label("offset, from").fill("-80")
     expect(slow).to_have_text("inward or outward")
 

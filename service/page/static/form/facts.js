@@ -33,11 +33,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
         { class: "terms" },
         row("makes the swing", share(swing.closing_share, Boolean(swing.example)), "of the ranges"),
         row("travel of the slider", between(swing.travel_mm, "mm")),
-        row(
-          "meets everything",
-          share(swing.feasible_share, swing.example?.feasible),
-          `of ${swing.sampled} tried`,
-        ),
+        row("meets everything", share(swing.feasible_share, swing.example?.feasible), tried(swing)),
       ),
       notesOf(swing.unchecked, understood, { open }),
     );
@@ -60,11 +56,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
-      row(
-        "meets everything",
-        share(allowed.feasible_share, example?.feasible),
-        `of ${allowed.sampled} tried`,
-      ),
+      row("meets everything", share(allowed.feasible_share, example?.feasible), tried(allowed)),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
     notesOf(allowed.unchecked, understood, { said: allowed.said.map(warning), open }),
@@ -125,6 +117,12 @@ function understanding(understood) {
         lines.map((line) => h("li", {}, inDisplayUnits(line))),
       ),
     ]);
+}
+
+/** Say which designs a fraction of feasible designs counts. @param {{ sampled: number, met_by_all: string[] }} sample */
+function tried({ sampled, met_by_all }) {
+  const names = met_by_all.map((name) => name.replaceAll("_", " "));
+  return `of ${sampled} tried${names.length ? `, all with the requested ${inWords(names.join(" and "))}` : ""}`;
 }
 
 /** Format a fraction of samples. found: whether a design is known that counts. @param {number} value @param {boolean} [found] */

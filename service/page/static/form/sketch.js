@@ -62,7 +62,12 @@ export function sketch(signal) {
     caption.textContent = sentence;
     if (!example) return;
     const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm, feasible } = example;
-    drawn.show({ crank_mm, rod_mm, offset_mm }, motion, { ...options, slider_ends_mm, angle });
+    drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
+      ...options,
+      slider_ends_mm,
+      angle,
+      small: true,
+    });
     drawn.fade(!feasible);
     drawn.turn(angle);
     if (moving) start();
@@ -75,12 +80,10 @@ export function sketch(signal) {
       if (ends) [ends, angle] = [null, 40];
       node.classList.remove("swinging");
       way = example?.clockwise ? -1 : 1;
-      const sentence = example?.feasible
-        ? "A design that meets all checked requirements"
-        : "A design that rotates fully but does not meet every requirement";
-      draw(example, example ? sentence : "No linkage within these ranges rotates fully.", {
-        direction: way,
-      });
+      const sentence = example
+        ? `A design within the ranges that ${example.feasible ? "meets all checked requirements" : "rotates fully but does not meet every requirement"}: crank ${withUnit(example.crank_mm, "mm", 4)}, rod ${withUnit(example.rod_mm, "mm", 4)}, offset ${withUnit(example.offset_mm, "mm", 4)}, stroke ${withUnit(example.stroke_mm, "mm", 4)}`
+        : "No linkage within these ranges rotates fully.";
+      draw(example, sentence, { direction: way });
     },
     /** @param {Api.SwingPreview} preview */
     swing({ example, from_deg, to_deg }) {
@@ -92,7 +95,7 @@ export function sketch(signal) {
       const { feasible, travel_mm } = example;
       draw(
         example,
-        `${feasible ? "A design that meets all checked requirements" : "A design that makes the swing but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm")}`,
+        `${feasible ? "A design that meets all checked requirements" : "A design that makes the swing but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm", 4)}`,
         { direction: 0, dead_centres_deg: ends },
       );
     },

@@ -12,7 +12,7 @@ export function firstJob(system) {
       crank: { mass: inch ? "1 lb" : "0.5 kg" },
       rod: { mass: inch ? "2 lb" : "1 kg" },
       slider: { mass: inch ? "4 lb" : "2 kg" },
-      gravity: "9.81 m/s^2",
+      gravity: inch ? "386.09 in/s^2" : "9.81 m/s^2",
     },
     load: [{ force: inch ? "50 lbf" : "200 N", opposes: "inward stroke" }],
     tolerances: {
