@@ -39,24 +39,24 @@ def inverse(z: Any) -> Any:
 
 
 def root(z: Any) -> Any:
-    """Return the square root of z; its derivative at exactly zero is taken as zero."""
+    """Return the square root of z; its derivative at exactly zero is defined as zero."""
     return np.sqrt(z)
 
 
 def power(base: Any, exponent: Any) -> Any:
-    """Return a positive base to an exponent."""
+    """Return a positive base raised to an exponent."""
     return base**exponent
 
 
 def arcsine(z: Any) -> Any:
-    """Return the angle in [-pi/2, pi/2], in radians, whose sine is z."""
+    """Return the angle in [-pi/2, pi/2], rad, whose sine is z."""
     return np.arcsin(z)
 
 
 def magnitude(z: Any) -> Any:
-    """Return z or -z, whichever has a real part that is not negative: |z| with its derivative away from zero.
+    """Return z or -z, whichever has a nonnegative real part: |z|, with its derivative away from zero.
 
-    An object for more than one number (an enclosure over a box) provides its own `magnitude`.
+    An object that represents more than one number (an enclosure over a box) provides its own `magnitude`.
     """
     if hasattr(z, "magnitude"):
         return z.magnitude()

@@ -17,13 +17,14 @@ from ..arrays import Array
 from ..errors import AssemblyError
 from .interruption import ask_between
 
-_KNOTS = 10_000  # in the loads of designs that are computed together: some tenths of a second
+_KNOTS = 10_000  # for the loads of designs that are computed together: some tenths of a second
 
 
 def turning(designs: ArrayLike) -> Array:
-    """Return designs (n, 3 + k) of full rotation as a contiguous array: crank, rod, offset, m, and more.
+    """Return fully rotating designs (n, 3 + k) as a contiguous array: crank, rod, offset, m, and more.
 
-    Raises `AssemblyError` where rod > crank + |offset| > 0 fails: a formula might still return a number there.
+    Raises `AssemblyError` where rod > crank + |offset| > 0 does not hold, because a formula might still return a number
+    there.
     """
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     turns = (designs[:, 1] > designs[:, 0] + np.abs(designs[:, 2])) & (designs[:, 0] > 0.0)
@@ -39,7 +40,7 @@ def turning(designs: ArrayLike) -> Array:
 
 @lru_cache(maxsize=1)
 def threads() -> ThreadPoolExecutor:
-    """Return the pool that kernels (which release the interpreter lock) share."""
+    """Return the thread pool shared by kernels, which release the interpreter lock."""
     return ThreadPoolExecutor(max_workers=os.cpu_count() or 1, thread_name_prefix="slidercrank")
 
 
@@ -47,7 +48,7 @@ _handing_out = Lock()  # held while chunks are handed to the pool, and while thi
 
 
 def _end_threads() -> None:
-    """End the pool once its chunks are done: a fork copies the pool but none of its threads."""
+    """End the pool once its chunks are done: a fork would copy the pool but none of its threads."""
     _handing_out.acquire()
     if threads.cache_info().currsize:
         threads().shutdown()
@@ -59,11 +60,11 @@ if hasattr(os, "register_at_fork"):
 
 
 def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, knots: int = 0) -> None:
-    """Call work(begin, end) for consecutive chunks of range(count), on all cores when there are several.
+    """Call work(begin, end) for consecutive chunks of range(count), on all cores if there are several.
 
     Chunks have a fixed size and each design is evaluated by itself, so results do not depend on the number of cores.
-    knots: number of knots in the loads of each design. More knots make smaller parts; interruption is checked between
-    parts.
+    knots: number of knots in the loads of each design. More knots make smaller chunks; interruption is checked between
+    chunks.
     """
     part = max(1, min(size, _KNOTS // max(1, knots)))
 
@@ -87,5 +88,5 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
     except Exception:
         for chunk in submitted:
             chunk.cancel()
-        wait(submitted)  # the error that ended one chunk ends the running ones
+        wait(submitted)  # an error that ends one chunk ends the other running ones
         raise

@@ -1,7 +1,7 @@
 """Digest of everything that determines the machine code of a kernel.
 
-It covers what the kernel and its compiled formulas do, not the look of their sources: a comment or another formula does
-not change the digest.
+It covers what the kernel and its compiled formulas do rather than how their sources look: a comment or another formula
+does not change the digest.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 
 
 def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
-    """Return the digest of a kernel for arguments like the examples."""
+    """Return the digest of a kernel for arguments with the types of the examples."""
     hashed = hashlib.sha256(_environment_digest())
     hashed.update(_fingerprint(examples).encode())
     for _, text in _walk_callees(function):
@@ -32,12 +32,12 @@ def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
 
 
 def codes(function: Callable[..., Any]) -> dict[int, int]:
-    """Return the length of the code of a kernel and of each of its formulas, by identity."""
+    """Return the code length of a kernel and of each of its formulas, by identity."""
     return {id(formula): len(formula.__code__.co_code) for formula, _ in _walk_callees(function)}
 
 
 def _walk_callees(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
-    """Yield a function and every function it calls, each with its own digest data."""
+    """Yield a function and every function that it calls, each with its own digest data."""
     visited: set[int] = set()
     waiting: list[Any] = [function]
     while waiting:
@@ -51,7 +51,7 @@ def _walk_callees(function: Callable[..., Any]) -> Iterator[tuple[Any, bytes]]:
 
 @cache
 def _environment_digest() -> bytes:
-    """Return the data on which every kernel depends: processor, versions, settings of numba, and this compiler."""
+    """Return the data on which every kernel depends: processor, versions, numba settings, and this compiler."""
     import llvmlite.binding as llvm
 
     settings = sorted(item for item in os.environ.items() if item[0].startswith("NUMBA_") and item[0] not in _ASIDE)
@@ -66,7 +66,7 @@ _ASIDE = (
     "NUMBA_CACHE_DIR",
     "NUMBA_DISABLE_JIT",
     "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING",
-    "NUMBA_NUM_THREADS",  # which joblib sets in its processes; a kernel runs in one thread
+    "NUMBA_NUM_THREADS",  # joblib sets this in its processes; a kernel runs in one thread
     "NUMBA_THREADING_LAYER",
 )
 

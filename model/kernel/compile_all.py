@@ -1,4 +1,7 @@
-"""Kernels of packages, compiled: `python -m slidercrank.model.kernel.compile_all [PACKAGE...]`; else the model's."""
+"""Compilation of the kernels in packages: `python -m slidercrank.model.kernel.compile_all [PACKAGE...]`.
+
+Without a package, those of the model.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
 _MOSTLY = 0.7
-"""Fraction of formulas shared with another kernel from which a kernel is cheap to compile after that one."""
+"""Fraction of formulas shared with another kernel above which a kernel is cheap to compile after that one."""
 
 
 class _Task(NamedTuple):
@@ -36,22 +39,22 @@ class _Task(NamedTuple):
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
     def follows(self, larger: _Task) -> bool:
-        """Whether it is left to the process that compiles the other, larger one."""
+        """Whether it is left to the process that compiles the larger one."""
         return self.size() < larger.size() and self.cheap_after(larger.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
-        """Return a rank, lowest first: long tasks with their followers, then small ones."""
+        """Return a rank, lowest first: long tasks with their followers, then small tasks."""
         if 2 * self.size() < max(task.size() for task in tasks):
             return True, self.size()
         return False, -sum(task.size() for task in tasks if task is self or task.follows(self))
 
 
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
-    """Compile the missing kernels of packages or modules that no other process is compiling.
+    """Compile the missing kernels in packages or modules that no other process is compiling.
 
-    Kernels that a process waits for come first, then those of `modules` that many jobs need. Among these, kernels with
-    mostly formulas that this process has already compiled come first, then urgent ones. The file of `building` holds
-    the progress. Ends if nothing can be stored.
+    Kernels that a process waits for come first, then those in `modules` that many jobs need. Among these, kernels with
+    mostly formulas that this process has already compiled come first, then urgent kernels. The file of `building`
+    records the progress. Ends if nothing can be stored.
     """
     names = awaited_files(folder)
     tasks_found = _tasks(folder, packages, modules)
@@ -82,7 +85,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         with locked(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read_any(task.file.name, folder) is None:
                 reported = [job for job in everything if job.file.name in awaited.union(names)]
-                if task in reported:  # nobody waits for kernels compiled in advance
+                if task in reported:  # nobody waits for kernels that are compiled ahead
                     number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
                         building(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
@@ -99,13 +102,13 @@ def end_with(parent: int) -> None:
 
 
 def _modules(package: str) -> list[str]:
-    """Return the names of a package and of everything in it."""
+    """Return the names of a package and of all its submodules."""
     parts = getattr(import_module(package), "__path__", [])
     return [package, *(module.name for module in pkgutil.walk_packages(parts, f"{package}."))]
 
 
 def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
-    """Return the kernels of packages that modules have, or import."""
+    """Return the kernels in packages that the modules contain, or import."""
     for name in modules:
         import_module(name)
     prefixes = tuple(packages.split())
@@ -120,7 +123,7 @@ def _task(kernel: Kernel, folder: Path) -> _Task:
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
         Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
-        gc.set_threshold(50_000, 1000, 1000)  # a fifth faster, for 80 MB
+        gc.set_threshold(50_000, 1000, 1000)  # a fifth faster, for 80 MB more
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:
         compile_in_processes(place, " ".join(sys.argv[1:]) or MODEL)

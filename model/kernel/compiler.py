@@ -1,4 +1,4 @@
-"""Machine code of kernels, by numba: functions marked `analytic` are compiled into them.
+"""Machine code for kernels, by numba; functions marked `analytic` are compiled into them.
 
 This module is imported only when a kernel has to be compiled: importing numba takes as long as running a job.
 """
@@ -25,7 +25,7 @@ from numba.extending import overload, register_jitable
 from .arithmetic import FORMULAS, arcsine, inverse, magnitude, power, root
 from .machine_code import MachineCode
 
-# Without `nnan` and `ninf`: a NaN must stay a NaN. Contraction and reassociation are what vectorisation needs.
+# Without `nnan` and `ninf`, because NaN must stay NaN. Vectorisation needs contraction and reassociation.
 _OPTIONS: Any = {
     "fastmath": {"reassoc", "contract", "arcp", "nsz"},
     "error_model": "numpy",
@@ -36,7 +36,7 @@ _NEEDLESS = (InlineClosureLikes, InlineInlinables, InlineOverloads, NopythonRewr
 
 
 class _FormulaCompiler(CompilerBase):
-    """Numba's compiler for formulas, without its passes for closures and expressions of arrays."""
+    """Numba's compiler for formulas, without its passes for closures and array expressions."""
 
     def define_pipelines(self) -> list[PassManager]:
         """Return the passes."""
@@ -57,7 +57,7 @@ _resolved: dict[Any, Any] = {}
 
 
 def know_formulas() -> None:
-    """Tell numba of all formulas marked so far."""
+    """Register all formulas marked so far with numba."""
     for formula in FORMULAS[len(_registered) :]:
         register_jitable(**_FORMULA)(formula)
         _registered[formula] = None
@@ -65,10 +65,10 @@ def know_formulas() -> None:
 
 @contextmanager
 def _memoised_resolution() -> Iterator[None]:
-    """Resolve each call once for the same types of arguments.
+    """Resolve each call only once for the same argument types.
 
-    Otherwise numba tries every meaning of + at every +. It also compiles a formula again for a call from a kernel, and
-    for a call with a number instead of a variable.
+    Otherwise numba tries every overload of + at every +. It would also compile a formula again for a call from a
+    kernel, and for a call with a number instead of a variable.
     """
     contexts = cast(Any, BaseContext)
     original, thread = contexts.resolve_function_type, get_ident()
@@ -92,10 +92,10 @@ def _memoised_resolution() -> Iterator[None]:
 
 @contextmanager
 def _linked(kernel: str) -> Iterator[None]:
-    """Compile formulas only as far as linking into the kernel requires: nothing calls them alone.
+    """Compile formulas only as far as linking into the kernel requires, because nothing calls them alone.
 
-    Otherwise each is optimised like the kernel and turned into machine code, which takes a fifth of the time. Without
-    any optimisation the peak kernel would be half as fast.
+    Otherwise each formula would be optimised like the kernel and turned into machine code, which takes a fifth of the
+    time. Without any optimisation, the peak kernel would run at half speed.
     """
     libraries, engine = cast(Any, JITCodeLibrary), cast(Any, JITCPUCodegen)
     finalize_original, set_env, thread = libraries.finalize, engine.set_env, get_ident()
@@ -123,7 +123,7 @@ def _linked(kernel: str) -> Iterator[None]:
 
 
 class _NoArrays(event.Listener):
-    """Rejects formulas that return arrays: without reference counting they would be freed too soon."""
+    """Rejects formulas that return arrays: without reference counting these would be freed too soon."""
 
     def on_start(self, event: Any) -> None:
         """Check the return type of a function before it is compiled."""
@@ -156,9 +156,9 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     return MachineCode(symbol, arguments[2:], calls, code)
 
 
-# Python keeps its frames in chunks of 16 kB, and allocates and frees a chunk at every call that crosses into the next
-# one: a quarter of a million times per kernel, an eighth of the time. A frame that takes a megabyte leaves the rest of
-# its two-megabyte chunk for all others.
+# Python stores its frames in chunks of 16 kB, and allocates and frees a chunk at every call that crosses into the next
+# one. That happens a quarter of a million times per kernel and takes an eighth of the time. A frame of one megabyte
+# leaves the rest of its two-megabyte chunk for all others.
 compile_kernel.__code__ = compile_kernel.__code__.replace(co_stacksize=1 << 17)
 
 
@@ -207,7 +207,7 @@ def _power(base: Any, exponent: Any) -> Any:
     return compiled
 
 
-# Sun's fdlibm, e_asin.c: (asin(x) - x) / x^3 as a quotient of polynomials in x^2, up to a half.
+# Sun's fdlibm, e_asin.c: (asin(x) - x) / x^3 as a quotient of polynomials in x^2, for x up to one half.
 _ABOVE = (
     1.66666666666666657415e-01,
     -3.25565818622400915405e-01,
@@ -223,7 +223,7 @@ _BELOW = (1.0, -2.40339491173441421878, 2.02094576023350569471, -6.8828397160545
 def _asin(x: float) -> float:
     """Return the arc sine without a call, so that loops over designs become vector instructions.
 
-    Beyond a half asin(x) = pi / 2 - 2 asin(sqrt((1 - x) / 2)).
+    Above one half, asin(x) = pi / 2 - 2 asin(sqrt((1 - x) / 2)).
     """
     size = abs(x)
     small = size < 0.5

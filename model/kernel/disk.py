@@ -27,18 +27,18 @@ _log = logging.getLogger(__name__)
 
 MODEL = __name__.split(".kernel.")[0]
 INTO = "--into"
-"""Option of the compiling processes, before their folder."""
+"""Option for the compiling processes, placed before their folder."""
 _PATIENCE = 300.0  # s; a process that compiles for longer has stopped or failed
 _TICK = 0.05  # s
 _REPORT_INTERVAL = 3.0  # s
 _SIDE_BY_SIDE = 4
-"""Greatest number of compiling processes; each takes 200 MB."""
+"""Maximum number of compiling processes; each takes 200 MB."""
 _STATES = 8
-"""Number of latest machine codes stored per kernel, for other formulas, versions and processors."""
+"""Number of recent machine codes stored per kernel, for other formulas, versions and processors."""
 
 
 class KernelSource(NamedTuple):
-    """A kernel to be compiled: its name, its function, and example arguments that determine the types."""
+    """A kernel to compile: its name, its function, and example arguments that determine the types."""
 
     name: str
     function: Callable[..., Any]
@@ -46,15 +46,15 @@ class KernelSource(NamedTuple):
 
     @property
     def module(self) -> str:
-        """Name of the function's module."""
+        """Name of the module that defines the function."""
         return self.function.__module__
 
     def file(self, folder: Path) -> Path:
-        """Return the file of its machine code."""
+        """Return the file for its machine code."""
         return folder / f"{self.name}.{digest(self.function, self.examples)}"
 
     def compile(self) -> MachineCode:
-        """Return its machine code, compiled here and now."""
+        """Return its machine code, compiled in this process now."""
         from .compiler import compile_kernel
 
         return compile_kernel(self.function, self.examples)
@@ -63,9 +63,9 @@ class KernelSource(NamedTuple):
 def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCode:
     """Return the machine code of a kernel, compiled and stored if necessary.
 
-    Other processes also compile the missing kernels of its package while this process lives. So they do for its sister
-    packages among those of other kernels' modules, last ones first. In both, kernels of these modules come before the
-    rest.
+    Other processes also compile the missing kernels in its package while this process lives. They do the same for
+    sister packages that contain some of `modules`, the modules of other kernels, last ones first. In both cases,
+    kernels in these modules come before the rest.
     """
     folder, name = kernel_folder(), source.file(Path()).name
     code = read_any(name, folder)
@@ -112,11 +112,14 @@ def read(file: Path) -> MachineCode | None:
 
 
 _refusing: set[Path] = set()
-"""Folders in which storing has failed: each process compiles only the kernels it needs."""
+"""Folders in which storing has failed; each process then compiles only the kernels that it needs."""
 
 
 def keep(file: Path, code: MachineCode) -> bool:
-    """Store machine code, keep a few earlier versions, and return whether it was stored. Reports a full disk."""
+    """Store machine code, keep a few earlier versions, and return whether it was stored.
+
+    Logs a message if the disk is full.
+    """
     head = code._asdict() | {"code": None, "sha256": sha256(code.code).hexdigest()}
     unfinished = file.with_name(f"{uuid.uuid4().hex}.unfinished")
     is_stored = False
@@ -144,10 +147,10 @@ def _warn_not_stored(folder: Path, reason: str) -> None:
 
 
 def compile_in_processes(folder: Path, packages: str, file: Path | None = None, modules: Iterable[str] = ()) -> None:
-    """Have other processes compile the missing kernels of packages; return when a file exists, or they have ended.
+    """Let other processes compile the missing kernels in packages; return when a file exists, or when they have ended.
 
-    packages: names separated by blanks. They compile that file's kernel next, and those of modules before the others.
-    Waits for processes that are already compiling. `interruption` ends the wait.
+    packages: names separated by blanks. They compile the kernel of that file next, and those in modules before the
+    others. Waits for processes that are already compiling. `interruption` ends the wait.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as queue:
@@ -177,7 +180,10 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
 
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
-    """Compile the kernels of modules ahead if none is compiled yet; processes that wait for them register the wait."""
+    """Compile the kernels in modules ahead if none is compiled yet.
+
+    Processes that wait for them register their wait.
+    """
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"
     if folder is not None and not any(any(place.glob(begins)) for place in (folder, *other_folders())):
@@ -194,11 +200,11 @@ def _report_compilation() -> None:
 _waits: list[float] = []
 """Times that this process has waited for kernels, s."""
 _ahead: dict[str, list[subprocess.Popen[bytes]]] = {}
-"""Processes that `compile_ahead` has started, and that nobody has waited for yet."""
+"""Processes that `compile_ahead` has started and nobody has waited for yet."""
 
 
 def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> list[subprocess.Popen[bytes]]:
-    """Start a process for each processor; they hold the lock as long as they live, and end with this process."""
+    """Start one process per processor; they hold the lock as long as they live, and end with this process."""
     if not sys.executable:
         return []
     started: list[subprocess.Popen[bytes]] = []
@@ -217,12 +223,12 @@ def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> li
 
 
 def building(folder: Path, packages: str) -> Path:
-    """Return the file that is locked while kernels of packages are compiled, and that holds the progress."""
+    """Return the file that is locked while kernels in packages are compiled, and that records the progress."""
     return folder / f"{packages.replace(' ', '+')}.building"
 
 
 def awaited_files(folder: Path) -> list[str]:
-    """Return the names of the files that processes wait for, or waited for, in that order."""
+    """Return the names of the files that processes wait for, or waited for, in order."""
     try:
         return (folder / "wanted").read_text().split()
     except OSError:
@@ -233,7 +239,7 @@ _NO_LOCK = -1
 
 
 def _end_compilers(started: list[subprocess.Popen[bytes]], owner: int) -> None:
-    if os.getpid() == owner:  # and no fork of it
+    if os.getpid() == owner:  # not in a fork of the owner
         for worker in started:
             worker.terminate()
             worker.wait()
@@ -241,7 +247,7 @@ def _end_compilers(started: list[subprocess.Popen[bytes]], owner: int) -> None:
 
 @contextlib.contextmanager
 def locked(file: Path) -> Iterator[int | None]:
-    """Lock a file and yield its descriptor; None if another process has the lock, -1 if locks are unavailable."""
+    """Lock a file and yield its descriptor; None if another process holds the lock, -1 if locks are unavailable."""
     try:
         import fcntl
 

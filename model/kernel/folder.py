@@ -1,6 +1,6 @@
-"""The folder of compiled kernels.
+"""Folder for compiled kernels.
 
-Kernels are never stored next to the sources: there they would outlive the software, and keep its empty folders
+Kernels are never stored next to the sources: there they would outlive the software, and its empty folders would stay
 importable.
 """
 
@@ -24,8 +24,8 @@ _REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
 class Chosen(NamedTuple):
     """Choice of a folder for kernels.
 
-    folder: None if no place is writable. empty: whether it has no kernels yet. refused: reasons why other places were
-    refused. readable: earlier choices that are read-only.
+    folder: None if no location is writable. empty: whether it has no kernels yet. refused: reasons why other locations
+    were refused. readable: earlier locations that are read-only.
     """
 
     folder: Path | None
@@ -35,18 +35,18 @@ class Chosen(NamedTuple):
 
 
 def kernel_folder() -> Path | None:
-    """Return this process's folder of kernels, None if no place is writable."""
+    """Return this process's folder for kernels, None if no location is writable."""
     return _chosen().folder
 
 
 def other_folders() -> tuple[Path, ...]:
-    """Return folders of kernels that can only be read, as in an image."""
+    """Return folders from which kernels can only be read, as in an image."""
     return _chosen().readable
 
 
 @cache
 def log_refused_folders() -> None:
-    """Log once which places were refused, if the folder is empty or missing. For processes that have to compile."""
+    """Log once which locations were refused, if the folder is empty or missing. For processes that have to compile."""
     folder, empty, refused, _ = _chosen()
     if folder is None:
         _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
@@ -57,9 +57,9 @@ def log_refused_folders() -> None:
 
 
 def choose_folder() -> Chosen:
-    """Return the folder in the first writable place, created if necessary.
+    """Return the folder in the first writable location, created if necessary.
 
-    Places are NUMBA_CACHE_DIR, the user's folder of caches, and one of this user alone among temporary files.
+    Locations are NUMBA_CACHE_DIR, the user's cache folder, and a folder for this user alone among temporary files.
     """
     refused: list[str] = []
     readable: list[Path] = []
@@ -78,17 +78,19 @@ _chosen = cache(choose_folder)
 
 
 def _candidate_folders() -> Iterator[Path]:
-    """Yield the places where the folder may be."""
+    """Yield the locations where the folder may be."""
     cache_folder = os.environ.get("NUMBA_CACHE_DIR")
     if cache_folder:
         yield Path(os.path.expanduser(cache_folder)).absolute() / "slidercrank"  # noqa: PTH111 - raises for no home
     from platformdirs import user_cache_path
 
-    with contextlib.suppress(RuntimeError):  # of later releases, for a user without a home; earlier ones keep its "~"
+    with contextlib.suppress(
+        RuntimeError
+    ):  # raised by later releases if the user has no home; earlier ones leave its "~"
         user = user_cache_path("slidercrank", appauthor=False)
         if user.is_absolute():
             yield user
-    if hasattr(os, "getuid"):  # elsewhere the folder for temporary files is the user's own
+    if hasattr(os, "getuid"):  # elsewhere the folder for temporary files belongs to the user
         yield _temp_folder() / f"slidercrank-{os.getuid()}"
 
 
@@ -100,7 +102,7 @@ def _temp_folder() -> Path:
 
 
 def _refusal(folder: Path) -> str | None:
-    """Return why kernels cannot be stored in a folder: it is not writable, or strangers could put theirs there."""
+    """Return why kernels cannot be stored in a folder: it is not writable, or other users could put theirs there."""
     place = folder.parent
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -114,12 +116,12 @@ def _refusal(folder: Path) -> str | None:
 
 
 def _is_trusted(folder: Path) -> bool:
-    """Whether kernels of a folder may be run: no stranger can have put them there."""
+    """Whether kernels from a folder may be run, because no other user can have put them there."""
     if folder.parent.parent == _temp_folder() or not hasattr(os, "getuid") or not os.access(folder, os.R_OK | os.X_OK):
         return False
     return all(_is_private(place.stat(), {0, os.getuid()}) for place in (folder, folder.parent))
 
 
 def _is_private(place: os.stat_result, owners: set[int]) -> bool:
-    """Whether a place is a folder that only these owners can write."""
+    """Whether a path is a folder that only these owners can write."""
     return stat.S_ISDIR(place.st_mode) and place.st_uid in owners and not place.st_mode & 0o022

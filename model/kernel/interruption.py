@@ -1,4 +1,4 @@
-"""Interruption of waits, for a custom function or a kernel: a callback polled meanwhile ends them by raising."""
+"""Interruption of waits for a custom function or a kernel: a polled callback ends the wait by raising."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from dataclasses import dataclass
 
 Poll = Callable[[], None]
 FAREWELL = 0.5
-"""Time that an interrupted call may still take, s: a process that answers survives."""
+"""Time that an interrupted call may still take, s: a process that responds survives."""
 
 
 @dataclass
 class Interruption:
-    """Callback that may end calls by raising.
+    """Callback that may end calls by raising an exception.
 
     between_parts: callback between the parts of work that ends by itself. farewell: time that calls have left after an
-    interruption, s. killed: whether a call did not end in that time.
+    interruption, s. killed: whether a call did not end within that time.
     """
 
     poll: Poll
@@ -37,7 +37,7 @@ def interrupted_by(
 
     between_parts: callback between the parts of long work in this thread.
 
-    A search cannot pass its callback down: a hundred places evaluate quantities without knowing of a search.
+    A search cannot pass its callback down: a hundred places evaluate quantities without knowing about a search.
     """
     interruption = Interruption(poll, between_parts, farewell)
     token = _CURRENT.set(interruption)
@@ -48,14 +48,14 @@ def interrupted_by(
 
 
 def ask() -> None:
-    """Raise the exception that ends the current call, if any."""
+    """Raise the exception that ends the current call, if there is one."""
     interruption = _CURRENT.get()
     if interruption is not None:
         interruption.poll()
 
 
 def ask_between() -> None:
-    """Raise the exception that ends long work between two of its parts, if any."""
+    """Raise the exception that ends long work between two of its parts, if there is one."""
     interruption = _CURRENT.get()
     if interruption is not None and interruption.between_parts is not None:
         interruption.between_parts()

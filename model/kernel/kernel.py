@@ -1,4 +1,4 @@
-"""Functions compiled to machine code, with arguments of the types that they declare."""
+"""Functions compiled to machine code for the argument types that they declare."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .machine_code import Leaf, load
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 Row = Annotated[NDArray[np.float64], 1]
-"""Numbers (n,) of a kernel's arguments."""
+"""Array (n,) of numbers as a kernel's argument."""
 Table = Annotated[NDArray[np.float64], 2]
 Cube = Annotated[NDArray[np.float64], 3]
 ComplexTable = Annotated[NDArray[np.complex128], 2]
@@ -29,7 +29,7 @@ IntegerTable = Annotated[NDArray[np.int64], 2]
 Flags = Annotated[NDArray[np.bool_], 1]
 
 KERNELS: list[Kernel] = []
-"""All kernels of the modules imported so far."""
+"""All kernels in the modules imported so far."""
 
 _RESULTS: dict[Any, Any] = {
     int: ctypes.c_int64,
@@ -44,7 +44,7 @@ Flat = tuple[Any, ...]
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function called from Python at its first call; the machine code is stored on disk.
+    """Compile a function at its first call from Python; the machine code is stored on disk.
 
     Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
     returns a number or nothing.
@@ -53,7 +53,7 @@ def kernel(function: Function) -> Function:
 
 
 def seldom_kernel(function: Function) -> Function:
-    """Compile a function like `kernel`, but after all others: few jobs need it, and compilation is slow."""
+    """Compile a function like `kernel`, but after all others: few jobs need it, and its compilation is slow."""
     return _register(function, seldom=True)
 
 
@@ -67,7 +67,7 @@ class Kernel:
     """A function that runs as machine code."""
 
     def __init__(self, function: Callable[..., Any], *, seldom: bool = False) -> None:
-        """Take a function without compiling it. seldom: whether others are compiled before it."""
+        """Take a function without compiling it. seldom: whether other kernels are compiled before it."""
         self.function, self.seldom = function, seldom
         self.__doc__ = function.__doc__
         self._flat: list[Callable[[Any], Flat]] = []
@@ -87,7 +87,7 @@ class Kernel:
         return result.value
 
     def source(self) -> KernelSource:
-        """Return the kernel as it is to be compiled."""
+        """Return the kernel as a compilation task."""
         examples = tuple(_example_value(hint) for name, hint in self._hints().items() if name != "return")
         return KernelSource(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
@@ -130,13 +130,13 @@ def _example_value(kind: Any) -> Any:
 
 
 def _item_type(array: Any) -> np.dtype[Any]:
-    """Return the type of the items of an `NDArray[...]`."""
+    """Return the item type of an `NDArray[...]`."""
     dtype: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
     return dtype
 
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
-    """Return the function that converts a value to the machine's arguments."""
+    """Return the function that converts a value to machine arguments."""
     members = _tuple_types(kind)
     if members is not None:
         return _flat_tuple([_flattener(name, member) for member in members])

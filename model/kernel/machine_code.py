@@ -1,11 +1,12 @@
-"""Machine code of a kernel, loaded and called without numba.
+"""Machine code of kernels, loaded and called without numba.
 
-A compiled function takes the address for its result, the address for an error, and its arguments: an array as
-(nothing, nothing, size, bytes of an item, address, shape, strides), a tuple as its members one after the other. The
-arrays that a kernel allocates come from numba's runtime, a small library that needs none of the rest of numba.
+A compiled function takes the address for its result, the address for an error, and then its arguments: an array as
+(nothing, nothing, size, bytes per item, address, shape, strides), a tuple as its members in sequence. The arrays that a
+kernel allocates come from numba's runtime, a small library that needs nothing else from numba.
 
-Python calls an entry created next to it. The entry takes all arguments in one block, 8 bytes each; for an array it
-takes the object itself, and reads address, shape and strides from it (`PyArrayObject` of NumPy's C interface).
+Python calls an entry point that is created next to it. The entry point takes all arguments in one block, 8 bytes each.
+For an array it takes the object itself, and reads address, shape and strides from it (`PyArrayObject` in NumPy's C
+interface).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ _SYMBOL = "slidercrank_entry"
 
 
 class MachineCode(NamedTuple):
-    """An object file: its function's symbol, types of the arguments after the first two, and functions it calls."""
+    """An object file: its function's symbol, types of the arguments after the first two, functions it calls."""
 
     symbol: str
     arguments: tuple[str, ...]
@@ -33,7 +34,7 @@ class MachineCode(NamedTuple):
 
 
 class Leaf(NamedTuple):
-    """A number or an array in the arguments: type in the machine, dimensions and bytes of an item."""
+    """A number or an array among the arguments: machine type, dimensions and bytes per item."""
 
     type: str
     dimensions: int = 0
@@ -41,7 +42,7 @@ class Leaf(NamedTuple):
 
 
 def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
-    """Return the entry: called with arguments and a result address, it returns 0, or nonzero if memory is insufficient.
+    """Return the entry point: called with arguments and a result address, it returns 0, or nonzero if memory runs out.
 
     It releases the interpreter lock.
     """
@@ -63,7 +64,7 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
 
 
 def _llvm_entry(code: MachineCode, leaves: list[Leaf]) -> str:
-    """Return the entry in LLVM's language."""
+    """Return the entry point as LLVM code."""
     lines: list[str] = []
     arguments: list[tuple[str, str]] = []
 
@@ -114,7 +115,7 @@ def _machine() -> Any:
     return llvm.Target.from_default_triple().create_target_machine(jit=True, codemodel="jitdefault")
 
 
-_engines: list[Any] = []  # these own the code
+_engines: list[Any] = []  # these own the machine code
 
 
 @cache
@@ -124,7 +125,7 @@ def _register_symbols() -> None:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # gives access to the functions of this process
+    llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # gives access to the functions in this process
     for name, address in _numba_library("_helperlib").c_helpers.items():
         llvm.add_symbol(f"numba_{name}", address)
         llvm.add_symbol(name, address)
@@ -133,7 +134,7 @@ def _register_symbols() -> None:
 
 
 def _numba_library(path: str) -> Any:
-    """Return one of numba's libraries, without numba."""
+    """Return one of numba's libraries without importing numba."""
     numba = importlib.util.find_spec("numba")
     assert numba is not None
     assert numba.origin is not None

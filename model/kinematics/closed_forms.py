@@ -16,7 +16,7 @@ from .in_line import in_line
 
 
 class ClosedForm(IntEnum):
-    """Closed-form quantities: time ratio, least transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
+    """Closed-form quantities: time ratio, minimum transmission angle (rad), stroke (m), ratios, footprints (m^2)."""
 
     TIME_RATIO = 0
     TRANSMISSION_ANGLE = 1
@@ -33,7 +33,7 @@ _TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK, _
 
 @analytic
 def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
-    """Return one quantity of a linkage that rotates fully.
+    """Return one quantity of a fully rotating linkage.
 
     Footprint: area of the rectangle around the pin centres over the cycle, (x_out + r) (r + max(r, |e|)), as two smooth
     pieces. Rod to offset: l / |e|, infinite without offset.
@@ -74,7 +74,7 @@ def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
         for j in range(_LANES):
             for i in range(3):
                 work[i, j] = designs[min(begin + j, n - 1), i]
-        # One loop per kind: a choice inside the loop would prevent vector instructions.
+        # One loop per kind: a branch inside the loop would prevent vector instructions.
         if kind == _TIME_RATIO:
             _fill_closed_forms(_TIME_RATIO, work, slopes)
         elif kind == _TRANSMISSION:

@@ -1,8 +1,8 @@
 """Closed-form formulas for full rotation: dead centres, stroke, time ratio, transmission angle, inverse relations.
 
-Every function runs on floats, arrays and complex numbers. `magnitude_of_offset` is |e|; passing it separately keeps the
-functions free of the kink at e = 0. They hold for full rotation, l > r + |e|, which the caller has checked.
-Notation and signs: `kinematics`.
+Every function accepts floats, arrays and complex numbers. `magnitude_of_offset` is |e|; passing it separately keeps the
+functions free from the kink at e = 0. They hold for full rotation, l > r + |e|, which the caller has checked. Notation
+and signs: `kinematics`.
 """
 
 from __future__ import annotations
@@ -15,21 +15,21 @@ from ..kernel.arithmetic import analytic, arcsine, inverse, root
 
 @analytic
 def outer_dead_centre(r: Any, l: Any, e: Any) -> Any:
-    """Return the greatest distance of the slider along its line, sqrt((l + r)^2 - e^2), m."""
+    """Return the maximum distance of the slider along its line, sqrt((l + r)^2 - e^2), m."""
     return root((l + r) * (l + r) - e * e)
 
 
 @analytic
 def inner_dead_centre(r: Any, l: Any, e: Any) -> Any:
-    """Return the least distance of the slider along its line, sqrt((l - r)^2 - e^2), m."""
+    """Return the minimum distance of the slider along its line, sqrt((l - r)^2 - e^2), m."""
     return root((l - r) * (l - r) - e * e)
 
 
 @analytic
 def stroke(r: Any, l: Any, e: Any) -> Any:
-    """Return the distance between the dead centres, m: 2 r only without offset.
+    """Return the distance between the dead centres, m; 2 r only if there is no offset.
 
-    Written as 4 l r / (x_out + x_in), which equals x_out - x_in without its cancellation.
+    Written as 4 l r / (x_out + x_in), which equals x_out - x_in without cancellation.
     """
     return 4.0 * l * r * inverse(outer_dead_centre(r, l, e) + inner_dead_centre(r, l, e))
 
@@ -42,7 +42,7 @@ def outer_crank_angle(r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def inner_crank_angle(r: Any, l: Any, e: Any) -> Any:
-    """Return the crank angle of the inner dead centre (open branch), pi + asin(e / (l - r)), rad."""
+    """Return the crank angle of the inner dead centre on the open branch, pi + asin(e / (l - r)), rad."""
     return math.pi + arcsine(e * inverse(l - r))
 
 
@@ -54,29 +54,29 @@ def excess_angle(r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def time_ratio(r: Any, l: Any, e: Any) -> Any:
-    """Return the slower stroke's duration over the faster's, (pi + b) / (pi - b), for offset e >= 0."""
+    """Return the slower stroke's duration divided by the faster's, (pi + b) / (pi - b), for offset e >= 0."""
     b = excess_angle(r, l, e)
     return (math.pi + b) * inverse(math.pi - b)
 
 
 @analytic
 def cosine_of_transmission_angle(r: Any, l: Any, magnitude_of_offset: Any) -> Any:
-    """Return the cosine of the least transmission angle of the cycle, (r + |e|) / l."""
+    """Return the cosine of the minimum transmission angle over the cycle, (r + |e|) / l."""
     return (r + magnitude_of_offset) * inverse(l)
 
 
 @analytic
 def least_transmission_angle(r: Any, l: Any, magnitude_of_offset: Any) -> Any:
-    """Return the least angle between rod and the normal of the slider line over the cycle, rad.
+    """Return the minimum angle between the rod and the normal of the slider line over the cycle, rad.
 
-    mu = 90 deg - |phi|, least where the crank is normal to the slider line: cos(mu_min) = (r + |e|) / l.
+    mu = 90 deg - |phi| has its minimum where the crank is normal to the slider line: cos(mu_min) = (r + |e|) / l.
     """
     return 0.5 * math.pi - arcsine(cosine_of_transmission_angle(r, l, magnitude_of_offset))
 
 
 @analytic
 def crank_from_stroke(stroke: Any, l: Any, e: Any) -> Any:
-    """Return the crank, m, that gives the stroke with rod l and offset e.
+    """Return the crank, m, that gives a stroke with rod l and offset e.
 
     r^2 = S^2 (l^2 - e^2 - S^2/4) / (4 l^2 - S^2).
 
@@ -89,7 +89,7 @@ def crank_from_stroke(stroke: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def rod_from_stroke(stroke: Any, r: Any, e: Any) -> Any:
-    """Return the rod, m, that gives the stroke with crank r and offset e; same relation, solved for l.
+    """Return the rod, m, that gives a stroke with crank r and offset e; same relation, solved for l.
 
     l^2 = S^2 (S^2/4 + e^2 - r^2) / (S^2 - 4 r^2); needs S > 2 r, hence an offset.
     """
@@ -99,7 +99,7 @@ def rod_from_stroke(stroke: Any, r: Any, e: Any) -> Any:
 
 @analytic
 def offset_from_stroke(stroke: Any, r: Any, l: Any) -> Any:
-    """Return the offset >= 0, m, that gives the stroke with crank r and rod l; same relation.
+    """Return the offset >= 0, m, that gives a stroke with crank r and rod l; same relation.
 
     e^2 = l^2 + r^2 - S^2/4 - 4 l^2 r^2 / S^2 = (S^2/4 - r^2) (4 l^2 / S^2 - 1).
     """
@@ -109,10 +109,10 @@ def offset_from_stroke(stroke: Any, r: Any, l: Any) -> Any:
 
 @analytic
 def offset_from_excess_angle(r: Any, l: Any, sine: Any, cosine: Any) -> Any:
-    """Return the offset, m, for which the two dead-centre directions differ by b (sine and cosine of b given).
+    """Return the offset, m, for which the directions of the dead centres differ by b (sine and cosine of b given).
 
-    In the triangle of crank pivot and the two dead centres the sides l - r and l + r enclose b, the stroke lies
-    opposite, and the offset is its height: e = (l^2 - r^2) sin(b) / S.
+    In the triangle formed by the crank pivot and the two dead centres, the sides l - r and l + r enclose b, and the
+    stroke lies opposite. The offset is the height: e = (l^2 - r^2) sin(b) / S.
     """
     s2 = 2.0 * (l * l + r * r) - 2.0 * (l * l - r * r) * cosine
     return (l * l - r * r) * sine * inverse(root(s2))

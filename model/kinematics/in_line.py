@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 _ROUNDING = 1e-15
-"""Fraction of the rod. An offset this small changes closed-form values and positions by no more than rounding."""
+"""Fraction of the rod. An offset this small changes closed-form values and positions only within rounding."""
 
 
 def in_line(rod: Any, offset: Any) -> Any:
@@ -16,5 +16,5 @@ def in_line(rod: Any, offset: Any) -> Any:
 
 
 def without_rounding(rod: Any, offset: Any) -> Any:
-    """Return offsets, m, with those of rounding size set to zero; arguments broadcast."""
+    """Return offsets, m, with those below rounding set to zero; arguments broadcast."""
     return np.where(in_line(rod, offset), 0.0, offset)

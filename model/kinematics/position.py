@@ -1,4 +1,4 @@
-r"""Position, velocity and acceleration of every point of the linkage: the notation of the whole project.
+r"""Position, velocity and acceleration of every point on the linkage: the notation used throughout the project.
 
                        A  crank pin
                       / \
@@ -9,12 +9,12 @@ r"""Position, velocity and acceleration of every point of the linkage: the notat
                              \  phi
         - - - - - - - - - - - B - - - slider - - -      slider line y = e (offset, signed)
 
-The crank angle `theta` is counted counter-clockwise from +x, the rod angle `phi` of A -> B likewise:
+The crank angle `theta` is counted counter-clockwise from +x, and so is the rod angle `phi` of A -> B:
 
     r sin(theta) + l sin(phi) = e,        x = r cos(theta) + l cos(phi).
 
 The open branch has cos(phi) > 0 (slider to the right), the crossed branch cos(phi) < 0. `branch` is +1 or -1.
-Away from the crank pivot is *outward*. A positive speed turns the crank counter-clockwise. SI units and radians.
+*Outward* means away from the crank pivot. A positive speed turns the crank counter-clockwise. SI units and radians.
 
 Primes are derivatives with respect to the crank angle: velocity = x' w, acceleration = x'' w^2 + x' alpha.
 """
@@ -27,7 +27,7 @@ from ..kernel.arithmetic import analytic, inverse, root
 
 
 class Motion(NamedTuple):
-    """The linkage at one crank angle, per unit of crank angle.
+    """Motion of the linkage at one crank angle, per unit of crank angle.
 
     l_cos, l_sin: components l cos(phi), l sin(phi) of the rod vector A -> B, m. per_l_cos: 1 / l_cos.
     tangent: tan(phi).

@@ -1,13 +1,13 @@
-"""Deviation of the slider's motion from a desired one, given as points (crank angle, position).
+"""Deviation of the slider's motion from a target motion, given as points (crank angle, position).
 
 With x the slider's distance from the crank pivot along its line and (theta_i, t_i) the points, the deviations are
 
     d_i = x(theta_i + phase) + shift - t_i,
 
-judged by their greatest size or their root mean square over the points. Phase and shift are zero or, where free, chosen
-for the least deviation: a crank keyed to its shaft at another angle, a tool clamped elsewhere on the slider. The best
-shift is exact (mid-range, mean). The best phase is sought over the whole turn. Branch and bound minimises the greatest
-deviation; the smooth root mean square is minimised from the best stretches of a grid.
+judged by their maximum magnitude or their root mean square over the points. Phase and shift are zero or, where free,
+chosen to minimise the deviation: a crank keyed to its shaft at another angle, a tool clamped elsewhere on the slider.
+The best shift has a closed form (mid-range or mean). The best phase is searched over the whole turn. Branch and bound
+minimises the maximum deviation; the smooth root mean square is minimised from the best intervals of a grid.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from .position import motion
 Freedom = Literal["fixed", "free"]
 Measure = Literal["greatest", "rms"]
 
-_PHASES = 96  # phases in the grid
-_HALVINGS = 14  # halvings of its cells: to 4e-6 rad
-_STRETCHES = 3  # best stretches of the grid that are searched further
-_SECTIONS = 60  # golden sections from two grid spacings to rounding
+_PHASES = 96  # number of phases in the grid
+_HALVINGS = 14  # halvings of its cells: down to 4e-6 rad
+_STRETCHES = 3  # best intervals of the grid that are searched further
+_SECTIONS = 60  # golden sections from two grid spacings down to rounding
 _NEWTON = 4
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _TURN = 2.0 * math.pi
@@ -41,10 +41,10 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class TargetMotion:
-    """A desired slider motion.
+    """Target motion for the slider.
 
-    crank_angles: rad, increasing, within one turn. positions: slider positions, m, outward from the crank pivot.
-    phase: whether the crank may sit on its shaft at any angle. shift: whether positions may be counted from any origin.
+    crank_angles: rad, increasing, within one turn. positions: slider positions, m, outward from the crank pivot. phase:
+    whether the crank may be fixed to its shaft at any angle. shift: whether positions may be counted from any origin.
     """
 
     crank_angles: tuple[float, ...]
@@ -79,7 +79,7 @@ class TargetMotion:
 
 
 class Fit(NamedTuple):
-    """The least deviation (n,), m, of n designs, with its phase, rad, in [-pi, pi) and shift, m."""
+    """Minimum deviation (n,), m, for n designs, with its phase, rad, in [-pi, pi) and shift, m."""
 
     values: Array
     phase: Array
@@ -87,10 +87,10 @@ class Fit(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """One linkage and the points (n,) of the desired motion. b: its branch, +1 or -1. shifts: whether a shift is free.
+    """One linkage and the points (n,) of the target motion. b: its branch, +1 or -1. shifts: whether a shift is free.
 
-    sines, cosines: of the crank angles of the points. positions: theirs, m. d, slope, bend: work space, each point's
-    deviation and its derivatives by the phase.
+    sines, cosines: those of the points' crank angles. positions: positions of the points. d, slope, bend: work space
+    for each point's deviation and its derivatives by the phase.
     """
 
     r: float
@@ -111,7 +111,7 @@ def _deviation_at_phase(phase: Any, rms: Any, case: _Case) -> tuple[float, float
     """Return the deviation at a phase and the best shift, zero where fixed; fills each point's deviation."""
     r, l, e, b, sines, cosines, positions, shifts, d, _, _ = case
     n = positions.shape[0]
-    # Angle-sum formulas avoid a sine or cosine within the loop.
+    # Angle-sum formulas avoid sines and cosines within the loop.
     p, q = r * math.sin(phase), r * math.cos(phase)
     high, low, total = -math.inf, math.inf, 0.0
     for i in range(n):
@@ -131,7 +131,7 @@ def _deviation_at_phase(phase: Any, rms: Any, case: _Case) -> tuple[float, float
 
 @analytic
 def _newton_step(phase: Any, case: _Case) -> float:
-    """Return Newton's step of the phase for the mean square of the deviations there; zero where not convex."""
+    """Return the Newton step in the phase for the mean square deviation; zero where it is not convex."""
     r, l, e, b, sines, cosines, positions, shifts, d, slope, bend = case
     n = positions.shape[0]
     p, q = math.sin(phase), math.cos(phase)
@@ -151,7 +151,7 @@ def _newton_step(phase: Any, case: _Case) -> float:
 
 @analytic
 def _golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
-    """Return the phase of the least deviation between two phases, by golden section."""
+    """Return the phase with the minimum deviation between two phases, by golden-section search."""
     p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_p = at_q = 0.0
     left = True
@@ -174,10 +174,10 @@ def _golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
 
 @analytic
 def _bound_deviation(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
-    """Return the greatest deviation at a phase, and its lower bound within `half` of that phase.
+    """Return the maximum deviation at a phase, and its lower bound within `half` of that phase.
 
-    bend: bound of the deviations' curvature. With the shift free, the common part of deviations, and of their slopes,
-    does not count.
+    bend: bound on the deviations' curvature. If the shift is free, the common part of the deviations, and of their
+    slopes, does not count.
     """
     r, l, e, b, sines, cosines, positions, shifts, d, slope, _ = case
     p, q = r * math.sin(phase), r * math.cos(phase)
@@ -206,10 +206,10 @@ def _bound_deviation(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
 
 @analytic
 def _branch_and_bound(case: _Case, cells: Any) -> float:
-    """Return the phase of the least greatest deviation.
+    """Return the phase that minimises the maximum deviation.
 
-    The curvature of a deviation is bounded by the slider's greatest acceleration over a turn. Cells of the phase whose
-    bound exceeds the best value so far are therefore left out. The others are halved until the function within one is
+    The curvature of a deviation is bounded by the slider's maximum acceleration over a turn. Cells of the phase whose
+    bound exceeds the best value so far are therefore discarded. The others are halved until the function within one is
     practically convex.
     """
     bend, half = 0.0, math.pi / _PHASES
@@ -238,7 +238,7 @@ def _branch_and_bound(case: _Case, cells: Any) -> float:
 
 @analytic
 def _least_square(case: _Case, grid: Any) -> float:
-    """Return the phase of the least root mean square deviation, searched from the grid's best stretches."""
+    """Return the phase with the minimum root mean square deviation, searched from the best intervals of the grid."""
     for j in range(_PHASES):
         grid[j], _ = _deviation_at_phase(_TURN * j / _PHASES, True, case)
     best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
@@ -258,7 +258,7 @@ def _least_square(case: _Case, grid: Any) -> float:
         for turn in range(_NEWTON + 1):
             value, _ = _deviation_at_phase(phase, True, case)
             step = _newton_step(phase, case)
-            if abs(step) > 1e-5 or turn == _NEWTON:  # golden section errs by less where the square is convex
+            if abs(step) > 1e-5 or turn == _NEWTON:  # if the square is convex, golden-section search errs by less
                 break
             phase += step
         if value < least:
@@ -285,7 +285,7 @@ def _fit(
 
 
 def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
-    """Return the least deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
+    """Return the minimum deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
     designs = turning(designs)
     angles, positions = np.array(target.crank_angles), np.array(target.positions)
     free = target.phase == "free", target.shift == "free"

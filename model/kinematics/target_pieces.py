@@ -1,12 +1,13 @@
-"""The deviation from a desired motion (`target_motion`) as the maximum of smooth pieces, with exact gradients.
+"""Deviation from a target motion (`target_motion`) as the maximum of smooth pieces, with exact gradients.
 
-Derivatives are at fixed phase and shift (envelope theorem). The least of the greatest over the phase lies where the
-highest deviation turns, or where a rising and a falling one, a_m and a_n with slopes b_m < 0 < b_n, cross; there
+Derivatives are taken at fixed phase and shift (envelope theorem). The minimum over the phase lies where the highest
+deviation has its turning point, or where a rising and a falling deviation cross. With values a_m and a_n and slopes b_m
+< 0 < b_n, the expression
 
     lambda_m a_m + lambda_n a_n,    lambda_m = b_n / (b_n - b_m),    lambda_n = -b_m / (b_n - b_m),
 
-is the value to first order for any change of the design. The deviation is therefore locally the maximum over such pairs
-(duality of the linear programme in the phase).
+is the value to first order for any change in the design. Locally, the deviation is therefore the maximum over such
+pairs (duality of the linear programme in the phase).
 """
 
 from __future__ import annotations
@@ -24,10 +25,10 @@ from .position import motion
 from .target_motion import Measure, TargetMotion, fit
 
 _PEAKS = 6  # local peaks over the points, of either sign, that make pieces
-_OTHER_POINTS = 3  # the highest of the other points
-_CROSSED = 8  # candidates that are paired where the phase is free
+_OTHER_POINTS = 3  # the highest among the other points
+_CROSSED = 8  # candidates that are paired if the phase is free
 _PIECES = 10
-_CONVERGED = 1e-6  # rad; a deviation whose turning point is this near to the phase turns there, up to rounding
+_CONVERGED = 1e-6  # rad; if a deviation's turning point is this close to the phase, they coincide up to rounding
 _MIX = 0.5 * (math.sqrt(5.0) - 1.0)  # any irrational: labels of different pairs hardly ever coincide
 
 
@@ -47,7 +48,7 @@ def _motion_at_points(target: TargetMotion, branch: float, phase: Array, designs
 
 
 def _distance_slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
-    """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex step."""
+    """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex steps."""
     slopes = np.empty((len(designs), len(target.positions), 3))
     for v in range(3):
         stepped = designs.astype(np.complex128)
@@ -57,9 +58,9 @@ def _distance_slopes(target: TargetMotion, branch: float, phase: Array, designs:
 
 
 def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
-    """Return the least deviation of designs (n, 3) as the maximum of smooth pieces.
+    """Return the minimum deviation for designs (n, 3) as the maximum of smooth pieces.
 
-    The root mean square has one piece; its gradient is zero where it is only rounding error.
+    The root mean square has one piece; its gradient is zero where it is only a rounding error.
     """
     designs = turning(designs)
     fitted = fit(target, branch, measure, designs)
@@ -67,7 +68,7 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
         d = branch * _motion_at_points(target, branch, fitted.phase, designs).x - np.array(target.positions)
         d = d + fitted.shift[:, None]
         slopes = _distance_slopes(target, branch, fitted.phase, designs)
-        # With the shift free the deviations have zero mean, so the means of the derivatives need not be subtracted.
+        # If the shift is free, the deviations have zero mean, so the means of the derivatives need not be subtracted.
         noise = fitted.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
         per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, fitted.values * d.shape[1]))
         gradients = np.einsum("ni,niv->nv", d, slopes) * per[:, None]
@@ -75,7 +76,8 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
     phase = fitted.phase.copy()
     sides = _Sides.from_points(target, branch, phase, designs)
     if target.phase == "free":
-        # Golden section locates a smooth turning point only to the square root of rounding: add a Newton step.
+        # Golden-section search locates a smooth turning point only to the square root of rounding, so a Newton step
+        # follows.
         step = sides.settling()
         if np.any(step != 0.0):
             phase = phase + step
@@ -85,7 +87,7 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
 
 
 class _Sides(NamedTuple):
-    """Candidates (n, m) for the greatest deviation at a phase, -inf where there are fewer.
+    """Candidates (n, m) for the maximum deviation at a phase, -inf where there are fewer.
 
     values, slope, bend: deviations and their first and second derivatives by the phase. gradients: (n, m, 3). labels:
     as in `FitPieces`.
@@ -99,7 +101,7 @@ class _Sides(NamedTuple):
 
     @classmethod
     def from_points(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
-        """Return the local peaks of both signs over the points; with the shift free, half-sums of pairs."""
+        """Return the local peaks of both signs over the points; if the shift is free, half-sums of pairs."""
         m = _motion_at_points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
         slopes = _distance_slopes(target, branch, phase, designs)
@@ -118,7 +120,7 @@ class _Sides(NamedTuple):
         return cls(values, slope, bend, gradients.reshape(n, -1, 3), labels.reshape(n, -1))
 
     def settling(self) -> Array:
-        """Return Newton's step (n,) of the phase where the highest deviation has its own turning point, else zero."""
+        """Return the Newton step (n,) in the phase where the highest deviation has its own turning point, else zero."""
         top = np.argmax(self.values, axis=1)[:, None]
         value, slope, bend = (
             np.take_along_axis(getattr(self, name), top, axis=1)[:, 0] for name in ("values", "slope", "bend")
@@ -131,7 +133,7 @@ class _Sides(NamedTuple):
         return np.where(after_step.max(axis=1) < value, step, 0.0)
 
     def crossed(self) -> _Sides:
-        """Return pairs of a falling and a rising deviation, and the highest one where it has a turning point."""
+        """Return pairs of a falling and a rising deviation, and the highest deviation where it has a turning point."""
         few = self._take_highest(_CROSSED)
         n, k = few.values.shape
         turning = (np.abs(few.slope) < _CONVERGED * few.bend) & (np.arange(k) == 0)
@@ -141,7 +143,7 @@ class _Sides(NamedTuple):
         slope_difference = few.slope[:, None, :] - few.slope[:, :, None]
         share = np.where(
             is_pair, few.slope[:, None, :] / np.where(is_pair, slope_difference, 1.0), 0.0
-        )  # of the falling one
+        )  # for the falling one
         finite_values = np.where(finite, few.values, 0.0)
         values = np.where(
             is_pair, share * finite_values[:, :, None] + (1.0 - share) * finite_values[:, None, :], -np.inf
@@ -172,7 +174,7 @@ class _Sides(NamedTuple):
 
 
 def _highest_deviations(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
-    """Return the highest deviations times a sign: local peaks over the points, and others, which may tie with them."""
+    """Return the highest deviations times a sign: local peaks over the points, and others that may tie with them."""
     values = sign * d
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
     peaks = (values >= padded[:, :-2]) & (values >= padded[:, 2:])

@@ -1,4 +1,4 @@
-"""All crank angles of one linkage for a slider position, with crank speeds and accelerations; reach of the slider."""
+"""All crank angles of one linkage for a slider position, with crank speeds and accelerations; range of the slider."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
 from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, finite
 
-_DIGITS = 9  # decimals of a position in messages: nanometres
+_DIGITS = 9  # decimals of a position in messages, m: nanometres
 _LOCKED = 1e-7
-"""Fraction of the rod. Nearer to an end where the rod is normal to the slider line, rounding decides whether it is
-locked.
+"""Fraction of the rod. Closer than this to an end where the rod is normal to the slider line, rounding decides whether
+it is locked.
 
-There l - |e - r sin(theta)| is half the square of the distance, and 1e-8 squared is the rounding of a double.
+There l - |e - r sin(theta)| is half the square of the distance, and the square of 1e-8 is the rounding error of a
+double.
 """
 
 
 @dataclass(frozen=True)
 class CrankSolution:
-    """Crank motion that gives a slider motion.
+    """A crank motion that produces a slider motion.
 
     crank_angle: rad in [0, 2 pi). speed: rad/s; None without a slider velocity, and at a dead centre, where any crank
     speed leaves the slider at rest. acceleration: rad/s^2; None where the speed is None, and without a slider
-    acceleration. stroke: stroke that the slider makes there when the crank turns counter-clockwise; None at a dead
-    centre.
+    acceleration. stroke: the slider's stroke at that angle if the crank turns counter-clockwise; None at a dead centre.
     """
 
     crank_angle: float
@@ -51,9 +51,9 @@ class _SliderMotion:
 def crank_solutions(
     linkage: Dimensions, position: ArrayLike, velocity: ArrayLike | None, acceleration: ArrayLike | None
 ) -> tuple[CrankSolution, ...]:
-    """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes it.
+    """Return the crank motions of one linkage for a slider motion, SI, as `Linkage.from_slider` describes.
 
-    Where the rod is nearly normal to the slider line, rounding of the angle moves the slider by some 1e-8 cranks.
+    Where the rod is nearly normal to the slider line, rounding of the angle moves the slider by about 1e-8 cranks.
     """
     crank, rod, offset = _real_lengths(linkage)
     slider_motion = _SliderMotion(
@@ -91,8 +91,8 @@ def crank_solutions(
 def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     """Return the ranges of slider positions, m, that one linkage reaches on its branch, in ascending order.
 
-    One range, or two where the crank moves within two separate arcs, rod + |offset| < crank. They end at a dead centre
-    or, not included, where the rod is normal to the slider line: there the linkage locks.
+    There is one range, or two if the crank moves within two separate arcs, rod + |offset| < crank. They end at a dead
+    centre or, exclusive, where the rod is normal to the slider line: there the linkage locks.
     """
     crank, rod, offset = _real_lengths(linkage)
     sines = ((offset - rod) / crank, (offset + rod) / crank)
@@ -109,12 +109,12 @@ def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
 
 
 def _crank_solutions(linkage: Dimensions, stroke: Solution, target: _SliderMotion) -> list[CrankSolution]:
-    """Return the solution of a stroke away from the dead centres; none if it is on the other branch."""
+    """Return the solution for a stroke away from the dead centres; none if it is on the other branch."""
     try:
         angle = float(crank_angle_at(linkage, target.position, solution=stroke))
     except AssemblyError:
         return []
-    if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked, up to rounding
+    if abs(linkage.offset - linkage.crank * math.sin(angle)) >= linkage.rod:  # locked up to rounding
         return []
     if target.velocity is None:
         return [CrankSolution(angle, None, None, stroke)]

@@ -1,12 +1,12 @@
 """Crank motion from slider motion: angle, speed and acceleration of the crank for a given slider motion.
 
-Crank pivot O, crank pin A and slider pin B are a triangle with the sides r, l and d = sqrt(x^2 + e^2). Mirroring A at
+Crank pivot O, crank pin A and slider pin B form a triangle with the sides r, l and d = sqrt(x^2 + e^2). Reflecting A in
 the line O-B gives the second crank angle for the same slider position:
 
     theta = atan2(e, x) -+ beta,   tan(beta) = sqrt((r + l + d)(r + l - d)(d + l - r)(d - l + r)) / (r^2 + d^2 - l^2).
 
-Where the crank turns counter-clockwise, the slider moves outward on the upper sign and inward on the lower one: these
-are the two *solutions*. The law of cosines is used in tangent form: an arc cosine loses half of the digits near the
+If the crank turns counter-clockwise, the slider moves outward on the upper sign and inward on the lower sign: these are
+the two *solutions*. The law of cosines is used in tangent form, because an arc cosine loses half of the digits near the
 dead centres.
 """
 
@@ -32,15 +32,15 @@ Solution = Literal["outward", "inward"]
 ROUNDING = 1e-14
 """Fraction of crank + rod within which a position counts as a dead centre.
 
-Rounding of the position, 1e-16 of it, turns the crank there by its square root, some 1e-8 rad; at 1e-14 the angle from
-the dead centre, some 1e-7 rad, is known to a tenth at best.
+Rounding of the position by a relative 1e-16 turns the crank there by the square root of that, about 1e-8 rad. At 1e-14
+the angle from the dead centre, about 1e-7 rad, is known to a tenth at best.
 """
 
 
 class Dimensions(Protocol):
-    """Dimensions, m, and branch of one linkage or an array: the part of `linkage.Linkage` needed here.
+    """Dimensions, m, and branch of one linkage or an array: the part of `linkage.Linkage` that is needed here.
 
-    That class is not imported: its `from_slider` needs this module.
+    That class is not imported, because its `from_slider` needs this module.
     """
 
     @property
@@ -76,8 +76,8 @@ class CrankMotion:
 def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution: Solution) -> Array:
     """Return the crank angle, rad in [0, 2 pi), for slider positions, m, signed as x; broadcasts with the dimensions.
 
-    solution: "outward" or "inward", direction of the slider there when the crank turns counter-clockwise. At a dead
-    centre both coincide.
+    solution: "outward" or "inward", direction of the slider if the crank turns counter-clockwise. At a dead centre both
+    coincide.
 
     Linkages that do not rotate fully are accepted: each solution is on the linkage's own branch. Raises
     `AssemblyError` for a position out of reach, and for one that the solution reaches only on the other branch.
@@ -98,7 +98,7 @@ def crank_angle_at(linkage: Dimensions, slider_position: ArrayLike, *, solution:
         "ask for the other solution or the other branch",
     )
     wrapped = np.mod(theta, 2.0 * math.pi)
-    # The remainder of a tiny negative angle is rounded to the whole turn.
+    # The remainder of a tiny negative angle is rounded to a whole turn.
     return np.where(wrapped < 2.0 * math.pi, wrapped, 0.0)
 
 
@@ -112,8 +112,8 @@ def crank_motion(
 ) -> CrankMotion:
     """Return the crank motion for slider position (m), velocity (m/s) and acceleration (m/s^2) along +x.
 
-    speed = v / x', acceleration = (a - x'' speed^2) / x', with x' and x'' at the angle of `crank_angle_at`.
-    All arguments broadcast with the dimensions. The rod's motion follows from `Linkage.at`.
+    speed = v / x', acceleration = (a - x'' speed^2) / x', with x' and x'' at the angle from `crank_angle_at`. All
+    arguments broadcast with the dimensions. The rod's motion follows from `Linkage.at`.
 
     Raises `InputError` at a dead centre, where x' = 0 and any crank speed leaves the slider at rest, and
     `AssemblyError` as `crank_angle_at` does.
@@ -141,7 +141,7 @@ def crank_motion(
 def _reachable_positions(
     linkage: Dimensions, slider_position: ArrayLike
 ) -> tuple[Array, tuple[Array, Array, Array], Array]:
-    """Return position, dimensions and distance of the slider pin from the crank pivot, of one shape."""
+    """Return position, dimensions and distance of the slider pin from the crank pivot, in one shape."""
     x, r, l, e = np.broadcast_arrays(
         finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
     )
@@ -159,7 +159,7 @@ def _reachable_positions(
 
 
 def finite(name: str, value: ArrayLike) -> Array:
-    """Return real and finite numbers. Raises `InputError` that names the argument."""
+    """Return real, finite numbers. Raises `InputError` with the argument's name."""
     if np.iscomplexobj(value):
         raise InputError(f"{name} must be real; got {value!r}; leave out the imaginary part")
     try:

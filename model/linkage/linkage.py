@@ -41,12 +41,13 @@ Stroke = Literal["outward", "inward", "equal"]
 class Linkage:
     """An offset slider-crank: crank, rod and offset in metres (scalars, or arrays that broadcast), and its branch.
 
-    Dimensions, crank angles, speeds and accelerations may be complex; then so are the results. The imaginary part of a
-    result, divided by that of the stepped number, is the derivative, exact to rounding (complex step). Use a step such
-    as 1e-30j, as only its first power is kept. Conditions and limits use the real parts.
+    Dimensions, crank angles, speeds and accelerations may be complex; the results are then complex, too. The imaginary
+    part of a result, divided by that of the stepped number, is the derivative, exact to rounding (complex step). Use a
+    step such as 1e-30j, because only its first power is kept. Conditions and limits use the real parts.
 
-    The sketch and the sign conventions are in `slidercrank.model.kinematics.position`. Any linkage that assembles at
-    some crank angle is accepted. Methods that need full rotation say so and raise `AssemblyError` otherwise.
+    The sketch and the sign conventions are in `slidercrank.model.kinematics.position`. Any linkage that can be
+    assembled at some crank angle is accepted. Methods that need full rotation say so and raise `AssemblyError`
+    otherwise.
 
     >>> linkage = Linkage(crank=0.04, rod=0.064, offset=0.02)
     >>> round(float(linkage.stroke) * 1000, 6)
@@ -62,9 +63,9 @@ class Linkage:
     branch: Branch
 
     def __init__(self, crank: ArrayLike, rod: ArrayLike, offset: ArrayLike = 0.0, branch: Branch = "open") -> None:
-        """Take lengths, m. Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
+        """Take lengths, m. Raises `InputError` for other values, `AssemblyError` if no crank angle is possible.
 
-        A linkage by itself has no scale: for pure geometry, lengths in any other unit serve as well.
+        A linkage by itself has no scale: for pure geometry, lengths in any unit will do.
         """
         values = dimensions(crank, rod, offset)
         if branch not in ("open", "crossed"):
@@ -135,16 +136,16 @@ class Linkage:
 
     @property
     def time_ratio(self) -> Array:
-        """Duration of the slower stroke over the faster at constant speed, at least 1."""
+        """Duration of the slower stroke divided by that of the faster one at constant speed, at least 1."""
         self.require_full_rotation()
         ratio: Array = geometry.time_ratio(self.crank, self.rod, magnitude(self.offset))
         return ratio
 
     def slow_stroke(self, *, direction: float = 1.0) -> NDArray[np.str_]:
-        """Return which stroke is the slow one at constant speed: "outward", "inward" or "equal" (no offset).
+        """Return which stroke is slower at constant speed: "outward", "inward" or "equal" (no offset).
 
-        direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch the inner dead
-        centre comes pi + b after the outer one counter-clockwise, so the inward stroke is the slow one.
+        direction: positive for a crank that turns counter-clockwise. With e > 0 on the open branch, the inner dead
+        centre is pi + b counter-clockwise from the outer one, so the inward stroke is slow.
         """
         if not isinstance(direction, Real) or not (direction > 0.0 or direction < 0.0):
             raise InputError(
@@ -158,7 +159,7 @@ class Linkage:
 
     @property
     def least_transmission_angle(self) -> Array:
-        """Least transmission angle over the cycle, rad: cos(mu_min) = (r + |e|) / l."""
+        """Minimum transmission angle over the cycle, rad: cos(mu_min) = (r + |e|) / l."""
         self.require_full_rotation()
         angle: Array = geometry.least_transmission_angle(self.crank, self.rod, magnitude(self.offset))
         return angle
@@ -193,8 +194,8 @@ class Linkage:
 
         theta = atan2(e, x) -+ beta as in `slidercrank.model.linkage.inverse`; speed = v / x', acceleration =
         (a - x'' speed^2) / x'. position: m, signed as x; velocity, m/s, and acceleration, m/s^2: along +x.
-        Two solutions, the outward one first; one at a dead centre, or where the other is on the other branch. At a dead
-        centre any crank speed leaves the slider at rest: speed and acceleration are None.
+        There are two solutions, the outward one first; one at a dead centre, or if the other is on the other branch. At
+        a dead centre any crank speed leaves the slider at rest: speed and acceleration are None.
 
         Raises `AssemblyError` for a position out of reach. Raises `InputError` for an array, an acceleration without
         velocity, and at a dead centre for a velocity other than 0 or an acceleration away from the stroke.
@@ -232,7 +233,7 @@ class Linkage:
         speed: float = 0.0,
         acceleration: float = 0.0,
     ) -> PointMotion:
-        """Return the motion of a rod point, `along` from the crank pin and `across` to the left, m."""
+        """Return the motion of a point on the rod, `along` it from the crank pin and `across` to its left, m."""
         theta = numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
@@ -249,7 +250,7 @@ class Linkage:
         )
 
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
-        """Return the first-order influence of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
+        """Return first-order influences of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
         theta = numbers(crank_angle)
         per_dimension: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
         return per_dimension

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_WIDTH, _HEIGHT, _MARGIN = 320.0, 180.0, 18.0  # px of the SVG
+_WIDTH, _HEIGHT, _MARGIN = 320.0, 180.0, 18.0  # px in the SVG
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Pose:
 
 
 def svg(pose: Pose, crank: float, label: str) -> str:
-    """Return a linkage as a self-contained SVG element. label: text read out in place of the picture."""
+    """Return a linkage as a self-contained SVG element. label: text read aloud in place of the picture."""
     left, right, bottom, top = pose.box(crank)
     scale = min((_WIDTH - 2.0 * _MARGIN) / (right - left), (_HEIGHT - 2.0 * _MARGIN) / (top - bottom))
     x0 = 0.5 * (_WIDTH - scale * (left + right))

@@ -19,8 +19,8 @@ from .dimensions import DIMENSIONS
 class Kinematics:
     """Motion at given crank angles; arrays of the broadcast shape, SI and radians.
 
-    rod_angle: angle of the rod from +x, counter-clockwise; near 180 deg on the crossed branch.
-    transmission_angle: angle between rod and the normal of the slider line, 90 deg - |phi| from the slider line.
+    rod_angle: angle of the rod from +x, counter-clockwise; near 180 deg on the crossed branch. transmission_angle:
+    angle between rod and the normal of the slider line: 90 deg minus |phi|, with phi measured from the slider line.
     """
 
     crank_angle: Array
@@ -43,7 +43,7 @@ class PointMotion:
 
 
 def numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
-    """Return real or complex numbers, typed as real (all except complex steps are). Raises `InputError`."""
+    """Return real or complex numbers, typed as real, which all are except complex steps. Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
     try:
         array: Array = np.asarray(value, dtype=kind)
@@ -53,9 +53,9 @@ def numbers(value: ArrayLike, argument: str = "a crank angle, speed or accelerat
 
 
 def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
-    """Return crank, rod and offset, m, as arrays that broadcast; an offset of rounding size becomes zero.
+    """Return crank, rod and offset, m, as arrays that broadcast; an offset below rounding becomes zero.
 
-    Raises `InputError` for other values, `AssemblyError` where no crank angle is possible.
+    Raises `InputError` for other values, `AssemblyError` if no crank angle is possible.
     """
     values = []
     for name, length in zip(DIMENSIONS, (crank, rod, offset), strict=True):
@@ -86,7 +86,7 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
 def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,) * 3) -> str | None:
     """Return the first implausibly long dimension in words, as read in m and as probably meant in mm.
 
-    None without such a length. longest: plausible limits for crank, rod and offset, m.
+    None if there is no such length. longest: plausible limits for crank, rod and offset, m.
     """
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
         is_too_long = np.isfinite(size) & (np.abs(size) > limit)
@@ -96,7 +96,7 @@ def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,
 
 
 def direction(y: Array, x: Array) -> Array:
-    """Return the angle of (x, y), rad, with its derivative where these are complex."""
+    """Return the angle of (x, y), rad, with its derivative if these are complex."""
     angle: Array = np.arctan2(y.real, x.real)
     if np.iscomplexobj(x) or np.iscomplexobj(y):
         turned = (x.real * y.imag - y.real * x.imag) / (x.real * x.real + y.real * y.real)

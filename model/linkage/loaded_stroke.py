@@ -1,9 +1,10 @@
 """Loaded stroke: the stroke in which the load on the slider does more work against the motion.
 
-The work against a stroke is W = -integral of F dX, F the load and X the distance of the slider, both positive outward.
-Springs and tables over position that act in both strokes are left out: they return in one stroke what they take in the
-other. Viscous resistance is also left out, as it is always greater in the fast stroke. A constant force counts: a
-weight loads the stroke in which it is lifted.
+The work against a stroke is W = -integral of F dX, with F the load and X the distance of the slider, both positive
+outward. Springs and tables over position that act in both strokes are left out, because they return in one stroke what
+they absorb in the other. Viscous resistance is also left out, as it is always greater in the faster stroke. A constant
+force
+counts: a weight loads the stroke in which it is lifted.
 """
 
 from __future__ import annotations
@@ -20,13 +21,13 @@ from .linkage import Linkage
 
 MORE = 0.01
 """Fraction of the greater work: strokes whose works differ by less are equally loaded."""
-_STEPS = 256  # steps per stroke: sums accurate to 1e-3
+_STEPS = 256  # steps per stroke, which make sums accurate to 1e-3
 
 
 def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
     """Return the loaded stroke of designs (n, 3 + k): "outward", "inward", or "equal" for neither.
 
-    Designs as in `Quantity.evaluate`: crank, rod, offset, m, each rotating fully, then the varying numbers.
+    Designs as in `Quantity.evaluate`: crank, rod, offset, m, each rotating fully, then the variables.
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     if mechanism.varying:

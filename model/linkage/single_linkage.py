@@ -1,4 +1,4 @@
-"""The single linkage for an analysis of a mechanism."""
+"""Validation of the single linkage that an analysis of a mechanism covers."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from .linkage import Linkage
 def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one fully rotating linkage, with dimensions as floats.
 
-    Raises `InputError` for an array of linkages and for a linkage on another branch than the mechanism's,
-    and for a spring on a crank that rotates fully; `AssemblyError` for one that does not rotate fully.
+    Raises `InputError` for an array of linkages, for a linkage on another branch than the mechanism's, and for a spring
+    on a fully rotating crank; `AssemblyError` for one that does not rotate fully.
     """
     linkage.require_full_rotation()
     require_no_winding(mechanism)
@@ -22,7 +22,10 @@ def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
 
 
 def one_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
-    """Return one linkage that need not rotate fully, with dimensions as floats; raise `InputError` as `single` does."""
+    """Return one linkage that need not rotate fully, with dimensions as floats.
+
+    Raises `InputError` as `single` does.
+    """
     if np.ndim(linkage.rotates_fully):
         raise InputError(
             f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"

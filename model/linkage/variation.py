@@ -20,7 +20,7 @@ Dimension = Literal["crank", "rod", "offset"]
 
 @dataclass(frozen=True)
 class Variation:
-    """The motion with one dimension at another value, m. Arrays of `motion` are (m,), like those of `Variations`."""
+    """Motion with one dimension at another value, m. Arrays of `motion` are (m,), like those of `Variations`."""
 
     dimension: Dimension
     value: float

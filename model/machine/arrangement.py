@@ -1,6 +1,6 @@
-"""Several identical cylinders on one crankshaft: angles between their cranks, bank angles, places along the shaft.
+"""Several identical cylinders on one crankshaft: angles between their cranks, bank angles, positions along the shaft.
 
-Cylinder k has its crank at the angle theta + phase_k and its slider line turned by bank_k about the shaft, both
+Cylinder k has its crank at the angle theta + phase_k and its slider line rotated by bank_k about the shaft, both
 counter-clockwise. Its position is that of a single machine at the crank angle theta + phase_k - bank_k, rotated by
 bank_k. All cylinders have the same crank, counterweight, rod, slider, loads and friction.
 """
@@ -22,9 +22,9 @@ _TURN = 2.0 * math.pi
 class Arrangement:
     """Identical cylinders on one crankshaft.
 
-    phases: angle of each crank from the shaft's zero, counter-clockwise, rad. banks: angle of each slider line from
-    +x, counter-clockwise, rad; all zero by default. places: places of the cylinders along the shaft, m, positive
-    towards the viewer who sees counter-clockwise as stated; all in one plane by default.
+    phases: angle of each crank from the shaft's zero, counter-clockwise, rad. banks: angle of each slider line from +x,
+    counter-clockwise, rad; all zero by default. places: positions of the cylinders along the shaft, m, positive towards
+    the viewer for whom counter-clockwise holds as stated; all in one plane by default.
     """
 
     phases: tuple[float, ...]
@@ -50,7 +50,7 @@ class Arrangement:
                 self._require_distinct_cylinders(i, k)
 
     def _require_distinct_cylinders(self, i: int, k: int) -> None:
-        """Raise an error for two cylinders with equal phase and bank at one place."""
+        """Raise an error if two cylinders have equal phase and bank at one position."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
             bank_text = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
@@ -65,16 +65,16 @@ class Arrangement:
         return self.banks[k] if self.banks else 0.0
 
     def place(self, k: int) -> float:
-        """Return the place of cylinder k along the shaft, m."""
+        """Return the position of cylinder k along the shaft, m."""
         return self.places[k] if self.places else 0.0
 
     def lead(self, k: int) -> float:
-        """Return the lead of cylinder k's crank angle, from its own slider line, over the shaft's, rad."""
+        """Return the lead of cylinder k's crank angle, from its own slider line, over the shaft angle, rad."""
         return self.phases[k] - self.bank(k)
 
     @property
     def text(self) -> str:
-        """The cylinders in a few words."""
+        """A short description of the cylinders."""
         lists = [f"{len(self.phases)} cylinders at {_angles_text(self.phases)} deg"]
         lists += [f"banks {_angles_text(self.banks)} deg"] if self.banks else []
         lists += [f"at {', '.join(f'{1e3 * at:.6g}' for at in self.places)} mm along the shaft"] if self.places else []

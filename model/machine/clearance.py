@@ -1,4 +1,4 @@
-"""A joint with clearance: a journal loose in its bearing, and the force between them.
+"""A joint with clearance: a journal loose in its bearing, and the contact force between them.
 
 The normal force over the penetration d is Hertz's, with hysteresis damping that dissipates energy in every impact:
 
@@ -7,9 +7,9 @@ The normal force over the penetration d is Hertz's, with hysteresis damping that
 where d'_0 is the speed at which the impact began and h follows from the coefficient of restitution e:
 
 - flores: h = 8 (1 - e) / (5 e). Flores, Machado, Silva and Martins, "On the continuous contact force models for soft
-  materials in multibody dynamics", Multibody System Dynamics 25 (2011) 357-375. Good for every e.
+  materials in multibody dynamics", Multibody System Dynamics 25 (2011) 357-375. Suitable for every e.
 - lankarani-nikravesh: h = 3 (1 - e^2) / 4. Lankarani and Nikravesh, "A contact force model with hysteresis damping
-  for impact analysis of multibody systems", Journal of Mechanical Design 112 (1990) 369-376. Good for e near one.
+  for impact analysis of multibody systems", Journal of Mechanical Design 112 (1990) 369-376. Suitable for e near one.
 """
 
 from __future__ import annotations
@@ -29,16 +29,15 @@ Law = Literal["flores", "lankarani-nikravesh"]
 class Clearance:
     """One pin joint with clearance; the other two are ideal.
 
-    joint: the loose joint. The journal is on the crank (crank pivot, crank pin) or on the slider (slider pin).
-    radius: radial clearance, radius of the bearing less radius of the journal, m. journal_radius: m.
-    restitution: e, ratio of the speeds after and before an impact, above 0 and at most 1.
-    friction: coefficient between journal and bearing, with the tangential force
-    mu F v / sqrt(v^2 + slip_speed^2) against the sliding velocity v. slip_speed: m/s, below which friction fades;
-    the default is small next to the sliding of any pin that turns.
-    law: damping law, see above. elastic_modulus, poisson: modulus, Pa, and Poisson's ratio of journal and bearing;
-    steel by default. stiffness: K, N/m^1.5; Hertz's if None. slow_impact: impact speed below which the damping stays
-    constant, m/s. It keeps the damping finite where a contact begins softly, and lets e rise towards one for slow
-    impacts. Below it, this is the law that Hunt and Crossley found (Journal of Applied Mechanics 42 (1975) 440-445).
+    joint: the loose joint. The journal is on the crank (crank pivot, crank pin) or on the slider (slider pin). radius:
+    radial clearance, radius of the bearing minus radius of the journal, m. journal_radius: m. restitution: e, ratio of
+    the speeds after and before an impact, above 0 and at most 1. friction: coefficient between journal and bearing,
+    with the tangential force mu F v / sqrt(v^2 + slip_speed^2) against the sliding velocity v. slip_speed: m/s, below
+    which friction fades; the default is small compared with the sliding speed of any rotating pin. law: damping law,
+    see above. elastic_modulus, poisson: modulus, Pa, and Poisson's ratio of journal and bearing; steel by default.
+    stiffness: K, N/m^1.5; Hertz's if None. slow_impact: impact speed below which the damping stays constant, m/s. It
+    keeps the damping finite where a contact begins softly, and lets e approach one for slow impacts. Below it, this is
+    the law of Hunt and Crossley (Journal of Applied Mechanics 42 (1975) 440-445).
     """
 
     joint: Joint
@@ -81,10 +80,10 @@ class Clearance:
 
     @property
     def contact_stiffness(self) -> float:
-        """K, N/m^1.5: as given, or Hertz's for bodies of radii R_j and -R_b and of one material.
+        """K, N/m^1.5: as given, or Hertz's for bodies of radii R_j and -R_b made from the same material.
 
         K = (2/3) E / (1 - nu^2) sqrt(R_j R_b / (R_b - R_j)): two spheres, as is usual for joints with clearance. A long
-        journal touches along a line and is stiffer: state its stiffness if known.
+        journal has line contact and is stiffer; state its stiffness if known.
         """
         if self.stiffness is not None:
             return self.stiffness

@@ -7,7 +7,7 @@ from .mechanism import Mechanism
 
 
 def require_no_winding(mechanism: Mechanism) -> None:
-    """Raise an error for a load that differs after a turn of the crank."""
+    """Raise an error for a load that does not repeat after one crank turn."""
     for load in mechanism.fullest.loads:
         if load.winds:
             raise InputError(
@@ -17,7 +17,7 @@ def require_no_winding(mechanism: Mechanism) -> None:
 
 
 def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
-    """Raise an error for loads on the crank if an analysis supports only loads on the slider; subject: the analysis."""
+    """Raise an error for loads on the crank if an analysis supports only loads on the slider. subject: the analysis."""
     for load in mechanism.fullest.loads:
         if load.on_crank:
             raise InputError(f"{subject} takes loads on the slider; got {load.size}; leave that load out")

@@ -20,7 +20,9 @@ _ONE, _NONE = np.zeros((1, 0)), np.zeros(0, np.int64)
 def _derive(
     raw: Row, columns: Integers, designs: Table, kind: Integers, datum: Integers, blocks: Cube, steps: ComplexCube
 ) -> None:
-    # Complex throughout: compiling the real formulas too would double the time. Zeros: loads do not fill all rows.
+    # Complex throughout: compiling the real formulas as well would double the time. Zeros, because loads do not fill
+    # all
+    # rows.
     stepped, block = np.empty((raw.shape[0], 1), np.complex128), np.zeros((blocks.shape[1], 1), np.complex128)
     count = steps.shape[0] // blocks.shape[0]
     for n in range(blocks.shape[0]):
@@ -45,10 +47,10 @@ def _derive(
 def derived(
     raw: Array, loads: Loads, columns: IntArray = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
-    """Return blocks (n, DESIGN + LOAD_ROWS k, 1) of raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
+    """Return blocks (n, DESIGN + LOAD_ROWS k, 1) from raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
 
-    By default there is one design, which sets none. steps: whether to also return blocks (n c, DESIGN + LOAD_ROWS k, 1)
-    for an imaginary step of each column; otherwise there are none.
+    By default there is a single design that sets none. steps: whether to also return blocks (n c, DESIGN + LOAD_ROWS k,
+    1) for an imaginary step in each column; otherwise there are none.
     """
     rows, n = DESIGN + LOAD_ROWS * len(loads.kind), len(designs)
     blocks = np.empty((n, rows, 1))

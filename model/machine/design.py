@@ -1,6 +1,6 @@
 """A design as the equations of motion use it: masses, moments and forces that follow from raw numbers.
 
-Because `derive` is compiled for complex numbers too, any raw number (`raw`) can be a design variable and has an exact
+Because `derive` is also compiled for complex numbers, any raw number (`raw`) can be a design variable with an exact
 derivative.
 """
 
@@ -79,15 +79,15 @@ class Design(NamedTuple):
 DESIGN = len(Design._fields)
 """Rows in a derived block before those for the loads."""
 LOAD_ROWS, AREA = 10, 2
-"""Rows of each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers of a formula; then
-for a cylinder, from AREA on: piston area, height of the clearance, low and high pressure, exponents of compression and
-expansion, back pressure, end of burning from the top; for a torque on the crank, the numbers of its slots."""
+"""Rows for each load: sign and origin of a table's or a cylinder's own coordinate, or the two numbers in a formula.
+From AREA on, a cylinder adds piston area, height of the clearance, low and high pressure, exponents of compression and
+expansion, back pressure, and end of burning from the top. A torque on the crank has the numbers in its slots."""
 _OUTWARD = Design._fields.index("outward_force")
 _MOVING_MASS = Design._fields.index("moving_mass")
 _RUBBING = Design._fields.index("guide_friction")
 _ROD_RSS, _OFFSET_RSS = Design._fields.index("rod_error_rss"), Design._fields.index("offset_error_rss")
 
-# Written out when the module is loaded: numba does not accept an array column as a tuple.
+# Written out when the module is loaded, because numba does not accept an array column as a tuple.
 design_at: Any = analytic(eval(f"lambda block, j: Design({', '.join(f'block[{row}, j]' for row in range(DESIGN))})"))
 """Column j of a derived block as a `Design`; from Python `j` may be a slice."""
 
@@ -107,9 +107,9 @@ def link_properties(
 ) -> Any:
     """Return mass, first moments along and across, and inertia about the link's origin.
 
-    The sum of a round-ended bar and of a rigid body with its centre at `centre + centre_share length`, `centre_across`
-    off the axis, and the central inertia `inertia + inertia_share mass length^2`; either may be absent (zero).
-    Half-disc of radius R: centroid 4 R / (3 pi) from its diameter, polar moment about the disc's centre m R^2 / 2.
+    The sum of a round-ended bar and a rigid body with its centre at `centre + centre_share length`, `centre_across` off
+    the axis, and central inertia `inertia + inertia_share mass length^2`; either may be absent (zero). Half-disc of
+    radius R: centroid 4 R / (3 pi) from its diameter, polar moment about the disc's centre m R^2 / 2.
     """
     web = density * depth * width * length
     cap = density * depth * width * width * (math.pi / 8.0)
@@ -189,7 +189,7 @@ def _derive_offset(raw: Any, out: Any) -> None:
 
 @analytic
 def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: Any) -> None:
-    """Fill the rows of a load from q with numbers from row p, and add its part to the sums."""
+    """Fill the rows of a load from q with numbers from row p, and add its contributions to the sums."""
     if datum == 0:
         sign, origin = 1.0, 0.0 * raw[_CRANK, j]  # not from a dead centre, which a swing need not have
     elif datum == 1:
@@ -235,7 +235,7 @@ def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: A
 def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
     """Fill `out` (DESIGN + LOAD_ROWS k, n) from raw numbers (END + LOAD_SLOTS k, n), real or complex.
 
-    moved: the only raw number that has changed since `out` was filled; a dimension needs less work.
+    moved: the only raw number that has changed since `out` was filled; a changed dimension needs less work.
     """
     for i in range(9):
         for j in range(raw.shape[1]):

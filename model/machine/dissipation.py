@@ -1,7 +1,7 @@
-"""Work over a turn: whether a machine takes any, judged by its parts and not by cancelling numbers.
+"""Work over a turn: whether a machine absorbs any, judged by its parts rather than by numbers that cancel.
 
 At constant crank speed the kinetic energy repeats after a turn. So does the energy stored by gravity and by every load
-whose force depends only on the slider's position. The mean drive torque is then zero for every linkage.
+whose force depends only on the slider position. The mean drive torque is then zero for every linkage.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from .memoise import memoise_by_machine
 from .varying import Varying
 
 _ROUNDING = 1e-12
-"""Fraction of the forces by which their sum may be off, as decimal numbers add up inexactly."""
+"""Fraction of the forces by which their sum may be off, because decimal numbers add inexactly."""
 
 
 def works_over_a_turn(mechanism: Mechanism) -> bool:
-    """Return whether the mean drive torque over a turn may differ from zero for some design.
+    """Return whether the mean drive torque over a turn may be nonzero for some design.
 
-    It is zero without all of these: friction in loaded joints, crank acceleration, loads that change with speed or have
+    It is zero without all of these: friction in loaded joints, crank acceleration, loads that depend on speed or have
     their own formula, loads that differ between strokes, and loads over crank angle (`Load.turn_work`). For each
-    varying number two values are tried, neither of them special.
+    variable two values are tried, neither of them special.
     """
     return any(
         machine.acceleration != 0.0 or _has_friction(machine) or _load_works(machine) for machine in _trials(mechanism)
@@ -34,13 +34,13 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
 
 
 def load_works_over_a_turn(mechanism: Mechanism) -> bool:
-    """Return whether the loads may take or give net work over a turn for some design; see `works_over_a_turn`."""
+    """Return whether the loads may absorb or supply net work over a turn for some design; see `works_over_a_turn`."""
     return any(map(_load_works, _trials(mechanism)))
 
 
 @memoise_by_machine
 def with_loads_alone(mechanism: Mechanism) -> Mechanism:
-    """Return the machine without masses and friction: all work of its drive goes into the loads."""
+    """Return the machine without masses and friction: all work from its drive goes into the loads."""
     nothing = RigidLink(mass=0.0)
     of_loads = {"loads", "speed", "speed_profile"}
 
@@ -72,7 +72,7 @@ def linkage_loaded(machine: Mechanism) -> bool:
 
 
 def pushed(machine: Mechanism) -> bool:
-    """Return whether loads act on the slider: speed-independent ones, or any while it moves."""
+    """Return whether loads act on the slider: at rest only speed-independent loads, in motion any load."""
     return any(not load.on_crank for load in _acting_loads(machine))
 
 
@@ -97,7 +97,7 @@ def _acting_loads(machine: Mechanism) -> list[Load]:
 
 
 def pivot_loaded(machine: Mechanism) -> bool:
-    """Return whether a force acts on the crank pivot: that of the linkage, or weight and inertia of the crank."""
+    """Return whether a force acts on the crank pivot: from the linkage, or from weight and inertia of the crank."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
     return linkage_loaded(machine) or (crank_weighs(machine) and driven)
 
@@ -123,7 +123,7 @@ def _has_friction(machine: Mechanism) -> bool:
 
 
 def _trials(mechanism: Mechanism) -> list[Mechanism]:
-    """Return the machine, or for varying numbers two machines with values that are not special."""
+    """Return the machine or, if it has variables, two machines with values that are not special."""
     if not mechanism.varying:
         return [mechanism]
     inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]

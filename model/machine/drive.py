@@ -1,6 +1,6 @@
-"""Drive of the crank: a motor with its torque over speed and limits, a gear, and inertias turning with it.
+"""Drive of the crank: a motor with its torque-speed curve and limits, a gear, and inertias that turn with it.
 
-Motor speed and motor torque are positive in the motor's intended direction. A `Drive` converts this to the crank's
+Motor speed and motor torque are positive in the motor's intended direction. A `Drive` converts these to the crank's
 direction, which is that of the mechanism's speed.
 """
 
@@ -127,14 +127,14 @@ Motor = ConstantTorque | LinearMotor | TorqueTable
 class Drive:
     """A motor, a gear, and the parts that turn with them.
 
-    motor: torque over speed; None where only the loads on the motor matter. flywheel: inertia on the crankshaft, kg
-    m^2. motor_inertia: inertia of the rotor and all parts at motor speed, kg m^2. gear_ratio: turns of the motor per
-    crank turn; at the crank the motor's torque is multiplied by the ratio, its inertia by the square of the ratio.
+    motor: torque over speed; None if only the loads on the motor matter. flywheel: inertia on the crankshaft, kg m^2.
+    motor_inertia: inertia of the rotor and all parts at motor speed, kg m^2. gear_ratio: motor turns per crank turn; at
+    the crank the motor torque is multiplied by the ratio, its inertia by the square of the ratio.
 
-    gear_efficiency: output over input power of the gear while the motor drives. braking_efficiency: likewise while the
-    crank drives the motor; None for the same. greatest_torque, rated_torque: what the motor can give briefly and
-    continuously, N m. greatest_speed: of the motor, rad/s. copper_loss: heat in the winding at the rated torque, W.
-    recovery: fraction of the braking energy that the supply takes back.
+    gear_efficiency: output power of the gear divided by input power while the motor drives. braking_efficiency: the
+    same while the crank drives the motor; None if both are equal. greatest_torque, rated_torque: torque that the motor
+    can supply briefly and continuously, N m. greatest_speed: maximum speed of the motor, rad/s. copper_loss: heat in
+    the winding at the rated torque, W. recovery: fraction of the braking energy that the supply recovers.
     """
 
     motor: Motor | None = None
@@ -172,12 +172,12 @@ class Drive:
 
     @property
     def is_lossy(self) -> bool:
-        """Whether the gear takes a part of the power, in either direction."""
+        """Whether the gear loses part of the power, in either direction."""
         return self.gear_efficiency < 1.0 or (self.braking_efficiency or 1.0) < 1.0
 
     @property
     def torque_law(self) -> Motor:
-        """The motor's torque over its speed. Raises `InputError` without one, and for a gear with losses."""
+        """The motor's torque over its speed. Raises `InputError` without a motor, and for a gear with losses."""
         if self.motor is None:
             raise InputError(
                 "a machine that runs under its motor needs the motor's torque; got a drive without one; add for "
@@ -216,14 +216,14 @@ class Drive:
     def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
 
-        direction: +1 or -1, direction in which the motor is meant to turn the crank.
+        direction: +1 or -1, direction in which the motor is intended to turn the crank.
         """
         speed = direction * self.gear_ratio * np.asarray(crank_speed)
         return np.asarray(direction * self.gear_ratio * self.torque_law.torque_at(speed))
 
 
 def speed_range(drive: Drive) -> tuple[float, float]:
-    """Return the least and the greatest crank speed, rad/s in the motor's direction, at which its torque is known."""
+    """Return the minimum and maximum crank speed, rad/s in the motor's direction, at which its torque is known."""
     law = drive.torque_law
     if not isinstance(law, TorqueTable):
         return -math.inf, math.inf

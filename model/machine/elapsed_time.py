@@ -16,8 +16,8 @@ _TURN = 2.0 * math.pi
 _NODES = 20  # nodes in each panel
 _TAIL = 2  # last coefficients of a series, which show whether it has converged
 _CONVERGED = 1e-14  # relative size of the last coefficients of a converged series
-_NOISE = 32.0 * np.finfo(np.float64).eps  # error of p, so that 1 / p has p^-2 times this error
-_DEEPEST, _PANELS = 52, 200_000  # halvings of a panel, and panels, beyond which they are left as they are
+_NOISE = 32.0 * np.finfo(np.float64).eps  # error of p; the error of 1 / p is p^-2 times this
+_DEEPEST, _PANELS = 52, 200_000  # maximum halvings of a panel, and panels; then they are left as they are
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class ElapsedTime:
 
     @classmethod
     def integrate(cls, ratio: Callable[[Array], Array], ends: Array) -> ElapsedTime:
-        """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles of a turn, rad; p is analytic in between."""
+        """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles in a turn, rad; p is analytic in between."""
         nodes, basis = gauss(_NODES)[0], legendre_fit(_NODES).T
 
         def sample(low: Array, width: Array) -> Samples:
@@ -58,7 +58,7 @@ class ElapsedTime:
         return float(self.up_to_ends[-1])
 
     def up_to(self, crank_angle: Array) -> Array:
-        """Return the integral from the start of the first panel up to crank angles, rad, of any number of turns."""
+        """Return the integral from the start of the first panel up to crank angles, rad, over any number of turns."""
         turns = np.floor((crank_angle - self.ends[0]) / _TURN)
         angle_in_turn = crank_angle - turns * _TURN
         panel = np.clip(np.searchsorted(self.ends, angle_in_turn, side="right") - 1, 0, len(self.ends) - 2)

@@ -1,9 +1,9 @@
-"""Coulomb friction of a machine: joints with friction, and its coefficients.
+"""Coulomb friction in a machine: joints with friction, and their coefficients.
 
-In the guide the friction force is the coefficient times the size of the guide's force, against the slider's velocity.
-In a pin the friction moment is coefficient times radius times the size of the pin's force, against the relative
-rotation of the parts. The pin's force passes its centre at the distance coefficient times radius, the radius of its
-*friction circle*.
+In the guide the friction force is the coefficient times the magnitude of the guide force, against the slider's
+velocity. In a pin the friction moment is coefficient times radius times the magnitude of the pin force, against the
+relative rotation of the parts. The pin force passes the pin's centre at the distance coefficient times radius, the
+radius of its *friction circle*.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
-    """A pin in its bearing. radius: m. coefficient: friction moment over radius times force."""
+    """A pin in its bearing. radius: m. coefficient: friction moment divided by radius times force."""
 
     radius: float = 0.0
     coefficient: float = 0.0
@@ -32,15 +32,15 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class Friction:
-    """Friction of a machine; none unless given.
+    """Friction in a machine; none unless given.
 
     guide: coefficient of friction of the slider in its guide. crank_pivot: pin between frame and crank. crank_pin: pin
     between crank and rod. slider_pin: pin between rod and slider.
 
-    The guide carries a single normal force N at the slider pin and rubs with mu |N|; the guide takes the moment of the
-    slider pin's friction without additional friction. Where a joint does not move (the slider at a dead centre,
-    everything at crank speed zero) friction acts against the motion that follows in the crank's sense of rotation;
-    a crank at speed zero is taken to turn counter-clockwise, as for loads that change with the stroke.
+    The guide carries a single normal force N at the slider pin and rubs with mu |N|; the guide absorbs the moment of
+    the slider pin's friction without additional friction. If a joint does not move (the slider at a dead centre,
+    everything at zero crank speed), friction acts against the motion that follows in the crank's sense of rotation. A
+    crank at zero speed is assumed to turn counter-clockwise, as for loads that change with the stroke.
     """
 
     guide: float = 0.0

@@ -1,7 +1,7 @@
 """Mass properties of the links: by section, or by mass, inertia and mass centre.
 
-Crank and rod are described along their own axis: origin at the crank pivot (crank) or at the crank pin (rod), length
-between pin centres. The properties of a `Bar` follow its length: a longer crank is heavier.
+Crank and rod are described along their own axis: the origin is at the crank pivot (crank) or at the crank pin (rod),
+and the length is that between pin centres. The properties of a `Bar` follow from its length: a longer crank is heavier.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ..checks import require_numbers
 
 @dataclass(frozen=True, kw_only=True)
 class Bar:
-    """A round-ended bar of rectangular section whose ends are half-discs around the pin centres.
+    """A round-ended bar with rectangular section, whose ends are half-discs around the pin centres.
 
     mass = density depth (L width + pi width^2 / 4) for centre distance L.
 
@@ -35,12 +35,13 @@ class Bar:
     def principal_inertias(self, length: float) -> tuple[float, float, float]:
         """Return the moments of inertia about the mass centre, kg m^2.
 
-        About the normal of the plane of motion, about the in-plane axis across the bar, and about the bar's own axis.
+        They are about the normal to the plane of motion, about the in-plane axis across the bar, and about the bar's
+        own axis.
         """
         w, d = self.width, self.depth
         body = self.density * d * w * length
         disc = self.density * d * 0.25 * math.pi * w**2
-        # Second moments over x (along), y (across in plane), z (depth); the discs' halves sit at +-(L/2 + 4 R / 3 pi).
+        # Second moments over x (along), y (across in plane), z (depth); the half-discs sit at +-(L/2 + 4 R / 3 pi).
         radius = 0.5 * w
         about_width = body * length**2 / 12.0 + disc * (
             0.25 * length**2 + length * 4.0 * radius / (3.0 * math.pi) + 0.25 * radius**2

@@ -13,10 +13,10 @@ from .load import Enters, Entry, Load, Table, built
 class AddedMass(Load):
     """A force = -mass times the slider's acceleration. mass: kg.
 
-    A column of fluid of density rho, length L and area A before a piston of area A_p: rho L A_p^2 / A. A roller of
+    A column of fluid with density rho, length L and area A ahead of a piston of area A_p: rho L A_p^2 / A. A roller of
     inertia I driven by the slider without slip at radius r: I / r^2. The added mass has no weight here and its reaction
-    is closed within the machine, so it does not shake the frame. It adds to the kinetic energy and to the inertia
-    reflected to the crank, hence also to start-up and flywheel, but not to the load curve.
+    stays within the machine, so it does not shake the frame. It adds to the kinetic energy and to the inertia reflected
+    to the crank, and so also affects start-up and flywheel, but not the load curve.
     """
 
     mass: float
@@ -29,12 +29,12 @@ class AddedMass(Load):
         require_numbers(self, "mass", least=0.0, unit="kg")
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return the mass after factors of one."""
+        """Return the mass, after unit factors."""
         return (1.0, 1.0, self.mass, 0.0)
 
     @property
     def is_conservative(self) -> bool:
-        """True: the kinetic energy repeats."""
+        """True, because the kinetic energy repeats."""
         return True
 
     @property

@@ -39,10 +39,11 @@ _TURN = 2.0 * math.pi
 
 @dataclass(frozen=True, kw_only=True)
 class AngleTable(Load):
-    """A force tabulated over crank angle, interpolated linearly and periodically.
+    """A force tabulated over the crank angle, interpolated linearly and periodically.
 
-    angles: increasing, two equal ones where the force steps, rad. The first point follows the last one a cycle later. A
-    last point exactly a cycle later gives the force before a step at the first point. forces: N, positive outward.
+    angles: increasing, with two equal ones where the force steps, rad. The first point follows the last one a cycle
+    later. If the last point is exactly a cycle after the first, it gives the force before a step at the first point.
+    forces: N, positive outward.
     during: strokes in which the force acts. datum: origin of the angles: zero, counted counter-clockwise, or a dead
     centre, counted in the sense of rotation. cycle: one turn or two. turn: 0, or the only one of two turns in which the
     load acts (`two_turns`). drives: see `Load`.
@@ -91,26 +92,29 @@ class AngleTable(Load):
 
     @property
     def cycle_turns(self) -> int:
-        """Two for a cycle of 720 deg, unless the table is of one of its turns."""
+        """Two for a cycle of 720 deg, unless the table belongs to one of its turns."""
         return 2 if self.cycle == "720 deg" and not self.turn else 1
 
     def on_turn(self, turn: int) -> Load:
-        """Return the table of turn 1 or 2 alone, which need not close; itself if all turns are alike."""
+        """Return the table of turn 1 or 2 alone, which need not close; the table itself if all turns are alike."""
         return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return factors of one in the strokes in which the force acts."""
+        """Return unit factors for the strokes in which the force acts."""
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return angles and forces, closed: the first knot repeats a cycle later. One of two turns has both ends."""
+        """Return angles and forces, closed: the first knot repeats a cycle later.
+
+        A table for one of two turns has both ends.
+        """
         inner = len(self.angles) - self._closed
         at = (*self.angles[:inner], self.angles[0] + self._period)
         forces = (*self.forces[:inner], self.forces[-1 if self._closed else 0])
         return self._of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
 
     def _of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
-        """Return the knots of one of two turns, from 0 to a turn, with the inside forces at its ends."""
+        """Return the knots for one of two turns, from 0 to a turn, with the interior forces at its ends."""
         begin = _TURN * (self.turn - 1)
         shift = self._period * math.floor((begin - at[0]) / self._period) - begin
         if forces[-1] == forces[0]:
@@ -131,7 +135,7 @@ class AngleTable(Load):
 
     @property
     def steps(self) -> bool:
-        """Whether the force steps at an angle."""
+        """Whether the force steps at any angle."""
         return has_step(self.angles) or (self._closed and self.forces[-1] != self.forces[0])
 
     @property
@@ -154,13 +158,13 @@ class AngleTable(Load):
             step = angle[:, 1:2] - angle[:, :1]
             starts = (self.datum == "inner dead centre") == passage.outward
             angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
-        if self.cycle_turns > 1:  # work per turn, the mean of both
+        if self.cycle_turns > 1:  # work per turn, averaged over both
             return 0.5 * passage.work(self._force(angle) + self._force(angle + _TURN))
         return passage.work(self._force(angle))
 
     @property
     def size(self) -> str:
-        """The least and the greatest force."""
+        """The minimum and maximum force."""
         return sized(without_steps_from_zero(self.angles, self.forces))
 
     @property
