@@ -48,7 +48,7 @@ def export_job(store: Store, job: Job, place: Path) -> Path:
 
 
 def _stored_job(store: Store, text: str, place: Path) -> Job | None:
-    """Return the job that a text refers to, None if it refers to a folder."""
+    """Return the job that a text refers to, or None if it refers to a folder."""
     if text.isdecimal():
         try:
             return store.job(int(text))
@@ -62,9 +62,9 @@ def _stored_job(store: Store, text: str, place: Path) -> Job | None:
 
 
 def find_folder(text: str, place: Path) -> Path:
-    """Return the folder of a run on the disk, see `find_run`.
+    """Return the folder of a run on disk; see `find_run`.
 
-    Raises `InputError` if no run, or more than one, matches.
+    Raises `InputError` if no run or several runs match.
     """
     names = sorted(
         (run.name for run in run_folders(place)), key=lambda name: (name[:15], (place / name).stat().st_mtime_ns)
@@ -91,7 +91,7 @@ def find_folder(text: str, place: Path) -> Path:
 
 
 def run_folders(place: Path) -> list[Path]:
-    """Return the run folders in a place, unordered."""
+    """Return the run folders in a location, unordered."""
     if not place.is_dir():
         return []
     return [

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
-    """Return wishes by objective, without free ones, with values in the metric units of the objectives."""
+    """Return wishes by objective, except free ones, with values in the metric units of the objectives."""
     stated: dict[str, tuple[str, float | None]] = {}
     for objective, wish in zip(front.objectives, wishes, strict=True):
         factor = front.problem.quantity(objective.quantity).unit.factor
@@ -37,7 +37,7 @@ def words_of(front: ParetoFront, stated: Wished) -> dict[str, str]:
 
 
 def wishes_of_run(folder: Path) -> list[MadeWish]:
-    """Return the wishes for the run in a folder, latest first; none for a run without a job."""
+    """Return the wishes for the run in a folder, newest first; none for a run without a job."""
     from ..store.remarks import wishes_of
 
     with _job(folder) as store_and_job:
@@ -45,7 +45,7 @@ def wishes_of_run(folder: Path) -> list[MadeWish]:
 
 
 def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
-    """Record a wish for the run in a folder; return whether the run has a job to store it with."""
+    """Record a wish for the run in a folder; return whether the run has a job to store the wish with."""
     from ..store.remarks import note_wish
 
     with _job(folder) as store_and_job:
@@ -56,7 +56,7 @@ def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
 
 @contextmanager
 def _job(folder: Path) -> Iterator[tuple[Store, int] | None]:
-    """Enter the store that lists the run in a folder, with the number of its job."""
+    """Yield the store that lists the run in a folder, with the number of its job."""
     place = folder.resolve().parent
     if not has_store(None, place):
         yield None

@@ -1,4 +1,4 @@
-"""Jobs as TOML: tables of a job written so that reading them gives the same tables."""
+"""Jobs as TOML: writes the tables of a job so that reading them gives the same tables."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ _WIDEST = 100
 def job_toml(tables: Mapping[str, Any]) -> str:
     """Return the tables of a job as the text of a job file.
 
-    Tables get a heading, nested tables stay in braces, as in the shipped jobs. Raises `JobError` for values that TOML
-    cannot express: null, and numbers that are not finite.
+    Tables get headings, nested tables stay in braces, as in the included jobs. Raises `JobError` for values that TOML
+    cannot express: null and non-finite numbers.
     """
     plain = [f"{_key_toml(key)} = {_value_toml(value)}" for key, value in tables.items() if not _is_table(value)]
     parts = ["\n".join(plain)] if plain else []

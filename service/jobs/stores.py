@@ -1,4 +1,4 @@
-"""Store of the command line, and jobs in it by number or as "latest"."""
+"""Store of the command line, and its jobs by number or as "latest"."""
 
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ Name = Annotated[str, typer.Argument(metavar="JOB", help='The job: its number, o
 
 
 def store_address(option: str | None, runs: Path | None = None) -> str:
-    """Return the address of the store: the option, else SLIDERCRANK_STORE, else a file in the folder of runs."""
+    """Return the address of the store: the option, or SLIDERCRANK_STORE, or a file in the folder of runs."""
     return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
 
 
 def printable_store_address(option: str | None, runs: Path | None = None) -> str:
-    """Return the address of the store, fit to be printed."""
+    """Return the address of the store without secrets, for output."""
     from ..store.address import without_secrets
 
     return without_secrets(store_address(option, runs))
 
 
 def is_named(option: str | None) -> bool:
-    """Whether the place of the store is specified; else it is the usual place."""
+    """Whether the location of the store was specified; otherwise it is the default."""
     return bool(option or os.environ.get(STORE_VARIABLE))
 
 
 def open_store(option: str | None, runs: Path | None = None) -> Store:
     """Open the store; create its file if missing.
 
-    Raises `StoreError` if that is not possible, `InputError` for an invalid address.
+    Raises `StoreError` if that fails, `InputError` for an invalid address.
     """
     from ..store import Store
 
@@ -66,12 +66,12 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 def has_store(option: str | None, runs: Path | None = None) -> bool:
     """Whether there is a store to inspect; does not create one.
 
-    Raises `InputError` for an invalid address, `StoreError` for a file that cannot be a store, see `has_content`.
+    Raises `InputError` for an invalid address, and `StoreError` for a file that cannot be a store; see `has_content`.
     """
     address = store_address(option, runs)
     with disk(Path(address).parent):
         if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
-            return False  # the usual case, without importing SQLAlchemy
+            return False  # the usual case, handled without importing SQLAlchemy
     from ..store.address import file_of, has_content
 
     file = file_of(address)
@@ -79,14 +79,14 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 
 
 def warn_without_workers(store: Store) -> None:
-    """Report that jobs wait if no worker is there to solve them."""
+    """Report waiting jobs if no worker is available to solve them."""
     if not store.workers_at_work():
         print_message("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
 
 
 @contextmanager
 def store_that_is_there(option: str | None) -> Iterator[Store]:
-    """Yield the store, closed at the end. Raises `NotFound` for a missing file, which is not created."""
+    """Yield the store, and close it afterwards. Raises `NotFound` for a missing file, which is not created."""
     if not has_store(option):
         raise NotFound(
             f"there is no store at {printable_store_address(option)}; submit a job first, or name another with --store"

@@ -1,7 +1,8 @@
-"""Submission of a job to the store: its tables and functions are read and checked.
+"""Submission of a job to the store: reads and checks its tables and functions.
 
-These functions run where a job is solved, so whoever starts the workers allows them, with `serve` and `worker
---allow-quantity`. The API rejects others immediately; `submit` cannot know the workers, and leaves the check to them.
+These functions run where a job is solved, so the operator of the workers allows them, with `serve` and `worker
+--allow-quantity`. The API rejects all others immediately; `submit` does not know the workers, and leaves this check to
+them.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 LONGEST_CALL = 300.0
-"""s, that a call takes at most in a job of the service, whatever limit the job gives it."""
+"""Maximum time per function call in a job of the service, s, whatever limit the job sets."""
 LONGEST_WAIT = 10.0
-"""s, that a call takes at most while a request waits for it."""
+"""Maximum time per function call while a request waits for it, s."""
 
 
 def parse_allowed(
@@ -32,10 +33,10 @@ def parse_allowed(
     *,
     require_feasible: bool = True,
 ) -> Problem:
-    """Return the problem of a job whose functions, "module:function", are all in `allowed`; none is called.
+    """Return the problem of a job whose functions, "module:function", are all in `allowed`; no function is called.
 
-    values: numbers that replace those in the job, by their paths. require_feasible: whether a job that no design can
-    meet is rejected. Raises `JobError`.
+    values: replacements for numbers in the job, by path. require_feasible: whether to reject a job that no design can
+    meet. Raises `JobError`.
     """
     from ...optimise.job import parse_job
     from ...optimise.job.file import require_plain
@@ -46,7 +47,7 @@ def parse_allowed(
 
 
 def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None:
-    """Raise `JobError` for a job that names a function other than those allowed."""
+    """Raise `JobError` for a job that names a function that is not allowed."""
     for name, function in functions_of(tables).items():
         if function not in allowed:
             raise _refused(name, function, allowed)
@@ -87,7 +88,7 @@ def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
 
 
 def bounded(problem: Problem, seconds: float) -> Problem:
-    """Return a problem whose custom functions are limited to a time per call, s."""
+    """Return a problem with a time limit per call, s, for its custom functions."""
     from ...objectives.own.quantity import bounded
 
     return (
@@ -97,9 +98,9 @@ def bounded(problem: Problem, seconds: float) -> Problem:
 
 @contextlib.contextmanager
 def ending_custom_functions(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
-    """End the custom function processes of a problem on leaving: otherwise they run until the problem is freed.
+    """End the custom function processes of a problem on exit: otherwise they run until the problem is freed.
 
-    engine: engine that may have called them too; it ends its processes, and starts others when next needed.
+    engine: engine that may also have called them; its processes end too, and new ones start when needed.
     """
     from ...objectives.own.quantity import close_custom_functions, runs_custom_function
 
@@ -121,12 +122,12 @@ def submit(
     allowed_quantities: Collection[str] = (),
     **queueing: Unpack[Queueing],
 ) -> Job:
-    """Queue a job given as the tables of a job file, and return it; see `Store.submit` for the rest.
+    """Queue a job given as the tables of a job file, and return it; see `Store.submit` for other arguments.
 
-    source: original job file, "job.toml" or "job.json"; without one it is made from the tables.
-    allowed_quantities: functions, "module:function", that the job may name as quantities.
+    source: original job file, "job.toml" or "job.json"; by default it is written from the tables. allowed_quantities:
+    functions, "module:function", that the job may use as custom quantities.
 
-    Raises `JobError` for an invalid job, or one that names other functions.
+    Raises `JobError` for an invalid job, or one that names functions that are not allowed.
     """
     return store.submit(
         tables,
@@ -138,5 +139,5 @@ def submit(
 
 
 def job_json(tables: Mapping[str, Any]) -> Artefact:
-    """Return the file "job.json" of a job given by its tables."""
+    """Return the file "job.json" for a job given by its tables."""
     return Artefact(name="job.json", media_type="application/json", content=json_text(tables).encode())

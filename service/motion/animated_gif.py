@@ -1,4 +1,4 @@
-"""The moving linkage as an animated GIF: one revolution, two for a 720 deg cycle, or a swing."""
+"""Animated GIF of a linkage: one revolution, two for a 720 deg cycle, or a swing."""
 
 from __future__ import annotations
 
@@ -26,19 +26,19 @@ if TYPE_CHECKING:
     from PIL.Image import Image as Picture
 
 FRAMES, MILLISECONDS = 60, 60
-"""Of a turn or a swing, and how long each is shown: 3.6 s a turn, whatever the speed of the machine is."""
-_WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches, dots an inch
+"""Frames per revolution or swing, and the duration of each: 3.6 s per revolution at any machine speed."""
+_WIDTH, _TALLEST, _HEAD, _FOOT, _DOTS = 6.4, 6.0, 0.45, 0.35, 100  # inches; dots per inch
 _COLOURS = 32
-_WHITE = 246  # of 255; the fill of the slider is just below
+_WHITE = 246  # grey level up to 255; the fill of the slider is just below
 
 
 def animated_gif(
     mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
 ) -> bytes:
-    """Return an animated GIF of one linkage, which rotates as the machine does, or swings by its motion law.
+    """Return an animated GIF of one linkage, which rotates at even speed or swings by its motion law.
 
-    name: name of the run. design: its design, "design 3". swing: swing of the crank instead of full rotation. Raises
-    `AssemblyError` for a linkage that does not rotate fully, or the errors of `require_swing`.
+    name: name of the run. design: design label, such as "design 3". swing: swing of the crank instead of full rotation.
+    Raises `AssemblyError` for a linkage that does not rotate fully, or the errors of `require_swing`.
     """
     scene = _turn_scene(mechanism, linkage) if swing is None else _swing_scene(mechanism, linkage, swing)
     frames = _draw_frames(scene, f"{name}, {design}" if design else name)
@@ -50,7 +50,7 @@ def animated_gif(
 
 @dataclass(frozen=True)
 class _Scene:
-    """Shapes of the pictures: fixed ones, and those of each frame with its text. dashed: dashed shapes."""
+    """Shapes of the animation: fixed ones, and those of each frame with its text. dashed: dashed shapes."""
 
     extent: tuple[float, float, float, float]
     size: float
@@ -119,14 +119,14 @@ def _draw_frames(scene: _Scene, title: str) -> list[Picture]:
             if artist is not reading:
                 artist.remove()
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])  # type: ignore[attr-defined]
-        # One palette for all, so that fixed shapes do not flicker.
+        # One palette for all frames, so that fixed shapes do not flicker.
         palette = palette or _palette(picture)
         pictures.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
     return pictures
 
 
 def _palette(picture: Picture) -> Picture:
-    """Return the colours of a picture, with near-white ones as white."""
+    """Return the colours of a picture, with near-white ones replaced by white."""
     from PIL import Image
 
     colours = picture.quantize(_COLOURS).getpalette() or []

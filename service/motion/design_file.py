@@ -1,4 +1,4 @@
-"""Files of one design: its drawing for CAD, its motion, its cycle as a table."""
+"""Files of one design: its drawing for CAD, its animation, its cycle as a table."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ if TYPE_CHECKING:
     from ..designs.stored_designs import StoredDesign
 
 ENDINGS = {"dxf": (".dxf",), "svg": (".svg",), "motion": (".html", ".htm"), "gif": (".gif",), "cycle": (".csv",)}
-"""How the names of the files may end, by what is written."""
+"""Allowed file endings, by type of content."""
 
 
 def design_file(kind: str, stored: StoredDesign, angle: float | None, units: System, **named: str) -> bytes:
-    """Return a file of one design, one of `ENDINGS`.
+    """Return a file of one design, of a type in `ENDINGS`.
 
     angle: crank angle in drawings, rad; None for the default. named: job and design, for titles.
     """
@@ -31,7 +31,7 @@ def design_file(kind: str, stored: StoredDesign, angle: float | None, units: Sys
         return animated_gif(stored.mechanism, stored.linkage, swing=stored.part.motion, **named)
     from ..drawings.design_drawing import design_drawing
 
-    system: System = units if kind == "svg" else "metric"  # DXF is in mm
+    system: System = units if kind == "svg" else "metric"  # DXF is always in mm
     drawing = design_drawing(stored, name=named["name"], design=named["design"], crank_angle=angle, system=system)
     if kind == "svg":
         from ..drawings.svg import svg_file

@@ -25,7 +25,7 @@ from ..drawings.shapes import Circle, Shape
 from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swing_scenery
 
 ANGLES = 360
-"""Places of the curves, of a turn: a degree apart."""
+"""Number of curve points per revolution: one per degree."""
 _READOUT = (
     "slider_position_mm",
     "slider_velocity",
@@ -33,12 +33,15 @@ _READOUT = (
     "transmission_angle_deg",
     "torque_Nm",
 )
-"""Curves that are read out, and their strips, by how their keys begin."""
+"""Curves with readouts and strip charts, by the prefix of their keys."""
 
 
 @dataclass(frozen=True)
 class PlayerText:
-    """Words of a page. control: position control. times: unit of the speed. span_name: range of the curves."""
+    """Words on a page.
+
+    control: label of the position slider. times: unit of the speed. span_name: range of the curves.
+    """
 
     control: str
     times: str
@@ -48,12 +51,12 @@ class PlayerText:
 
 @dataclass(frozen=True)
 class Playback:
-    """A motion that a page plays repeatedly.
+    """Motion that a page plays in a loop.
 
-    summary: line on the linkage. record: numbers for the script, with the positions of slider and rod. columns: curves
-    at the same points. marks: positions of lines in them, deg. turns: crank revolutions after which the motion repeats;
-    1 for a swing. still, moving: fixed and moving shapes of the drawing, the moving ones by name, each in its own
-    coordinates. extent: left, bottom, right, top, mm. size: reference length for line types.
+    summary: description of the linkage in one line. record: numbers for the script, with the positions of slider and
+    rod. columns: curves at the same points. marks: positions of marker lines in them, deg. turns: crank revolutions
+    until the motion repeats; 1 for a swing. still, moving: fixed and moving shapes of the drawing, the moving ones by
+    name, each in its own coordinates. extent: left, bottom, right, top, mm. size: reference length for line types.
     """
 
     summary: str
@@ -87,9 +90,9 @@ _LEFT_OUT = ("crank_angle", "load")
 
 
 def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
-    """Return the motion of a fully rotating linkage. Raises `AssemblyError` for one that does not rotate fully.
+    """Return the motion of a fully rotating linkage. Raises `AssemblyError` for a linkage that does not rotate fully.
 
-    It includes both revolutions of a 720 deg cycle.
+    A 720 deg cycle includes both revolutions.
     """
     turns = cycle_turns(mechanism)
     curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
@@ -139,7 +142,7 @@ def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[Cu
 
 
 def place_record(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
-    """Return crank and offset, mm, and for the places of a motion slider positions, mm, and rod angles, deg.
+    """Return crank and offset, mm, and at each point of a motion the slider position, mm, and the rod angle, deg.
 
     slider: slider positions, m. rod: rod angles, rad.
     """

@@ -1,4 +1,4 @@
-"""The moving linkage as one HTML file with embedded drawing, curves and script, without downloads."""
+"""Animated linkage as one HTML file with embedded drawing, curves and script, without downloads."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..render.numerals import format_number as number
 from .playback import ANGLES, Playback, swing_playback, turn_playback
 
 _PLAYER = Path(__file__).parent / "player"
-_STRIP = (float(ANGLES), 64.0)  # width, one unit a degree of a motion of one turn, and height
+_STRIP = (float(ANGLES), 64.0)  # width, one unit per degree of one revolution, and height
 _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME, on.CYLINDER)
 
 
@@ -29,10 +29,10 @@ def player_page(
 ) -> bytes:
     """Return one linkage as an HTML file that plays its motion.
 
-    The script turns the crank and looks up everything else in curves in the file. Their points are one degree apart,
-    or, for a swinging linkage, at evenly spaced times of its motion back and forth. name: name of the run. design: its
-    design, "design 3". swing: swing of the crank instead of full rotation. Raises `AssemblyError` for a linkage that
-    does not rotate fully, or the errors of `require_swing`.
+    The script turns the crank and looks up everything else in curves stored in the file. Their points are one degree
+    apart or, for a swinging linkage, at evenly spaced times of its motion back and forth. name: name of the run.
+    design: design label, such as "design 3". swing: swing of the crank instead of full rotation. Raises `AssemblyError`
+    for a linkage that does not rotate fully, or the errors of `require_swing`.
     """
     play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
     title = f"{name}, {design}" if design else name
@@ -61,7 +61,7 @@ def player_page(
 
 
 def _script_data(play: Playback) -> str:
-    """Return the data of the script as JSON that is safe within HTML."""
+    """Return the data for the script as JSON that is safe inside HTML."""
     curves = {
         column.key: [float(f"{value:.7g}") if math.isfinite(value) else None for value in column.values]
         for column in play.columns
@@ -87,7 +87,7 @@ def _drawing(play: Playback, title: str) -> str:
 
 
 def _curve_strip(column: CurveColumn, play: Playback) -> str:
-    """Return a small picture of a curve with the marks of a motion, and a line that the script moves."""
+    """Return a small strip chart of a curve with the marks of a motion, and a cursor line that the script moves."""
     marks = (angle / play.turns for angle in play.marks)
     finite = [value for value in column.values if math.isfinite(value)]
     low, high = (min(finite), max(finite)) if finite else (0.0, 1.0)

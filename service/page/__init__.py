@@ -1,1 +1,1 @@
-"""The web page: the files that a browser runs, unchanged, and the code that serves them."""
+"""Web page: the files that a browser runs, unchanged, and the code that serves them."""

@@ -1,9 +1,9 @@
-"""The page's modules joined into one script, and its styles into one: two requests instead of seventy.
+"""The page's modules joined into one script, and its styles into one stylesheet: two requests instead of seventy.
 
-A first view of 10,000 designs appears in four fifths of the time. The modules stay unchanged, and are tested as served.
-Comments on separate lines, types and indentation are not sent: three tenths of the text. The modules use a small part
-of the language's module syntax, and anything else is rejected when the service starts: `import { a, b as c } from
-"./file.js";`, `import("./file.js")`, and `export` before a function, class or const.
+The first view of 10,000 designs appears a fifth sooner. The modules stay unchanged, and are tested as served. Comment
+lines, types and indentation are removed, which saves three tenths of the text. The modules use a small part of
+JavaScript's module syntax; anything else is rejected when the service starts: `import { a, b as c } from "./file.js";`,
+`import("./file.js")`, and `export` before a function, class or const.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ function take(name) {
 def joined_modules(sources: Mapping[str, str], first: str) -> str:
     """Return one module equivalent to the module `first`. sources: text by name, such as "lib/dom.js".
 
-    Each becomes a function that returns its exports, called on the first import. Raises ValueError for circular
-    imports, and for unsupported syntax.
+    Each module becomes a function that returns its exports and is called on the first import. Raises ValueError for
+    circular imports and for unsupported syntax.
     """
     parts: dict[str, str] = {}
 
@@ -80,6 +80,6 @@ def _as_function(name: str, sources: Mapping[str, str]) -> tuple[str, list[str],
 
 
 def joined_styles(sources: Mapping[str, str]) -> str:
-    """Return the styles in sequence, those for all views first. sources: text by name."""
+    """Return the concatenated styles, those for all views first. sources: text by name."""
     common = [name for name in sources if name.endswith("shell.css")]
     return "\n".join(sources[name] for name in (*common, *sorted(set(sources) - set(common))))

@@ -30,7 +30,7 @@ POLICY = "; ".join(
         "frame-ancestors 'none'",
     )
 )
-"""Policy of the page (CSP): run and fetch what comes from the service itself, and nothing written into the document."""
+"""Content security policy of the page (CSP): only scripts and resources of the service itself, nothing inline."""
 _TYPES = {
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
@@ -38,18 +38,18 @@ _TYPES = {
     ".svg": "image/svg+xml",
 }
 _HEADERS = {"Content-Security-Policy": POLICY, "Cache-Control": "no-cache", "Vary": "Accept-Encoding"}
-"""Asked for again each time, and not sent again unless it changed: a new version of the service is seen at once."""
+"""Browsers revalidate each time and download only changed files, so a new version takes effect immediately."""
 
 
 @router.get("/")
 async def show_page(request: Request) -> Response:
-    """Return the document; its modules ask the API for everything else."""
+    """Return the document; its modules request everything else from the API."""
     return _page_file(request, "index.html")
 
 
 @router.get("/page/inter.woff")
 def fetch_typeface(request: Request) -> Response:
-    """Return the typeface; in a thread, since the first time takes seconds."""
+    """Return the typeface; runs in a thread, since creating it takes seconds the first time."""
     content = typeface()
     return response_with_etag(
         request, f'W/"{content_tag(content)}"', lambda: Response(content, media_type="font/woff"), _HEADERS
@@ -64,7 +64,7 @@ async def fetch_page_file(request: Request, name: str) -> Response:
 
 @dataclass(frozen=True)
 class _File:
-    """A file of the page, plain and compressed. tag: tag that changes with the content."""
+    """File of the page, plain and compressed. tag: tag that changes with the content."""
 
     media_type: str
     content: bytes
@@ -91,7 +91,7 @@ def response_with_etag(
     make_response: Callable[[], Response],
     headers: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
-    """Return an answer with an ETag, or 304 if the client has it already; created only if sent.
+    """Return an answer with an ETag, or 304 if the client has the current version; content is created only if sent.
 
     tag: tag that changes with the content; None for content that browsers must not cache.
     """
@@ -102,14 +102,15 @@ def response_with_etag(
 
 
 def content_tag(content: bytes) -> str:
-    """Return a tag for a content, in letters and digits."""
+    """Return a tag for some content, in letters and digits."""
     return hashlib.sha256(content).hexdigest()[:16]
 
 
 def files_of(folder: Path) -> dict[str, _File]:
-    """Return the files of a folder by name, read once: a client's name is never used as a path.
+    """Return the files of a folder by name, read once: a name from a client is never used as a path.
 
-    The document requests two: app.js, which joins all modules, and style.css. The others are there for reading.
+    The document requests only app.js, which joins all modules, and style.css. The other files are served for readers of
+    the source.
     """
     paths = [path for path in folder.rglob("*") if path.suffix in _TYPES]
     texts = {path.relative_to(folder).as_posix(): path.read_text("utf-8") for path in sorted(paths)}

@@ -1,4 +1,4 @@
-"""A page that asks for the token in browsers without it."""
+"""Page that asks for the token in browsers without it."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _STYLE = """
 .locked input { flex: 1 1 14rem; }
 .locked code { overflow-wrap: anywhere; }
 """
-# A view is named after the #, which a browser does not send: it goes along with the form, and the redirect keeps it.
+# Browsers do not send the view name after the #: the script adds it to the form address, and the redirect keeps it.
 _SCRIPT = """
 document.documentElement.dataset.scheme = localStorage.getItem("scheme") ?? "auto";
 history.replaceState(null, "", location.pathname + location.hash);  // a token that was wrong does not stay to be read
@@ -30,9 +30,9 @@ _WRONG = '<p class="error" role="alert">That was not the token of this service.<
 
 
 def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLResponse:
-    """Return the page that asks for the token, with status 401. wrong: whether a wrong token was given.
+    """Return the page that asks for the token, with status 401. wrong: whether a wrong token was entered.
 
-    The address is that of the connection, where Host is one of the service's names.
+    The page's address is that of the connection, whose Host is a name of the service.
     """
     page = Template((_STATIC / "locked.html").read_text(encoding="utf-8"))
     address = f"{connection.scope.get('scheme', 'http')}://{connection.headers.get('host', '')}/?token=…"
@@ -49,7 +49,7 @@ def locked_page(connection: HTTPConnection, *, wrong: bool = False) -> HTMLRespo
 
 @cache
 def _page_style() -> str:
-    """Return the style of all views, and that of this page: the style files require the token."""
+    """Return the common style and that of this page inline: the style files require the token."""
     return (_STATIC / "style" / "shell.css").read_text(encoding="utf-8") + _STYLE
 
 

@@ -9,16 +9,17 @@ from threading import Lock
 
 _LETTERS = (range(0x20, 0x7F), range(0xA0, 0x100), range(0x391, 0x3CA))  # Latin and Greek
 _SIGNS = (range(0x2010, 0x2027), range(0x2070, 0x2090), range(0x2190, 0x219A), range(0x2200, 0x2266))
-_FEATURES = ("kern", "tnum")  # distances, digits of one width
-_LICENCE = (13, 14)  # its sentence and address among a font's names, which a subset leaves out otherwise
+_FEATURES = ("kern", "tnum")  # kerning, tabular figures
+_LICENCE = (13, 14)  # licence text and address among the font's names, which subsetting drops by default
 _ONE = Lock()
 
 
 def typeface() -> bytes:
-    """Return Inter with weights from 100 to 900 as WOFF: a tenth of the original, created once, in a second.
+    """Return Inter in weights from 100 to 900 as WOFF: a tenth of the original size, created once, in a second.
 
-    Inter is by the Inter Project Authors, under the SIL Open Font License 1.1, whose text is in its package; the font
-    itself states this. WOFF2 would be a third smaller, but takes three times as long to create and another package.
+    Inter is by the Inter Project Authors, under the SIL Open Font License 1.1; the licence text is in its package, and
+    the font refers to it. WOFF2 would be a third smaller, but takes three times as long to create and needs another
+    package.
     """
     with _ONE:
         return _subset_font()

@@ -1,1 +1,1 @@
-"""The shipped jobs as starting points for a form."""
+"""Included jobs as starting points for a form."""

@@ -1,4 +1,4 @@
-"""The job files that ship, and a design of the front of each."""
+"""Included job files, and an example design for each."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .. import presets
 def shipped_jobs() -> dict[str, dict[str, Any]]:
     """Return the jobs in runs/, which every installation includes, by file name.
 
-    Includes the catalogues beside them: users who start from a shipped job do not have these files.
+    Contains the accompanying catalogues, because users who start from an included job do not have these files.
     """
     from ...optimise.job import read_job
 
@@ -22,7 +22,7 @@ def shipped_jobs() -> dict[str, dict[str, Any]]:
 
 
 class Design(NamedTuple):
-    """Lengths, mm, and the crank angles between which a crank swings, deg; None for full rotation."""
+    """Lengths, mm, and the swing range of the crank, deg; None for full rotation."""
 
     crank_mm: float
     rod_mm: float

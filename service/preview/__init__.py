@@ -1,1 +1,1 @@
-"""Preview of a job while it is being written: its mistakes, and the values that its ranges allow."""
+"""Preview of a job during editing: its mistakes, and the values that its ranges allow."""

@@ -1,8 +1,8 @@
 """Values that a job's ranges allow, from samples: rotation, stroke, time ratio, transmission angle, feasible fraction.
 
-The samples are a few hundred designs. Equality requirements are met exactly, so that the samples lie where the search
-looks. Fractions are those of uniform samples; others lie on faces and edges of the box. Extremes are searched around
-the best samples and polished: each belongs to a design.
+The samples are a few hundred designs. Equality requirements are met exactly, so the samples lie where the search looks.
+Fractions are those of uniform samples; others lie on faces and edges of the box. Extremes are searched for
+around the best samples and polished: each belongs to an actual design.
 """
 
 from __future__ import annotations
@@ -36,29 +36,29 @@ Array = NDArray[np.float64]
 T = TypeVar("T")
 Ends = tuple[float, float]
 
-PATIENCE = 0.12  # s, until these are left out
+PATIENCE = 0.12  # s; requirements that take longer are not checked
 _WIDTHS = (0.1, 0.05, 0.025, 0.012, 0.006, 0.003, 0.0015)
 _ON_EDGE = 128
 _PARENTS, _CHILDREN = 12, 12
 _STAYS = 0.4
-_POLISHED = 4  # of the best designs found for an end
+_POLISHED = 4  # number of best designs to polish for each end of a range
 _FLATTEST = math.radians(0.1)
-"""Least transmission angle that is looked for: nearer to locking there is nothing to know."""
+"""Minimum transmission angle considered: designs nearer to locking are of no interest."""
 _CLOSE = 1e-6
-"""Relative violation of a requirement that still counts as met: samples on a surface are there but for rounding."""
+"""Relative violation of a requirement that still counts as met: samples on a surface lie on it within rounding."""
 _ONE = threading.Lock()
-"""Of the work aside: kernels that a machine sees for the first time compile for up to a minute, once."""
+"""Lock for background work: kernels new to a machine compile for up to a minute, once."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Possible:
     """Values that the ranges of a job allow. turning: fraction of the box that rotates fully.
 
-    stroke (m), time_ratio, transmission_angle (rad): ends of their ranges while all other requirements on the
-    dimensions hold; None if no sample meets these. They include the floor of the transmission angle if it has no other
-    requirement. slow_strokes: slow strokes of the designs that meet every checked requirement, else of those that
-    rotate fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet
-    every checked requirement. met_by_all: requirements that each sample meets: exact values and narrow bands. hardest:
+    stroke (m), time_ratio, transmission_angle (rad): range bounds, subject to all other requirements on the dimensions;
+    None if no sample meets these. They respect the default minimum transmission angle if there is no other requirement
+    on it. slow_strokes: slow strokes of the designs that meet every checked requirement, or else of those that rotate
+    fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet every
+    checked requirement. met_by_all: requirements that every sample meets: exact values and narrow bands. hardest:
     requirement that the fewest fully rotating designs meet, and their fraction.
     nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if none meets all.
     example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no
@@ -81,7 +81,7 @@ class Possible:
 
 
 def possible(problem: Problem) -> Possible:
-    """Return the values that the ranges of a problem of `partial_job.geometry` allow."""
+    """Return the values that the ranges of a problem from `partial_job.geometry` allow."""
     free = replace(problem, constraints=())
     box, is_uniform = designs_of(free)
     turning = _rotates_fully(box)
@@ -114,7 +114,7 @@ def possible(problem: Problem) -> Possible:
 
 
 def _lengths_only(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
-    """Return the problem with the requirements on the dimensions alone, and the names of the others."""
+    """Return the problem with only the requirements on the dimensions, and the names of the others."""
     machine = massless_machine(problem.mechanism)
     closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
     costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
@@ -122,7 +122,7 @@ def _lengths_only(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
 
 
 def _slow_strokes(problem: Problem, designs: Array) -> tuple[str, ...]:
-    """Return the slow strokes that occur among fully rotating designs (n, 3); "equal" only if no others do."""
+    """Return the slow strokes among fully rotating designs (n, 3); "equal" only if there are no others."""
     if not len(designs):
         return ()
     machine = problem.mechanism
@@ -137,9 +137,9 @@ def _rotates_fully(designs: Array) -> NDArray[np.bool_]:
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
 
 
-@lru_cache(maxsize=48)  # most edits between previews leave ranges and requirements unchanged
+@lru_cache(maxsize=48)  # most edits between previews change neither ranges nor requirements
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
-    """Return the ends of the range of a closed-form quantity while the other requirements on the dimensions hold."""
+    """Return the range of a closed-form quantity subject to the other requirements on the dimensions."""
     constraints = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
     if name == "transmission_angle":
         constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
@@ -150,7 +150,7 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
 
 
 def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
-    """Return the least and the greatest value on a branch, sampled ever more closely around the best."""
+    """Return the minimum and maximum on a branch, sampled ever more densely around the best samples."""
     points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
     values = _closed_form_values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
@@ -175,9 +175,9 @@ def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, inde
 
 
 def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
-    """Return the greatest `sign` times a closed-form quantity near points (n, k) of a branch; -inf if there is none.
+    """Return the maximum of `sign` times a closed-form quantity near points (n, k) of a branch; -inf if there is none.
 
-    All requirements of the problem hold except its own.
+    All requirements of the problem apply, except those on the quantity itself.
     """
     objective = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(objective,)), branch)
@@ -190,7 +190,10 @@ def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, si
 
 
 def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
-    """Yield points of a branch (n, k) on the edge of a requirement. Extremes lie there, and bands are thin."""
+    """Yield points of a branch (n, k) at the limit of a requirement.
+
+    Extremes lie there, and the feasible bands are thin.
+    """
     for place, constraint in enumerate(problem.constraints):
         for end in (constraint.lower, constraint.upper):
             if end is None or constraint.equality or not branch.free:
@@ -207,7 +210,7 @@ def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
 
 
 def _closed_form_values(problem: Problem, name: str, designs: Array) -> Array:
-    """Return a closed-form quantity of designs (n, 3); NaN without rotation or beyond a dimensional requirement."""
+    """Return a closed-form quantity of designs (n, 3); NaN without full rotation or with a violated dimension."""
     values = np.full(len(designs), np.nan)
     rows = np.flatnonzero(_rotates_fully(designs) & _is_within_ranges(problem, designs))
     for constraint in problem.constraints:
@@ -218,7 +221,7 @@ def _closed_form_values(problem: Problem, name: str, designs: Array) -> Array:
 
 
 def _is_within_ranges(problem: Problem, designs: Array) -> NDArray[np.bool_]:
-    """Whether dimensions computed from equalities lie in their ranges."""
+    """Whether dimensions computed from equalities lie within their ranges."""
     good = np.ones(len(designs), dtype=bool)
     for column, name in enumerate(DIMENSIONS):
         ends = getattr(problem, name)
@@ -238,7 +241,7 @@ def _meets_constraint(constraint: Constraint, values: Array) -> NDArray[np.bool_
 
 
 def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] | None:
-    """Return the requirement, equalities aside, that the fewest designs meet, and their fraction."""
+    """Return the requirement that the fewest designs meet, equalities aside, and their fraction."""
     shares = {
         constraint.quantity: float(
             _meets_constraint(
@@ -272,7 +275,7 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
 
 
 def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:
-    """Return the middle one of the feasible designs, else the least infeasible, else the middle of the fallback."""
+    """Return the most central feasible design, or else the least infeasible, or else the middle of the fallback."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])
     if np.isfinite(violation).any():
@@ -286,14 +289,14 @@ def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
 
 
 def _middle_of(designs: Array) -> Array:
-    """Return the design nearest to the middle of some designs, with each number on its own scale."""
+    """Return the design nearest to the centre of some designs, with each number on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size
     return np.asarray(designs[int(np.argmin(((scaled - np.median(scaled, axis=0)) ** 2).sum(axis=1)))])
 
 
 def run_within(seconds: float, work: Callable[[], T]) -> T | None:
-    """Return the result of the work; None if it takes longer or earlier work still runs in the background."""
+    """Return the result of background work; None if it takes too long, or earlier work is still running."""
     results: list[T] = []
     failed: list[Exception] = []
 

@@ -1,4 +1,4 @@
-"""Content of an incomplete job: ranges, requirements, and the machine once it can be read."""
+"""Content of an incomplete job: ranges, requirements, and the machine as soon as it can be read."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.search.elimination import require_slow_side
 
 _MOST_POINTS = 100
-"""Points of tabulated loads; each is a breakpoint of every curve, and costs its share of every sampled design."""
+"""Maximum points of tabulated loads: each is a breakpoint of every curve, and adds to the cost of every sample."""
 
 
 def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
@@ -32,8 +32,8 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
 
     None while their ranges cannot be read, and for a swing.
 
-    full_problem: problem of the whole job, if it is valid; the first of several options counts. Requirements that need
-    the machine are omitted without it; those that only a search can afford are always omitted.
+    full_problem: problem of the whole job, if it is valid; of several options the first is used. Requirements that need
+    the machine are omitted without it; those too expensive for a preview are always omitted.
     """
     ranges, requirements = ranges_of(tables), table_in(tables, "constraints")
     if ranges is None or table_in(tables, "motion").get("kind") == "swing":
@@ -57,12 +57,12 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
 
 
 def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
-    """Return the names of a job's requirements that its geometry does not have."""
+    """Return the names of a job's requirements that are missing from its geometry problem."""
     return requirement_names(tables, {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"})
 
 
 def requirement_names(tables: Mapping[str, Any], without: Collection[str] = ()) -> list[str]:
-    """Return at most 40 names of a job's requirements, shortened. without: those to omit."""
+    """Return at most 40 names of a job's requirements, shortened. without: names to omit."""
     return [str(name)[:60] for name in table_in(tables, "constraints") if name not in without][:40]
 
 
@@ -79,12 +79,12 @@ def _with_slow_stroke(problem: Problem, stroke: Any) -> Problem:
 
 
 def is_closed(name: str) -> bool:
-    """Whether a quantity follows from the three dimensions alone."""
+    """Whether a quantity depends only on the three dimensions."""
     return name in QUANTITIES and QUANTITIES[name].of_dimensions
 
 
 def _massless_machine(mechanism: Mapping[str, Any]) -> Mechanism:
-    """Return a massless machine with the crank speed that a job states, else 1 rad/s."""
+    """Return a massless machine at the crank speed of a job, or at 1 rad/s."""
     branch: Branch = "crossed" if mechanism.get("branch") == "crossed" else "open"
     for keys in ((*SPEED_KEYS, "direction", "speed_profile"), (*SPEED_KEYS, "direction")):
         with suppress(InputError, ValidationError):
@@ -95,7 +95,7 @@ def _massless_machine(mechanism: Mapping[str, Any]) -> Mechanism:
 
 
 def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
-    """Return the ranges of the dimensions of a job; None while one of them cannot be read."""
+    """Return the ranges of the dimensions of a job; None if any cannot be read."""
     stated = table_in(tables, "variables")
     signs: dict[str, Sign] = {"crank": "positive", "rod": "positive", "offset": "any"}
     try:
@@ -105,7 +105,7 @@ def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
 
 
 def _checkable_constraints(stated: Mapping[str, Any], *, with_machine: bool) -> Iterator[Constraint]:
-    """Yield the requirements that can be read and checked within a moment."""
+    """Yield the requirements that can be read and checked quickly."""
     for name, bounds in stated.items():
         if name not in QUANTITIES or not (with_machine or is_closed(name)):
             continue

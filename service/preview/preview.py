@@ -1,4 +1,4 @@
-"""Preview of a job while it is being written: its mistakes, and sentences on requirements beyond its ranges."""
+"""Preview of a job during editing: its mistakes, and sentences on requirements that its ranges cannot meet."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from .swinging import PossibleSwing, possible_swing
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
-_LONGER = 1.25  # a rod so much longer than it must be at least is far from locking
+_LONGER = 1.25  # rod length over its minimum beyond which the linkage is far from locking
 _REST = "all other requirements on the dimensions"
 
 
 @dataclass(frozen=True)
 class Wrong:
-    """A mistake. path: its key, such as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
+    """Mistake in a job. path: its key, such as "mechanism.slider.mass" or "load #2.force"; "" for the whole job.
 
     infeasible: whether the input is valid but no design can meet it.
     """
@@ -48,12 +48,14 @@ class Wrong:
 
 @dataclass(frozen=True)
 class Look:
-    """Preview of a job. wrong: its mistakes, none if it can be solved. problem: problem of the whole job, if valid.
+    """Preview of a job.
 
-    stated, possible: values that its dimensions state and allow; None while their ranges cannot be read. unchecked:
+    wrong: its mistakes, empty if the job can be solved. problem: problem of the whole job, if valid.
+
+    stated, possible: values that the dimensions state and allow; None while their ranges cannot be read. unchecked:
     requirements that were not checked. sentences: sentences on unattainable requirements. formulas: formulas of the
-    job, in their order. names: names available only to formulas of this job. swing: values that the ranges of a swing
-    job allow.
+    job, in order. names: names available only to formulas of this job. swing: values that the ranges of a swing job
+    allow.
     """
 
     wrong: list[Wrong]
@@ -81,9 +83,9 @@ def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Probl
 
 
 def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
-    """Return mistakes with those of formulas, which the others hide: a job is read before its formulas are.
+    """Return mistakes with those in formulas, which the others hide: a job is read before its formulas.
 
-    A message on the formula itself replaces the message on its place, unless that is a key of another table.
+    A message about the formula itself replaces the message about its place, unless that is a key of another table.
     """
     schema = schema_of(Job)
     wrong_by_key = {
@@ -98,7 +100,7 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
 
 
 def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
-    """Return the findings about a job except its formulas."""
+    """Return the findings about a job except those on its formulas."""
     try:
         stated = geometry(tables, None)
     except InputError:
@@ -106,7 +108,7 @@ def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]]
     full_problem, wrong, rest = None, list[Wrong](), tables
     checked_ratios = [] if stated is None else [(ratio.name, beyond_both(stated, ratio)) for ratio in STROKE_RATIOS]
     sentences_by_name = {name: sentence for name, sentence in checked_ratios if sentence is not None}
-    if sentences_by_name:  # reported once; the rest of the job is checked without it
+    if sentences_by_name:  # reported only here; the rest of the job is checked without it
         wrong += [
             Wrong(f"constraints.{name}", sentence, infeasible=True) for name, sentence in sentences_by_name.items()
         ]
@@ -135,20 +137,20 @@ def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]]
         possible_values,
         [*left_out(tables, stated), *possible_values.unchecked],
         [doubt for doubt in doubts if doubt not in reported]
-        if doubts  # what follows from lengths in the wrong unit has the wrong remedy
+        if doubts  # lengths in the wrong unit would lead to wrong remedies
         else infeasibility_sentences(stated, possible_values, fixed_names, tables),
     )
 
 
 def _doubtful_lengths(tables: Mapping[str, Any]) -> list[str]:
-    """Return the warnings on crank, rod and offset whose numbers without a unit are not believed."""
+    """Return the warnings about crank, rod and offset values without a unit that are implausible."""
     keys = {f"variables.{name}" for name in DIMENSIONS}
     plain = plain_values(Job, {"variables": tables["variables"]})
     return [item.warning for item in plain if item.key in keys and item.warning]
 
 
 def _mistakes_in(error: InputError) -> list[Wrong]:
-    """Return the mistakes in the sentences of an error, each with its place in the job."""
+    """Return the mistakes in the sentences of an error, each with its path in the job."""
     mistakes = []
     for line in str(error).split("\n  "):
         if _COUNT.fullmatch(line):
@@ -163,10 +165,10 @@ def _mistakes_in(error: InputError) -> list[Wrong]:
 def infeasibility_sentences(
     problem: Problem, possible_values: Possible, fixed_names: Sequence[str], tables: Mapping[str, Any]
 ) -> list[str]:
-    """Return a sentence for each requirement that is out of reach, and one if no sample meets everything.
+    """Return a sentence for each unattainable requirement, and one if no sample meets all requirements.
 
-    Some are a `Remark`, with the change that settles it. fixed_names: names of the extra variables, which have one
-    value in the samples. tables: those of the job.
+    Some are a `Remark` with the change that resolves it. fixed_names: names of the extra variables, which have one
+    value in the samples. tables: tables of the job.
     """
     sentences: list[str] = []
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
@@ -205,7 +207,7 @@ def _none_sentence(problem: Problem, possible_values: Possible, fixed_names: Seq
 
 
 def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
-    """Return a sentence on ranges in which no crank rotates fully: the rod that is missing, and the remedy."""
+    """Return a sentence on ranges in which no crank rotates fully: the required rod, and the remedy."""
     crank, rod, offset = problem.crank, problem.rod, problem.offset
     nearest_line = 0.0 if offset.lower <= 0.0 <= offset.upper else min(abs(offset.lower), abs(offset.upper))
     needed = crank.lower + nearest_line
@@ -234,7 +236,7 @@ def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
 
 
 def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[Remark]:
-    """Return, in words, the nearest possible value for a requirement beyond the ends of the possible range."""
+    """Return, in words, the nearest possible value for a requirement outside the possible range."""
     sentences: list[Remark] = []
     for word, bound in constraint.sides:
         nearest = min(max(bound, ends[0]), ends[1])

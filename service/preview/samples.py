@@ -30,9 +30,9 @@ Array = NDArray[np.float64]
 
 SAMPLES = 512
 BATCH = 64
-_MOMENT = 0.06  # s, for the designs of quantities that take a cycle
-_BAND = 0.5  # of what the ranges allow of a quantity: wider bands are met by samples of the whole box
-_VALUES = 8  # within bands, each with as many samples as the others
+_MOMENT = 0.06  # s for designs whose quantities need a whole cycle
+_BAND = 0.5  # fraction of a quantity's possible range: samples of the whole box meet wider bands
+_VALUES = 8  # number of values within bands, each with equally many samples
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def _points(branches: Sequence[EliminationBranch], count: int, stream: int) -> I
 
 
 def _length_columns(problem: Problem) -> list[int]:
-    """Return the shown columns of designs: the three lengths, and the start of a swing if it varies."""
+    """Return the displayed columns of designs: the three lengths, and the start of a swing if it varies."""
     column = start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
 
@@ -122,8 +122,8 @@ def screened(problem: Problem) -> Screening:
 def _exact_parts(problem: Problem) -> list[Problem]:
     """Return problems that require single values within the bands of a problem; itself if it has no bands.
 
-    A band is a quantity between two values that can be eliminated. Its values are spread over what the ranges allow of
-    it: samples of the whole box would hardly meet a thin band, while those of an exact value meet it always.
+    A band is a range for a quantity that can be eliminated. Its values are spread over the possible range of the
+    quantity: samples of the whole box would rarely meet a thin band, whereas samples of an exact value always do.
     """
     bands, box = [], Box.from_problem(problem)
     for constraint in problem.constraints if box.turns else ():
@@ -149,7 +149,7 @@ def _exact_parts(problem: Problem) -> list[Problem]:
 
 
 def _can_be_eliminated(problem: Problem, exact: Constraint) -> bool:
-    """Return whether an exact value in place of a band leaves it to no sample whether it is met."""
+    """Return whether an exact value within a band guarantees that every sample meets the band."""
     constraints = tuple(exact if c.quantity == exact.quantity else c for c in problem.constraints)
     with suppress(InputError):
         branches = elimination_branches(replace(problem, constraints=constraints))

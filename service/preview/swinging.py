@@ -33,9 +33,9 @@ Array = NDArray[np.float64]
 class PossibleSwing:
     """Values that the ranges of a swing job allow. closing: fraction of the box that makes the swing.
 
-    travel (m): ends of its range, for designs that keep the margin and the other checked requirements, if any do; None
-    if no design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
-    met_by_all: requirements that each sample meets: exact values.
+    travel (m): its range for designs that meet the margin and the other checked requirements, if any do; None if no
+    design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
+    met_by_all: requirements that every sample meets: exact values.
     example: crank, rod and offset, m; None if no design makes the swing. example_swing: its swing, between crank
     angles. unchecked: requirements too slow to check, or that need the rest of the job.
     """
@@ -54,9 +54,9 @@ class PossibleSwing:
 
 
 def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
-    """Return the values that the ranges of a job allow; None for full rotation, and while something cannot be read.
+    """Return the values that the ranges of a job allow; None for full rotation, and while the job is unreadable.
 
-    full_problem: the problem of the whole job, if it is valid. The first of several options counts.
+    full_problem: the problem of the whole job, if it is valid. Of several options the first is used.
     """
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
@@ -124,7 +124,7 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
 
 
 def positions(angle: float | Array, sign: float, designs: Array) -> Array:
-    """Return the slider position (n,), m, of designs (n, 3) at a crank angle; NaN if one does not close."""
+    """Return the slider position (n,), m, of designs (n, 3) at a crank angle; NaN where the linkage does not close."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore", divide="ignore"):
         closes = np.abs(e - r * np.sin(angle)) < l

@@ -1,4 +1,4 @@
-"""Text of the analysis of one design."""
+"""Text for the analysis of one design."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def show_analysis(
 ) -> None:
     """Write all numbers of a design, its rules as met or missed, and its topics.
 
-    judgement: its job, judged at the design; None without a job. custom: custom quantities of its job. hint: line
-    before the topics, "" for none.
+    judgement: its job, evaluated at the design; None without a job. custom: custom quantities of its job. hint: line
+    before the topics, or "".
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
     show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)

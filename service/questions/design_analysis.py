@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Analysis:
     """Analysis of a design. row: all its numbers. found: numbers of its topics. notes: omissions with reasons.
 
-    refused: topics that the design does not have, each with the reason. undefined: reasons for undefined quantities, by
-    column; None without a job, which leaves most undefined. violated: excess over allowable values, by column.
+    refused: topics that do not apply to the design, each with the reason. undefined: reasons for undefined quantities,
+    by column; None without a job, where most are undefined. violated: excess over allowable values, by column.
     """
 
     row: Row
@@ -42,9 +42,9 @@ class Analysis:
     violated: dict[str, float] = field(default_factory=dict)
 
     def record(self, units: System = "metric", judgement: Judgement | None = None) -> dict[str, Any]:
-        """Return all numbers of the design and of its topics, for JSON, with undefined and violated quantities.
+        """Return all numbers of the design and of its topics, ready for JSON, with undefined and violated quantities.
 
-        judgement: its job, judged at the design; None without a job.
+        judgement: its job, evaluated at the design; None without a job.
         """
         topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
@@ -59,9 +59,9 @@ class Analysis:
 def judge_design(
     problem: Problem, mechanism: Mechanism, linkage: Linkage, row: Row, system: System = "metric"
 ) -> Judgement:
-    """Return a job judged at a design, with each combination of its choices.
+    """Return the evaluation of a job at a design, with each combination of its choices.
 
-    mechanism: mechanism of the design without a choice. row: its quantities.
+    mechanism: mechanism of the design, before choices are applied. row: quantities of the design.
     """
     choices = []
     for index, variant in enumerate(problem.variants):
@@ -77,7 +77,7 @@ def judge_design(
 def quantities_of_design(
     mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = ()
 ) -> tuple[Row, dict[str, str]]:
-    """Return every quantity of one design, and the reason for each missing one by column. custom: custom quantities."""
+    """Return every quantity of one design, and by column the reason for each missing one. custom: custom quantities."""
     from ...objectives.tables.analysis import columns_of
     from .peaks import row_of
 
@@ -115,7 +115,7 @@ def with_undefined_values(
 
 
 def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
-    """Return every quantity of a swinging design, and the reason for each missing one by column."""
+    """Return every quantity of a swinging design, and by column the reason for each missing one."""
     import numpy as np
 
     from ...objectives.tables.swinging import columns_of
@@ -140,8 +140,8 @@ def analysis_of(
     """Return the analysis of one design.
 
     row, undefined: from `quantities_of_design`. topics: from `chosen_topics`, each with its options. further_topics:
-    added after these. cancelled: polled; once true, the remaining topics are omitted. lenient: whether a topic that
-    does not apply to this design is omitted instead of raising an error.
+    added after these. cancelled: polled; once true, the remaining topics are omitted. lenient: whether to omit a topic
+    that does not apply to this design instead of raising an error.
     """
     design = tuple(TOPICS[name].for_design(mechanism, linkage, (options or {}).get(name)) for name in topics)
     design += tuple(further_topics)

@@ -1,4 +1,4 @@
-"""A question about one design: a topic, which `analyse --show` can add, or a separate command."""
+"""Question about one design: a topic, which `analyse --show` can add, or a separate command."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 class QuestionCommand:
     """Declaration of a question that is a command with its own endpoint instead of a topic of `analyse --show`.
 
-    help: description, with the first sentence in a separate paragraph. endpoint: name of the endpoint. job: help on
-    JOB. alone: help on the use without JOB. curves: output that the command can write and draw, by functions `curves`
-    and `figure` with the parameters of `numbers` and `units`.
+    help: description, with the first sentence as a separate paragraph. endpoint: name of the endpoint. job: help text
+    for JOB. alone: help text for use without JOB. curves: output that the command can write and draw, by functions
+    `curves` and `figure` with the parameters of `numbers` and `units`.
 
-    sizes: whether the question sizes a part of a rotating machine: it needs a job, optional libraries, and seconds.
-    called: name of such a command, if it differs from the question's. figure: name of the file drawn by a function
-    `figure`, and its content.
+    sizes: whether the question sizes a part of a rotating machine: it then needs a job, optional libraries, and several
+    seconds. called: name of such a command, if it differs from that of the question. figure: name of the file drawn by
+    a function `figure`, and its content.
     """
 
     help: str
@@ -48,19 +48,19 @@ class QuestionCommand:
 
 @dataclass(frozen=True)
 class DesignQuestion:
-    """A question, declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
+    """Question declared by its folder, whose module `analysis` has the functions `numbers`, `blocks` and `figure`.
 
-    The return type of `numbers` is the type of the answer, see `record_types`, from which its JSON Schema follows.
+    The return type of `numbers` is the answer type, see `record_types`; its JSON Schema follows from it.
 
     package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
     shows: description for the help. needs_job: whether it needs masses, loads or tolerances. explained_columns: columns
     that it shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function `prepare`
-    of that module gives further options for numbers and figure, from the present ones. An optional function `in_units`
-    gives the numbers in a system of units.
+    in the module derives further options for numbers and figure from the given ones. An optional function `in_units`
+    converts the numbers to a unit system.
 
-    command: declaration as a separate command. Its numbers also take `words`, the interface's names for the inputs, and
-    `swing`, the swing of the crank in its job, or `problem` if it sizes; the design need not rotate fully. `note` or
-    `notes` among them explain undefined values; an optional function `notes` of the module reports unproven optima.
+    command: declaration as a separate command. Its numbers also accept `words`, the interface's names for the inputs,
+    and `swing`, the swing in the job, or `problem` if it sizes; the design need not rotate fully. The keys `note` or
+    `notes` in them explain undefined values; an optional function `notes` of the module reports unproven optima.
     """
 
     package: str
@@ -73,12 +73,12 @@ class DesignQuestion:
 
     @property
     def analysis(self) -> Any:
-        """The folder's module with the functions."""
+        """Module of the folder with the functions."""
         return import_module(f"{self.package}.analysis")
 
     @property
     def record_type(self) -> Any:
-        """Type of the numbers, see `record_types`."""
+        """Type of the numbers; see `record_types`."""
         return get_type_hints(self.analysis.numbers, include_extras=True)["return"]
 
     @property
@@ -94,9 +94,11 @@ class DesignQuestion:
         inputs: Mapping[str, object],
         words: Mapping[str, str] | None = None,
     ) -> BoundQuestion:
-        """Return the question about a design. problem: problem of the design. inputs: by name, in SI or text with unit.
+        """Return the question for a design.
 
-        words: the interface's names for the inputs, if different. Raises `InputError` for a swing problem, unless the
+        problem: problem of the design. inputs: by name, in SI or as text with a unit.
+
+        words: the interface's names for the inputs, if different. Raises `InputError` for a swing problem unless the
         question accepts it, and for inputs that it does not accept.
         """
         swing = None if problem is None else problem.motion
@@ -116,7 +118,7 @@ class DesignQuestion:
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
-        """Return the numbers as JSON, metric: a question of `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
         from ...model.linkage.single_linkage import single
 
         bound = self.for_problem(mechanism, linkage, problem, inputs)
@@ -128,13 +130,13 @@ class DesignQuestion:
     def for_design(
         self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None
     ) -> BoundQuestion:
-        """Return the question about one design. options: options of its `numbers`."""
+        """Return the question for one design. options: options of its `numbers`."""
         return BoundQuestion(self, mechanism, linkage, dict(options or {}))
 
 
 @dataclass(frozen=True)
 class BoundQuestion:
-    """A question about one design, with its options."""
+    """Question about one design, with its options."""
 
     question: DesignQuestion
     mechanism: Mechanism
@@ -153,7 +155,7 @@ class BoundQuestion:
         return record
 
     def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
-        """Return metric numbers in a system of units, for JSON."""
+        """Return metric numbers converted to a unit system, for JSON."""
         from ..designs.display_units import record_in
 
         converted: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
@@ -172,11 +174,11 @@ class BoundQuestion:
         return [note for note in numbers.get("notes", [numbers.get("note")]) if note]
 
     def written(self, name: str, units: System) -> Any:
-        """Return the output of a function of the module by its name: rows of `curves`, or a `figure`."""
+        """Return the output of a function in the module, by name: rows of `curves`, or a `figure`."""
         return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
-        """Write the figure into a folder, after its numbers; return the file."""
+        """Draw the figure for known numbers into a folder; return the file."""
         from ..figures.panels import save_figure
 
         file = folder / f"{self.name}.png"
@@ -184,7 +186,7 @@ class BoundQuestion:
         return file
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
-        """Return the figure without earlier numbers. Raises `InputError` if there is none."""
+        """Return the figure without computed numbers. Raises `InputError` if there is none."""
         from ..figures.panels import figure_of
 
         self._prepare(cancelled)

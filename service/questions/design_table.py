@@ -1,4 +1,4 @@
-"""Tables of designs, a row for each quantity, for answers to questions about a front."""
+"""Tables of designs, with a row for each quantity, for answers to questions about a front."""
 
 from __future__ import annotations
 
@@ -10,5 +10,5 @@ from ..render.blocks import Text, Unit
 
 
 def title_and_unit(key: str, keys: Collection[str]) -> tuple[Text, Text]:
-    """Return the title of a metric column, and its unit."""
+    """Return the title of a metric column and its unit."""
     return find_column(key, keys).title, Unit(kind_of_key(key)[1])

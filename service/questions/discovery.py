@@ -1,4 +1,4 @@
-"""Questions, found in their folders, and the requested topics."""
+"""Questions found in their folders, and the requested topics."""
 
 from __future__ import annotations
 
@@ -28,27 +28,29 @@ def _discover_questions() -> dict[str, DesignQuestion | FrontOrJobQuestion]:
 QUESTIONS = _discover_questions()
 """All questions, by name."""
 DESIGN_QUESTIONS = {name: one for name, one in QUESTIONS.items() if isinstance(one, DesignQuestion)}
-"""All that one design can be asked, by name."""
+"""All questions about one design, by name."""
 FRONT_OR_JOB_QUESTIONS = {name: one for name, one in QUESTIONS.items() if isinstance(one, FrontOrJobQuestion)}
-"""All that a front, several runs or a job can be asked, by name."""
+"""All questions about a front, several runs or a job, by name."""
 QUESTION_COMMANDS = {name: one.command for name, one in DESIGN_QUESTIONS.items() if one.command is not None}
-"""Those that are commands of their own."""
+"""Questions that are separate commands."""
 TOPICS = {name: one for name, one in DESIGN_QUESTIONS.items() if name not in QUESTION_COMMANDS}
-"""Those that `analyse --show` adds, in their order."""
+"""Questions that `analyse --show` adds, in order."""
 TOPIC_COLUMNS = tuple(key for topic in TOPICS.values() for key in topic.explained_columns)
-"""Columns that topics show; the table of a design leaves them out."""
+"""Columns shown by topics, which the table of a design omits."""
 
 
 INPUTS = {given.name: given for topic in TOPICS.values() for given in topic.inputs}
-"""What topics may be asked with, by name; no two topics have one of the same name."""
+"""Inputs of the topics, by name; no two topics share an input name."""
 TOPIC_OF_INPUT = {given.name: topic.name for topic in TOPICS.values() for given in topic.inputs}
-"""Name of the topic of an input."""
+"""Name of the topic for each input."""
 
 
 def chosen_topics(names: Iterable[str], *, job: bool, word: str = "--show") -> tuple[str, ...]:
-    """Return the requested topics, each once. Raises `InputError` for unknown topics and those that lack a job.
+    """Return the requested topics without duplicates.
 
-    word: the interface's name for them.
+    Raises `InputError` for unknown topics and for those that need a missing job.
+
+    word: the interface's name for the option.
     """
     import difflib
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """An answer. record: numbers for JSON, by system of units. blocks: for people. message: its summary.
+    """Answer to a question. record: numbers for JSON, by unit system. blocks: for people. message: its summary.
 
     is_satisfied: whether the request was met. search_result: result of the search, for further use by a command.
     """
@@ -33,7 +33,7 @@ class Answer:
 
 @dataclass(frozen=True, kw_only=True)
 class SearchListener:
-    """Listener to a search. cancelled: polled; whether to stop. report: receives the progress in words."""
+    """Search listener. cancelled: polled; whether to stop. report: receives the progress in words."""
 
     cancelled: Callable[[], bool] = lambda: False
     report: Callable[[str], None] = lambda _: None
@@ -41,14 +41,14 @@ class SearchListener:
 
 @dataclass(frozen=True, kw_only=True)
 class FrontOrJobQuestion:
-    """Declaration of a question to a front or a job. The module `analysis` of its folder has the function `analyse`.
+    """Declaration of a question about a front or a job. The module `analysis` in its folder has the function `analyse`.
 
     `analyse` takes the subject, for a front also `row`, then `watch`, `words` (names of the inputs in the interface)
     and the inputs by name; it returns an `Answer`. package: package of the folder; its last part is the name. subject:
-    kind of object that the question is about. help: description, with the first sentence in a separate paragraph. row:
-    whether the question is about one design of the front. path: path of the endpoint, with names in braces. posted:
-    whether the inputs are the body of the request instead of part of its address. key: key of the numbers in the
-    answer, "" if they are the whole answer.
+    kind of object that the question is about. help: description, with the first sentence as a separate paragraph. row:
+    whether the question is about one design on the front. path: path of the endpoint, with names in braces. posted:
+    whether the inputs are in the body of the request instead of its address. key: key of the numbers in the answer, ""
+    if they are the whole answer.
     """
 
     package: str
@@ -63,7 +63,7 @@ class FrontOrJobQuestion:
 
     @property
     def name(self) -> str:
-        """Name of the command and in JSON."""
+        """Name of the command and of its JSON object."""
         return self.package.rpartition(".")[2]
 
     @property
@@ -73,13 +73,16 @@ class FrontOrJobQuestion:
 
     @property
     def flags(self) -> dict[str, str]:
-        """Command-line options of the inputs, by name."""
+        """Command-line options for the inputs, by name."""
         return {item.name: item.flag for item in self.inputs}
 
     def read(
         self, inputs: Mapping[str, object], row: int | None, words: Mapping[str, str] | None = None
     ) -> dict[str, Any]:
-        """Return the inputs in the form for the answer. Raises `InputError` for other inputs or a misplaced design."""
+        """Return the inputs in the form that the answer needs.
+
+        Raises `InputError` for unknown inputs, and for a design number that is missing or not accepted.
+        """
         if (row is None and self.row == "must") or (row is not None and self.row == "none"):
             if row is None:
                 raise InputError(f"{self.name} needs one design of the front; got none; name it")
@@ -108,6 +111,6 @@ class FrontOrJobQuestion:
         return result
 
     def answer_of(self, subject: object, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
-        """Return the numbers as JSON, metric: a question of `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
         record: dict[str, Any] = json_ready(self.ask(subject, inputs, row=row).record("metric"))
         return record

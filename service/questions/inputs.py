@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Input:
-    """An input of a question.
+    """Input of a question.
 
-    name: parameter of the question's `numbers`, which has its default. kind: kind of the value, in SI there; None for a
-    word. title: label of the field in a form. help: help of the option, with the default in brackets. usual: default as
-    typed, "" if there is none. option: command-line option, without dashes, if it differs from the name. sign: required
-    sign of the value. below: exclusive upper bound, in SI. drawn: whether the figure takes it too. example: example as
-    typed. words: `Literal` of the allowed words. loose: whether words may be in capitals, with - and _ for spaces.
-    required: whether it must be given.
+    name: parameter of the question's `numbers`, which has its default. kind: kind of the value, which is in SI there;
+    None for a word. title: label of its field in a form. help: help text of the option, with the default in brackets.
+    usual: default as typed, "" if there is none. option: command-line option, without dashes, if it differs from the
+    name. sign: required sign of the value. below: exclusive upper bound, in SI. drawn: whether the figure takes it too.
+    example: example as typed. words: `Literal` with the allowed words. loose: whether words may be capitalised, with -
+    or _ for spaces. required: whether it is mandatory.
     """
 
     name: str
@@ -52,30 +52,30 @@ class Input:
 
     @property
     def flag(self) -> str:
-        """Command-line option, with its dashes."""
+        """Command-line option with its dashes."""
         return f"--{(self.option or self.name).replace('_', '-')}"
 
     @property
     def default(self) -> float:
-        """The default in SI."""
+        """Default in SI."""
         return float(self.read(self.usual, self.name))
 
     @property
     def schema(self) -> dict[str, Any]:
-        """JSON Schema of an agent's value: a text with its unit, or a word."""
+        """JSON Schema of an agent's value: text with a unit, or a word."""
         return {"type": "string", **({"enum": list(get_args(self.words))} if self.words else {})}
 
     @property
     def remark(self) -> str:
-        """The help with the default or an example."""
+        """Help text with the default or an example."""
         typed = self.usual or self.example
         quoted = f'"{typed}"' if self.unit.symbol else typed
         return f"{self.help}  [{'default' if self.usual else 'example'}: {quoted}]" if typed else self.help
 
     def read(self, raw: object, word: str) -> Any:
-        """Return the SI value of a text with its unit or of a number; words are unchanged.
+        """Return the SI value of a text with a unit or of a number; words are unchanged.
 
-        word: name of the input in the interface, with which error messages begin. Raises `InputError`; warns of a
+        word: name of the input in the interface, with which error messages begin. Raises `InputError`; warns about a
         number that is only plausible in another unit.
         """
         from ...model.machine.loads.load import require_word
@@ -98,17 +98,17 @@ class Input:
         return value
 
     def with_unit(self, number: float | str) -> str:
-        """Return a number of the API as text with its unit; a word unchanged."""
+        """Return a number from the API as text with its unit; words are unchanged."""
         return number if isinstance(number, str) else f"{number!r} {self.unit.symbol}"
 
 
 def read_inputs(
     inputs: Sequence[Input], raw_values: Mapping[str, object], question: str, words: Mapping[str, str] | None = None
 ) -> dict[str, Any]:
-    """Return the values, in SI, of inputs given by name; None counts as not given.
+    """Return the SI values of inputs given by name; None counts as omitted.
 
-    words: the interface's names for them, if different. Raises `InputError` for an unknown input, and for a missing
-    required one.
+    words: the interface's names for them, if different. Raises `InputError` for an unknown input or a missing required
+    one.
     """
     labels = {item.name: item.name for item in inputs} | dict(words or {})
     by_name = {item.name: item for item in inputs}

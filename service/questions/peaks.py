@@ -15,14 +15,14 @@ from ...model.signals.signals import Signal
 
 
 class Peak(NamedTuple):
-    """Greatest magnitude of a signal, SI, and its crank angle, deg; NaN if undetermined."""
+    """Maximum magnitude of a signal, SI, and its crank angle, deg; NaN if undetermined."""
 
     value: float
     degrees: float
 
 
 def row_of(linkage: Linkage) -> NDArray[np.float64]:
-    """Return crank, rod and offset, m, as a table of one design (1, 3)."""
+    """Return crank, rod and offset, m, as a table with one design (1, 3)."""
     return np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
 
 

@@ -1,7 +1,7 @@
-"""Types of the answers to questions, the source of JSON Schemas: keys, their kinds, reasons for null.
+"""Types of the answers to questions, from which JSON Schemas follow: keys, their kinds, reasons for null.
 
-The function `numbers` of a question returns the answer: a `Record`, a typed dictionary that mypy checks. If its keys
-follow from data, it is a dictionary with `Keys`. The key of a number ends with its unit.
+The function `numbers` of a question returns the answer as a `Record`, a typed dictionary that mypy checks. If its keys
+follow from data, the answer is a dictionary with `Keys`. The key of a number ends with its unit.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _Handler = Callable[[Any], dict[str, Any]]
 
 @dataclass(frozen=True)
 class Note:
-    """Description of a value in a schema, such as why it is null."""
+    """Description of a value in a schema, for example why it is null."""
 
     text: str
 
@@ -35,13 +35,13 @@ class _Boundless:
 
 
 PossiblyInfinite = Annotated[float | None, _Boundless()]
-"""A number that may be infinite: JSON has "inf" and "-inf" for that."""
+"""A number that may be infinite: JSON uses "inf" and "-inf" for that."""
 PeakAngle = Annotated[float | None, Note("null where the curve is constant or not determined")]
 NullIfLocked = Annotated[float | None, Note("null where friction locks or may jam the linkage")]
 
 
 class Record(TypedDict):
-    """A JSON record without other keys. A text below a key describes it."""
+    """JSON record that allows no other keys. A string below a key describes it."""
 
 
 def _title(key: str, _: object = None) -> str:
@@ -81,7 +81,7 @@ class Keys:
 
 
 def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]:
-    """Return keys of numbers: each name with the unit of each kind."""
+    """Return number keys that combine each name with the unit of each kind."""
     return {f"{name}{kind.metric.suffix}": NotRequired[NullIfLocked] for name in names for kind in kinds}
 
 
@@ -89,8 +89,8 @@ def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]
 class RecordSchema:
     """Schema of a JSON record that answers one of several questions, in metric or inch units.
 
-    types: function that returns the types of the answers. names: keys of the answers in a metric record with other
-    keys; without names, the record is one of the answers.
+    types: function that returns the types of the answers. names: keys of the answers in a metric record that has other
+    keys too; without names, the record is a single answer.
     """
 
     types: Callable[[], list[Any]]

@@ -12,12 +12,12 @@ from .inputs import Input
 
 @dataclass(frozen=True, kw_only=True)
 class TypedInput(Input):
-    """An input with a plain type instead of a physical kind.
+    """Input with a plain type instead of a physical kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, typed as "name=text" on the command line.
-    least: minimum of a number. limits: limits in services, by the names of `pydantic.Field`. served: default in
-    services, if different. form: form of a text with a name, "REQUIREMENT=AMOUNT". metavar: placeholder of the option.
-    sent: example in a body.
+    least: minimum of a number. limits: limits in services, as named by `pydantic.Field`. served: default in services,
+    if different. form: form of a text with a name, "REQUIREMENT=AMOUNT". metavar: placeholder of the option. sent:
+    example in a body.
     """
 
     type: Any = float
@@ -35,7 +35,7 @@ class TypedInput(Input):
 
     @property
     def served_value(self) -> Any:
-        """The default in services."""
+        """Default in services."""
         return self.type(self.served) if self.served else self.value
 
     @property
@@ -51,11 +51,14 @@ class TypedInput(Input):
         return TypeAdapter(kind)
 
     def with_unit(self, number: Any) -> Any:
-        """Return a value of the API unchanged: it has no unit."""
+        """Return a value from the API unchanged: it has no unit."""
         return number
 
     def read(self, raw: object, word: str) -> Any:
-        """Return the number, the texts, or the texts by name. Raises `InputError` that begins with the word."""
+        """Return the number, the texts, or the texts by name.
+
+        Raises `InputError`, whose message begins with the word.
+        """
         from pydantic import ValidationError
 
         from ...objectives.units import quote
@@ -76,7 +79,7 @@ class TypedInput(Input):
 def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -> dict[str, str]:
     """Return texts such as "stroke=0.1 mm" by their names. word: first word of messages.
 
-    Raises `InputError` for a text of another form, and for a repeated name.
+    Raises `InputError` for a text in any other form, and for a repeated name.
     """
     from ...objectives.units import quote
 

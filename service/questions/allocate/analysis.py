@@ -1,4 +1,4 @@
-"""Least-cost tolerances as numbers and text, with the cost and error of the original tolerances."""
+"""Least-cost tolerances as numbers and text, compared with the cost and error of the original tolerances."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class Tolerance(Record):
-    """A tolerance: a length, or that of the crank angle."""
+    """Tolerance of a length or of the crank angle."""
 
     name: str
     tolerance_mm: OfLength
@@ -41,44 +41,44 @@ class Tolerance(Record):
     share_of_cost_percent: float
     bound: Annotated[Literal["least", "greatest"] | None, Note("of what is possible, if it is at one; else null")]
     bound_saving_per_um: OfLength
-    """What moving the bound would save; null for the crank angle."""
+    """Saving if the bound moves; null for the crank angle."""
     bound_saving_per_mdeg: OfAngle
 
 
 class ActiveAngle(Record):
-    """A crank angle at which the limit holds."""
+    """Crank angle at which the error limit is active."""
 
     crank_angle_deg: float
     saving_per_um: float
 
 
 class Tolerances(Record):
-    """Least-cost tolerances within a limit of the position error."""
+    """Least-cost tolerances within a position error limit."""
 
     kind: Kind
-    """How errors add up."""
+    """How errors combine."""
     limit_mm: float
     cost: float
     error_mm: float
-    """Greatest over the counted part of the cycle."""
+    """Maximum over the counted part of the cycle."""
     exact_worst_case_mm: Annotated[float | None, Note("null where a linkage within the tolerances does not turn")]
     saving_per_um: float
-    """What a greater limit would save."""
+    """Saving if the limit is raised."""
     tolerances: list[Tolerance]
     active_angles: list[ActiveAngle]
     cost_before: Before
     error_before_mm: Before
     rounds: int
     residual: float
-    """Of the optimality conditions."""
+    """Residual of the optimality conditions."""
     converged: bool
-    """Whether the cost is proven to be the least."""
+    """Whether the cost is proven to be minimal."""
 
 
 _STEP = replace(
     LENGTH, metric=display_unit("1 µm", 1e6), inch=display_unit("0.0001 in", 1e4 * LENGTH.display_unit("inch").factor)
 )
-"""A step of length, for what it saves: as a unit of its own."""
+"""A length step to which a saving refers, as a unit of its own."""
 
 
 def prepare(
@@ -90,7 +90,7 @@ def prepare(
     kind: Kind = "worst case",
     **_: Any,
 ) -> dict[str, Any]:
-    """Return one allocation for numbers and figure, and the costs. Raises `InputError` without [costs]."""
+    """Return the allocation that numbers and figure share, and the costs. Raises `InputError` if [costs] is missing."""
     if problem is None or problem.costs is None:
         raise InputError(
             "allocation needs the costs of the tolerances; this job has no [costs]; add for example [costs] crank = { "
@@ -101,10 +101,10 @@ def prepare(
 
 
 def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, costs: Costs, **_: Any) -> Tolerances:
-    """Return an allocation ready for JSON.
+    """Return an allocation, ready for JSON.
 
-    before: original mechanism; cost and error of its tolerances are None unless it has all tolerances with a cost. The
-    exact worst case is None if a linkage within the tolerances does not rotate fully.
+    before: original mechanism; cost and error of its tolerances are None unless it has all tolerances and their costs.
+    The exact worst case is None if a linkage within the tolerances does not rotate fully.
     """
     try:
         exact = 1e3 * worst(allocation.mechanism, linkage).size
@@ -157,14 +157,14 @@ def notes(numbers: Tolerances) -> list[str]:
 def figure(
     before: Mechanism, linkage: Linkage, *, allocation: Allocation, costs: Costs, units: System, **_: Any
 ) -> Figure:
-    """Return error and costs over the cycle."""
+    """Return the panels for error and costs over the cycle."""
     from .figure import allocation_curves, allocation_figure
 
     return allocation_figure(allocation_curves(allocation, linkage, costs, before), units)
 
 
 def blocks(numbers: Tolerances) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
     rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
     rows.append(("together", "", recorded(numbers, "cost", digits=5), "", _cost_in_job(numbers)))

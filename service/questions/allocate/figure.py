@@ -26,7 +26,7 @@ _SAMPLES = 721
 
 @dataclass(frozen=True)
 class AllocationCurves:
-    """The figure's data: errors in m over crank angles (m,), deg.
+    """Data of the figure: errors in m over crank angles (m,), deg.
 
     sources: names of the error sources (s,). parts: contribution of each (s, m), its term (worst case) or its fraction
     of the squares times the error (root-sum-square), so that both add up to the error. before: error (m,) with the
@@ -49,7 +49,7 @@ class AllocationCurves:
 
 
 def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
-    """Return the figure's data. before: mechanism with its original tolerances."""
+    """Return the data of the figure. before: mechanism with its original tolerances."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     now = first_order(allocation.mechanism, linkage, theta)
     share, error = _cumulated_error(now, allocation.kind)
@@ -72,14 +72,14 @@ def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, be
 
 
 def _cumulated_error(linear: FirstOrder, kind: str) -> tuple[Array, Array]:
-    """Return contributions of the sources (8, m) and the error (m,), m, as errors add up in an allocation."""
+    """Return the contributions of the sources (8, m) and the error (m,), m, combined as in an allocation."""
     if kind == "worst case":
         return linear.share_of_worst_case, linear.worst_case
     return linear.share_of_variance, linear.root_sum_square
 
 
 def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: the error over the cycle above, the costs below."""
+    """Return the figure in a unit system: the error over the cycle above, the costs below."""
     unit = LENGTH.display_unit(system)
     limit = unit.factor * data.limit
     count = len(data.names)
@@ -136,7 +136,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
 
 
 def _gaps(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
-    """Return the crank angles from 0 to 360 deg that are not counted."""
+    """Return the crank angle ranges within 0 to 360 deg that do not count."""
     counted_spans = sorted(
         (max(start + shift, 0.0), min(end + shift, 360.0))
         for start, end in counted

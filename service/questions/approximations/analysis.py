@@ -22,12 +22,12 @@ Share = Annotated[float | None, Note("null where the exact value is zero all ove
 
 
 class Approximation(Record):
-    """An approximation and its error: the greatest difference over the cycle, as a share of the exact peak."""
+    """Approximation and its error: maximum difference over the cycle, relative to the exact peak."""
 
     name: str
     error_percent: Share
     error_over_offset_percent: list[Share]
-    """At each offset of the answer."""
+    """Errors at each offset of the answer."""
 
 
 class AccelerationOf(Approximation):
@@ -43,14 +43,14 @@ class TorqueOf(Approximation):
 
 
 class Approximations(Record):
-    """Textbook models beside the exact one: inertia alone, at constant speed."""
+    """Textbook models compared with the exact one: inertia only, at constant speed."""
 
     rotating_mass_kg: float
     reciprocating_mass_kg: float
     exact_peak_acceleration_m_s2: float
     exact_peak_torque_Nm: float
     offset_mm: list[float]
-    """Offsets, the design's own among them, at which the errors are given."""
+    """Offsets for the errors, including that of the design."""
     accelerations: list[AccelerationOf]
     torques: list[TorqueOf]
 
@@ -60,17 +60,17 @@ _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half"
 
 
 def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
-    """Return the errors at offsets from zero to the design's offset, or to (rod - crank) / 2 if greater."""
+    """Return the errors at offsets from zero to the design's offset, or to (rod - crank) / 2 if that is greater."""
     offset = float(linkage.offset)
     far = max(abs(offset), 0.5 * (float(linkage.rod) - float(linkage.crank)))
     return errors_over_offset(mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count))
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
-    """Return for each approximation its peak, its error at this design, and its error over offset.
+    """Return for each approximation its peak, its error for this design, and its error over offset.
 
-    Errors: greatest difference over the cycle relative to the exact peak, in percent; None if the peak is zero. They
-    cover inertia alone, at constant speed. Raises `InputError` without a crank speed.
+    Errors: maximum difference over the cycle relative to the exact peak, in percent; None if the peak is zero. They
+    cover inertia only, at constant speed. Raises `InputError` without a crank speed.
     """
     comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
@@ -81,7 +81,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
         "reciprocating_mass_kg": reciprocating,
         "exact_peak_acceleration_m_s2": _greatest_size(comparison.acceleration),
         "exact_peak_torque_Nm": _greatest_size(comparison.torque),
-        "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # of a negative offset the first one is -0.0
+        "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # for a negative offset the first one is -0.0
         "accelerations": [
             {
                 "name": name,
@@ -145,7 +145,7 @@ def _approximation_row(approximation: Approximation, key: str, kind: Kind) -> tu
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return acceleration and inertia torque, exact and approximate, and the greatest errors over offset."""
+    """Return exact and approximate acceleration and inertia torque, and the maximum errors over offset."""
     comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
     errors = _errors_over_offset(mechanism, linkage, _DRAWN)
     degrees, offsets = np.degrees(comparison.crank_angle), np.abs(errors.offset)

@@ -27,7 +27,7 @@ Bare = Annotated[float | None, Note("null without a counterweight")]
 
 
 class Shaking(Record):
-    """Force and moment of inertia on the frame, gravity and load left out; root mean squares are over time."""
+    """Inertia force and moment on the frame, without gravity and loads; root mean squares are over time."""
 
     counterweight_kg: float
     counterweight_radius_mm: float
@@ -37,7 +37,7 @@ class Shaking(Record):
     peak_shaking_force_without_counterweight_N: Bare
     rms_shaking_force_without_counterweight_N: Bare
     peak_shaking_moment_Nm: float
-    """About the crank pivot."""
+    """Moment about the crank pivot."""
     peak_shaking_moment_angle_deg: PeakAngle
     rms_shaking_moment_Nm: float
     peak_shaking_moment_without_counterweight_Nm: Bare
@@ -57,8 +57,8 @@ def _without_counterweight(mechanism: Mechanism) -> Mechanism | None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage, with and without counterweight.
 
-    Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.inertia`). The
-    values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
+    Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.inertia`).
+    Values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
     """
     if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)
@@ -101,7 +101,7 @@ def _shaking_curves_of(
 
 
 def blocks(numbers: Shaking) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     lines: list[NamedNumber] = []
     for name, unit, _ in _CURVES:
         for statistic in ("peak", "rms"):

@@ -1,4 +1,4 @@
-"""Certificate of a front; without designs, a proof that nothing is feasible."""
+"""Certificate for a front; without designs, a proof that nothing is feasible."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
 
 
 def _certificate_record(certificate: Certificate, problem: Problem) -> dict[str, Any]:
-    """Return a certificate for JSON, metric; the added designs with all their numbers come last."""
+    """Return a certificate ready for JSON, metric; the added designs come last, with all their numbers."""
     quantities = [problem.quantity(objective.quantity) for objective in problem.objectives]
     return {
         "name": problem.name,

@@ -1,4 +1,4 @@
-"""Simulation of a loose joint over some crank revolutions, and its statistics: numbers, text and figure."""
+"""Simulation of a loose joint over several crank revolutions, and its statistics: numbers, text and figure."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def simulated(
     discard: int = DISCARD,
     cancelled: Callable[[], bool] | None = None,
 ) -> ClearanceRun:
-    """Return the simulation of the mechanism's loose joint, with its progress shown on a terminal.
+    """Return the simulation of the mechanism's loose joint; shows its progress on a terminal.
 
     Raises `InputError` if no joint is loose, and the errors of `model.clearance.run.simulate`.
     """
@@ -94,14 +94,14 @@ def simulated(
 
 
 def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
-    """Return one simulation for numbers and figure."""
+    """Return the simulation that numbers and figure share."""
     return {"run": simulated(mechanism, linkage, cancelled=cancelled)}
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any) -> Impacts:
     """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None if undefined.
 
-    run: finished simulation; else `simulated` runs one with the options.
+    run: finished simulation; by default `simulated` runs one with the options.
     """
     run = run or simulated(mechanism, linkage, **options)
     clearance = run.clearance
@@ -153,7 +153,10 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Callable[[System], Figure]:
-    """Return the figure of a simulation's last revolution. run: finished simulation; else `simulated` runs one."""
+    """Return the figure for the last revolution of a simulation.
+
+    run: finished simulation; by default `simulated` runs one.
+    """
     from .figure import clearance_figure
 
     return partial(clearance_figure, run or simulated(mechanism, linkage))
@@ -163,7 +166,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None =
 def _turns_bar() -> Iterator[Callable[[ClearanceProgress], None] | None]:
     """Show a progress bar on standard error if it is a terminal; yield the callback for each revolution.
 
-    Only the main thread shows it: a service simulates for others.
+    Only the main thread shows it: a service runs simulations for others.
     """
     if not sys.stderr.isatty() or threading.current_thread() is not threading.main_thread():
         yield None

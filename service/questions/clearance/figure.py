@@ -26,7 +26,8 @@ from ...render.numerals import format_number
 Array = NDArray[np.float64]
 
 CASE_RPM = (30.0, 300.0, 400.0)
-"""Speeds of the published case: ME748, "Offset-Slider Crank Mechanism", section 2.3, with the nominal one between."""
+"""Speeds of the published case: ME748, "Offset-Slider Crank Mechanism", section 2.3, with the nominal speed in the
+middle."""
 _RPM = 2.0 * math.pi / 60.0
 _TITLES = {LENGTH: "slider displacement", SPEED: "slider velocity", ACCELERATION: "slider acceleration"}
 
@@ -50,7 +51,7 @@ class LooseCurves:
 
 
 def loose_curves(run: ClearanceRun) -> LooseCurves:
-    """Return the curves of the last revolution of a run. Raises `InputError` without a complete revolution."""
+    """Return the curves of the last revolution of a run. Raises `InputError` if there is no complete revolution."""
     if run.cycles < 1:
         raise InputError("a figure needs a complete turn of the crank; got none; simulate longer")
     start = (run.cycles - 1) * run.period
@@ -93,7 +94,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
 
 
 def speeds_figure(runs: Sequence[ClearanceRun]) -> PanelFigure:
-    """Return displacement, velocity and acceleration of the slider with a loose joint, a column for each run."""
+    """Return displacement, velocity and acceleration of the slider with a loose joint, one column per run."""
     columns = []
     for run in runs:
         curves = loose_curves(run)
@@ -138,7 +139,7 @@ def _motion_panel(curves: LooseCurves, kind: Kind) -> Panel:
 
 
 def _journal_panel(curves: LooseCurves, radius: float) -> Panel:
-    """Return the path of the journal's centre, dots at contacts with the bearing, and the clearance circle."""
+    """Return the path of the journal's centre, with dots where it touches the bearing, and the clearance circle."""
     turn, touching = np.linspace(0.0, 2.0 * math.pi, 361), curves.touching
     lines = (
         Line("", radius * np.cos(turn), radius * np.sin(turn), DASHED),

@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 _LEFT_OUT = ("name", "description")
 _SEARCHED = ("variables", "choice", "objectives", "robust", "optimiser", "sections", "costs")
-"""Tables of a job that change what is searched, not what a design must do."""
+"""Tables of a job that affect the search, not the requirements on a design."""
 _MOST_NAMES = 8
 
 
 def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
     """Return measures of the fronts, sentences, and differences between the jobs.
 
-    Runs with other objectives, or with undefined ones, have no measures; other objectives do not satisfy the request.
-    Raises `InputError` for fewer than two runs and for a repeated run.
+    Runs with other objectives, or with undefined ones, have no measures; with other objectives the answer is not
+    satisfied. Raises `InputError` for fewer than two runs and for a repeated run.
     """
     if len(runs) < 2:
         raise InputError("a comparison needs at least two runs; got one; name another")
@@ -74,7 +74,7 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
 
 
 def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[str | None]]]) -> list[str]:
-    """Return a sentence that names the differing givens and requirements of the jobs; nothing if they are the same."""
+    """Return a sentence that names the differing data and requirements of the jobs; empty if they are equal."""
     names = list(dict.fromkeys(_given_name(place) for place, _ in places if place.split(".")[0] not in _SEARCHED))
     if not names:
         return []
@@ -84,9 +84,9 @@ def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[st
 
 
 def _given_name(place: str) -> str:
-    """Return the name of a place in a job: "speed", "load", or the quantity or formula of a bound."""
+    """Return the name of a path in a job: "speed", "load", or the quantity or formula of a bound."""
     table, _, key = place.partition(".")
-    if table == "constraints":  # a formula may have a point
+    if table == "constraints":  # a formula may contain a point
         return re.sub(r"\.(min|max|equals)$", "", key).replace("_", " ")
     return (key.split(".")[0] if table == "mechanism" else table).replace("_", " ")
 
@@ -105,7 +105,7 @@ def _key(objective: StoredObjective) -> tuple[str, str, float | None]:
 
 
 def _reorder_objectives(result: Result, first: Result) -> Result:
-    """Return a result with its objectives in the order of the first one."""
+    """Return a result with its objectives in the order of the first result."""
     by_key = {_key(item): item for item in result.objectives}
     return replace(result, objectives=tuple(by_key[_key(item)] for item in first.objectives))
 
@@ -118,14 +118,14 @@ def _objectives(result: Result, system: System = "metric") -> str:
 
 
 def _better_sentences(solved: Sequence[ComparedRun], system: System) -> list[str]:
-    """Return which run is better where, in words; nothing for a single run with designs."""
+    """Return which run is better where, in words; empty if only one run has designs."""
     if len(solved) < 2:
         return []
     return comparison_sentences([run.name for run in solved], [run.result for run in solved], system)
 
 
 def _better_blocks(runs: Sequence[ComparedRun], sentences: Mapping[System, Sequence[str]]) -> list[Block]:
-    """Return which run is better where as sentences; one that begins with the name of a folder keeps its letter."""
+    """Return which run is better where as sentences; an initial folder name keeps its case."""
     folders = tuple(run.name for run in runs if isinstance(run.place, Path))
     texts = [
         [text if text.startswith(folders) else f"{text[:1].upper()}{text[1:]}" for text in sentences[system]]
@@ -198,12 +198,12 @@ def _measure_tables(solved: Sequence[ComparedRun], comparison: Comparison) -> li
 
 
 def _pair_table(title: str, values: Sequence[Sequence[Value]]) -> list[Block]:
-    """Return a number for each pair of runs, which their places in the list of runs name."""
+    """Return a number for each pair of runs, labelled with their positions in the list of runs."""
     places = [str(index) for index in range(1, len(values) + 1)]
     rows: list[tuple[Text, ...]] = []
     for index, row in enumerate(values):
         cells: list[Text] = [places[index], *row]
-        cells[1 + index] = ""  # a run against itself
+        cells[1 + index] = ""  # diagonal: a run and itself
         rows.append(tuple(cells))
     return [heading(title), Table((column(), *map(column, places)), tuple(rows), ruled=True)]
 
@@ -228,7 +228,7 @@ def _verdict_blocks(solved: Sequence[ComparedRun], comparison: Comparison) -> li
 
 
 def _samples_sentence(inner: ComparedRun, outer: ComparedRun) -> list[str]:
-    """Return why neither front dominates though one job has all designs of the other; nothing for other jobs."""
+    """Return why neither front dominates although one job allows all designs of the other; empty for other jobs."""
     if inner.tables is None or outer.tables is None:
         return []
     keys = {f"variables.{name}" for name in DIMENSIONS}
@@ -261,7 +261,7 @@ def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence
 
 
 def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
-    """Return the places where the tables of jobs differ, such as "load.1.force", with the value in each job.
+    """Return the paths at which the tables of jobs differ, such as "load.1.force", with the value in each job.
 
     The value is None if a job has nothing there. Names and descriptions are omitted.
     """
@@ -272,7 +272,10 @@ def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str 
 
 
 def _leaves(value: Any, place: str) -> list[tuple[str, str]]:
-    """Return the values within a table, each with its place. Lists of tables count from 1; ranges are "a to b"."""
+    """Return the values within a table, each with its path.
+
+    Items in lists of tables are numbered from 1; ranges are "a to b".
+    """
     if isinstance(value, Mapping):
         return [leaf for key, part in value.items() for leaf in _leaves(part, f"{place}.{key}" if place else str(key))]
     if isinstance(value, list | tuple) and any(isinstance(part, Mapping) for part in value):

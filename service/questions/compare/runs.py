@@ -1,4 +1,4 @@
-"""Runs that are compared."""
+"""Runs in a comparison."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ...runs.stored_runs import job_file
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """A run that is compared.
+    """Run in a comparison.
 
-    name: its name in the answer. place: its folder, or its number in the store. tables: tables of its job, None without
-    a readable one.
+    name: its name in the answer. place: its folder, or its number in the store. tables: tables of its job, None if
+    there is no readable job.
     """
 
     name: str
@@ -28,7 +28,7 @@ class ComparedRun:
 
     @property
     def method(self) -> str:
-        """The search method of its job."""
+        """Search method of its job."""
         from ....optimise.job.model import Job
 
         if self.tables is None:
@@ -38,11 +38,11 @@ class ComparedRun:
 
 
 def compared_run(folder: Path, result: Result) -> ComparedRun:
-    """Return the run of a folder. result: its result."""
+    """Return the run in a folder. result: its result."""
     from ....optimise.job import read_job
 
     file, tables = job_file(folder), None
-    with suppress(SlidercrankError):  # a job that cannot be read: its front can be compared all the same
+    with suppress(SlidercrankError):  # the job cannot be read, but the front can still be compared
         tables = None if file is None else read_job(file)
     place = folder.resolve()
     return ComparedRun(place.name, place, result, tables)

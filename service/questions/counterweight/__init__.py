@@ -1,4 +1,4 @@
-"""Counterweight and rod balance for least shaking: numbers, text and figure."""
+"""Counterweight and rod balance for minimum shaking: numbers, text and figure."""
 
 from ....objectives.kinds import LENGTH, MASS
 from ....optimise.sizing.input_words import Measure

@@ -1,4 +1,4 @@
-"""Counterweight for least shaking, and the shaking before and after: numbers, text and figure."""
+"""Counterweight for minimum shaking, and the shaking before and after: numbers, text and figure."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ from . import QUESTION
 
 
 class RodBalance(Record):
-    """A mass that is added to the rod; its centre is along and across the rod from the crank pin."""
+    """Mass added to the rod; its centre is measured along and across the rod from the crank pin."""
 
     mass_kg: float
     moment_along_kg_m: float
     moment_across_kg_m: float
     inertia_kg_m2: float
-    """About the crank pin."""
+    """Moment of inertia about the crank pin."""
     centre_along_mm: Annotated[float | None, Note("null where nothing is added")]
     centre_across_mm: Annotated[float | None, Note("null where nothing is added")]
 
 
 class ShakingNumbers(Record):
-    """Shaking of inertia; moments are about the crank pivot, root mean squares over time."""
+    """Shaking by inertia; moments are about the crank pivot, root mean squares over time."""
 
     peak_shaking_force_N: float
     peak_shaking_force_angle_deg: PeakAngle
@@ -58,10 +58,10 @@ class ShakingNumbers(Record):
 
 
 class BalanceNumbers(Record):
-    """Counterweight of least shaking, and a balance mass on the rod."""
+    """Counterweight for minimum shaking, and a balance mass on the rod."""
 
     measure: Measure
-    """What is least over the cycle."""
+    """Quantity that is minimal over the cycle."""
     counterweight_moment_kg_m: float
     """Mass times radius."""
     counterweight_angle_deg: float
@@ -73,12 +73,12 @@ class BalanceNumbers(Record):
     after: ShakingNumbers
     objective_N: float
     least_possible_N: float
-    """A proven bound of the objective."""
+    """Proven lower bound of the objective."""
     saving_N_per_kg: float
-    """Of the objective, where the counterweight is the heaviest that is allowed; 0 elsewhere."""
+    """Saving in the objective if the counterweight is at its maximum mass; otherwise 0."""
     rounds: int
     converged: bool
-    """Whether the objective is proven to be the least."""
+    """Whether the objective is proven to be minimal."""
 
 
 _SAMPLES = 1441
@@ -95,7 +95,7 @@ def prepare(
     arm: float | None = None,
     **inputs: Any,
 ) -> dict[str, Any]:
-    """Return one balance for numbers and figure. inputs: remaining inputs, in SI."""
+    """Return the balance that numbers and figure share. inputs: remaining inputs, in SI."""
     at = radius or mechanism.counterweight.radius or float(linkage.crank)
     optimum = balance(
         mechanism,
@@ -110,7 +110,7 @@ def prepare(
 
 
 def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
-    """Return the space for a balance mass on the rod. Raises `InputError` if only its radius or mass is given."""
+    """Return the space for a balance mass on the rod. Raises `InputError` if only one of radius and mass is given."""
     names = [item.name for item in QUESTION.inputs if item.name.startswith("rod_")]
     (first, radius), (second, mass) = ((labels.get(name, name), inputs.get(name)) for name in names)
     if radius is None and mass is None:
@@ -171,7 +171,7 @@ def _shaking_numbers(shaking: Shaking) -> ShakingNumbers:
 
 
 def blocks(numbers: BalanceNumbers) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     mass, radius, angle = (recorded(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg"))
     moment = recorded(numbers, "counterweight_moment_kg_m")
     saving = numbers["saving_N_per_kg"]
@@ -213,7 +213,7 @@ def _centre_text(rod: RodBalance) -> Text:
 
 
 def figure(_: Mechanism, __: Linkage, *, optimum: Balance, problem: Problem, **options: Any) -> PanelFigure:
-    """Return hodograph, force and, if a rod balance changes it, moment before and after."""
+    """Return the hodograph and the force before and after, and the moment if a rod balance changes it."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
     curves = list(enumerate(zip(("before", "after"), optimum.hodograph(theta), strict=True)))

@@ -1,4 +1,4 @@
-"""Several cylinders on one crankshaft: total torque, shaking force, moment and rocking couple; each cylinder."""
+"""Several cylinders on one crankshaft: total torque, shaking force, moment and rocking couple; peaks per cylinder."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
 
 class Cylinder(Record):
-    """A cylinder by itself."""
+    """Single cylinder."""
 
     phase_deg: float
     bank_deg: float
@@ -34,7 +34,7 @@ class Cylinder(Record):
 
 
 class Cylinders(Record):
-    """Torque and shaking of all cylinders together."""
+    """Total torque and shaking of all cylinders."""
 
     cylinders: list[Cylinder]
     peak_torque_Nm: NullIfLocked
@@ -60,9 +60,9 @@ class Cylinders(Record):
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
-    """Return torque and shaking of all cylinders together, and the peaks of each. None: angle of a zero value.
+    """Return total torque and shaking of all cylinders, and the peaks of each. None: the angle of a zero value.
 
-    Raises `InputError` for a machine without stated cylinders.
+    Raises `InputError` for a machine without cylinders in its job.
     """
     shaft = multi_cylinder_cycle(mechanism, linkage)
     return {
@@ -110,7 +110,7 @@ def _degrees(extreme: Extreme) -> float | None:
 
 
 def blocks(numbers: Cylinders) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     remarks: dict[str, Text] = {
         "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first cylinder"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),

@@ -1,4 +1,4 @@
-"""Least and greatest values of every curve of one design over the revolution, and differences between the strokes."""
+"""Minimum and maximum of every curve of one design over the revolution, and differences between the strokes."""
 
 from __future__ import annotations
 
@@ -64,21 +64,21 @@ _Curve = Annotated[dict[str, Any], Keys("CurveExtremes", "Minimum and maximum of
 
 
 class Extremes(Record):
-    """Extremes of each curve over the turn, and both strokes; ratios and differences are outward against inward."""
+    """Extremes of each curve over the revolution, and both strokes; ratios and differences: outward to inward."""
 
     curves: dict[str, _Curve]
-    """By name: those that the machine defines."""
+    """Curves by name, if the machine defines them."""
     strokes: Annotated[dict[str, Any], Keys("Strokes", "Both strokes, compared.", _OF_STROKES)]
     undefined_because: NotRequired[str]
-    """Why curves are undetermined; left out where none is."""
+    """Why curves are undetermined; absent if all are determined."""
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:
-    """Return the extremes of each curve, by name, and the strokes: durations, greatest speeds and ratios.
+    """Return the extremes of each curve, by name, and the strokes: durations, maximum speeds and ratios.
 
-    A curve is omitted without the masses, loads or speed that it needs. None stands for values that friction leaves
-    undetermined, with the reason, and for crank angle and slider position of a constant curve. Ratios and differences
-    compare the outward stroke with the inward stroke.
+    A curve is omitted if the masses, loads or speed that it needs are missing. Values that friction leaves undetermined
+    are None, with the reason, as are crank angle and slider position for a constant curve. Ratios and differences are
+    those of the outward stroke relative to the inward stroke.
     """
     extremes = {curve.name: curve for curve in curve_extremes(mechanism, linkage)}
     locks = locking_reason(mechanism.friction, linkage)
@@ -107,7 +107,7 @@ def _place_fields(word: str, extreme: Extreme) -> dict[str, float | None]:
 
 
 def _stroke_numbers(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtremes | None) -> dict[str, Any]:
-    """Return crank angle, duration and greatest slider speed of both strokes, with ratios and differences.
+    """Return crank angle, duration and maximum slider speed of both strokes, with ratios and differences.
 
     Durations are None for several cylinders with a speed profile, since they differ between cylinders.
     """
@@ -127,7 +127,7 @@ def _stroke_numbers(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtre
     }
     if velocity is None:
         return record
-    # Outward is along +x on the open branch, along -x on the crossed one.
+    # Outward is along +x on the open branch, along -x on the crossed branch.
     ends = (velocity.greatest, velocity.least) if mechanism.branch == "open" else (velocity.least, velocity.greatest)
     durations = [None if times is None else float(getattr(times, name)) / abs(mechanism.speed) for name in _STROKES]
     for name, extreme, duration in zip(_STROKES, ends, durations, strict=True):
@@ -175,7 +175,7 @@ def blocks(numbers: Extremes) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return the main curves over the revolution, with their extremes: those of six that the machine defines.
+    """Return the main curves over the revolution with their extremes: of six curves those that the machine defines.
 
     Curves have gaps where friction leaves them undetermined.
     """

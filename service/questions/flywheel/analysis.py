@@ -1,4 +1,4 @@
-"""Flywheel that a machine needs for a speed fluctuation, exact and by the classical estimate."""
+"""Flywheel required for a speed fluctuation, exact and by the classical estimate."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ Bare = Annotated[float | None, Note("null where no steady running was found with
 
 
 class Flywheel(Record):
-    """Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and those for others."""
+    """Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and for others."""
 
     motor: str
-    """Its kind, or "constant torque" for a job without a drive."""
+    """Type of drive, or "constant torque" for a job without a drive."""
     wanted_fluctuation: float
     flywheel_kgm2: float
     classical_estimate_kgm2: float
@@ -38,7 +38,7 @@ class Flywheel(Record):
     """With the flywheel."""
     fluctuations: list[float]
     flywheels_kgm2: list[float]
-    """For each of the fluctuations."""
+    """Values for each coefficient of fluctuation."""
     classical_estimates_kgm2: list[float]
 
 
@@ -47,7 +47,7 @@ _SIZES = np.geomspace(0.25, 4.0, 33)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> Flywheel:
-    """Return the flywheels for a coefficient of speed fluctuation and for others, ready for JSON."""
+    """Return the flywheels for one coefficient of speed fluctuation and for others, ready for JSON."""
     chosen = design_flywheel(mechanism, linkage, fluctuation)
     tried = [chosen if limit == fluctuation else design_flywheel(mechanism, linkage, limit) for limit in _TRIED]
     bare, reason = _fluctuation_without_flywheel(mechanism, linkage)
@@ -69,7 +69,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
 def _fluctuation_without_flywheel(
     mechanism: Mechanism, linkage: Linkage
 ) -> tuple[tuple[float, float] | None, str | None]:
-    """Return fluctuation and least speed, rad/s, without a flywheel, or the reason why they are undefined."""
+    """Return fluctuation and minimum speed, rad/s, without a flywheel, or the reason why they are undefined."""
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
         if drive is None:
@@ -82,7 +82,7 @@ def _fluctuation_without_flywheel(
 
 
 def blocks(numbers: Flywheel) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
     purpose = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
     needed = sentence(f"No flywheel is needed {purpose}: without one {{without}}.", without=_without_one(numbers))
@@ -120,7 +120,7 @@ def blocks(numbers: Flywheel) -> list[Block]:
 
 
 def _without_one(numbers: Flywheel) -> Text:
-    """Return a sentence on running without a flywheel."""
+    """Return a sentence on operation without a flywheel."""
     bare = numbers["fluctuation_without_flywheel"]
     if bare is None:
         return f"steady running was not reached: {numbers['reason_without_flywheel']}"
@@ -133,7 +133,7 @@ def _without_one(numbers: Flywheel) -> Text:
 def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> PanelFigure:
     """Return the fluctuation over flywheel inertia, exact and classical, and the speed over a cycle with two flywheels.
 
-    There is no point where a flywheel is too small for the machine to complete a revolution.
+    Curves have no points where the flywheel is too small for the machine to complete a revolution.
     """
     design, runner = design_flywheel(mechanism, linkage, fluctuation), Runner(mechanism, linkage)
 

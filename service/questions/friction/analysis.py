@@ -33,7 +33,8 @@ class FrictionNumbers(Record):
     """Self-locking, torque and guide force with and without friction, and the energies of a cycle."""
 
     one_cylinder_at_constant_speed: bool
-    """True of a machine with several cylinders or a speed profile: the numbers are those of one at constant speed."""
+    """True for a machine with several cylinders or a speed profile: the numbers are for one cylinder at constant
+    speed."""
     verdict: Verdict
     self_locking_margin_deg: Annotated[
         float | None, Note("least transmission angle less angles of friction; null where there is none")
@@ -42,7 +43,7 @@ class FrictionNumbers(Record):
     guide_friction_angle_deg: float
     pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for any")]
     locked_angles_deg: list[list[float]]
-    """From and to, of each range of crank angles at which it locks."""
+    """Start and end of each range of crank angles in which it locks."""
     peak_torque_Nm: NullIfLocked
     peak_torque_without_friction_Nm: Smooth
     mean_torque_Nm: NullIfLocked
@@ -71,7 +72,7 @@ _OVER = "over the crank angle"
 def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     """Return verdict, torque with and without friction, energies of a cycle and efficiency of one linkage.
 
-    Undefined values are None: torques and energies of a linkage that locks, the efficiency if the load does no net
+    Undefined values are None: torques and energies of a linkage that locks, and the efficiency if the load does no net
     work.
     """
     has_several, mechanism = is_shaft(mechanism), single_cylinder(mechanism)
@@ -114,13 +115,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
 
 
 def _locking_in_words(holds: float | None) -> Verdict:
-    if holds is None:  # a single angle, at a margin of exactly zero
+    if holds is None:  # a single angle, if the margin is exactly zero
         return "may jam"
     return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
 
 
 def blocks(numbers: FrictionNumbers) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     locked_ranges = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
     heats = {
         "guide": numbers["guide_heat_J"],
@@ -164,7 +165,7 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, guide force and transmission angle with and without friction, over the cycle.
 
-    Torque and force are missing at angles where friction locks.
+    Torque and force are missing at angles where friction locks the linkage.
     """
     mechanism = single_cylinder(mechanism)
     smooth = replace(mechanism, friction=Friction())

@@ -26,10 +26,10 @@ _BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
 
 
 class CylinderPressures(Record):
-    """A cylinder: its volumes, its absolute pressures, and crank angles of events."""
+    """Volumes, absolute pressures and event crank angles for one cylinder."""
 
     load: int
-    """Its number among the loads of the job."""
+    """Number of the cylinder among the loads of the job."""
     least_volume_cm3: float
     greatest_volume_cm3: float
     least_pressure_bar: float
@@ -58,8 +58,8 @@ def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     """Return volumes, pressures and events of each cylinder, in the order of the loads.
 
-    The end of expansion, compression or combustion at peak pressure is None without such an event. Raises `InputError`
-    without a cylinder.
+    The end of expansion, compression or combustion at peak pressure is None if there is no such event. Raises
+    `InputError` for a machine without a cylinder.
     """
     records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
@@ -83,7 +83,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
 
 
 def blocks(numbers: Indicator) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     result_blocks: list[Block] = []
     for cylinder in numbers["cylinders"]:
         lines: list[NamedNumber] = [
@@ -102,14 +102,14 @@ def blocks(numbers: Indicator) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return pressure over volume and over the crank angle, a line for each cylinder."""
+    """Return pressure over volume and over the crank angle, with a line for each cylinder."""
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_require_cylinders(mechanism)):
         ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
         theta = sampled_turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)
-        # Closed: the diagram ends where it began.
+        # Closed curve: the diagram ends where it began.
         volume, pressure = (np.append(values, values[0]) for values in (curve.volume, curve.pressure))
         name = f"load {place + 1}"
         over_volume.append(Line(name, volume, pressure, style))

@@ -1,6 +1,6 @@
 """Crank angles that put the slider of a design at a position: the JSON record, in metric units.
 
-For a swinging crank only the angles of its swing count.
+For a swinging crank only angles within its swing count.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
 from ..record_types import Note, Record
 
-_NEAR = 1e-9  # rad, beyond an end of a swing: rounding
+_NEAR = 1e-9  # rad beyond an end of a swing that count as rounding
 UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank speed and acceleration are undefined"
-"""Reason why there is no crank speed where a slider velocity is given."""
+"""Reason why a given slider velocity does not determine the crank speed."""
 
 
 Given = Annotated[float | None, Note("as it was given; null if it was not")]
@@ -30,7 +30,7 @@ Rate = Annotated[float | None, Note("null without that of the slider, and where 
 
 
 class Solution(Record):
-    """A crank angle that gives the slider position, and the rates that give the slider's."""
+    """Crank angle for the slider position, with the crank rates that produce the given slider rates."""
 
     crank_angle_deg: float
     stroke: Annotated[Stroke | None, Note("for a crank that turns counter-clockwise; null at a dead centre")]
@@ -39,7 +39,7 @@ class Solution(Record):
 
 
 class CrankAngles(Record):
-    """Every crank angle of a linkage that puts its slider at a position."""
+    """Every crank angle at which the slider of a linkage is at a given position."""
 
     crank_mm: float
     rod_mm: float
@@ -50,7 +50,7 @@ class CrankAngles(Record):
     slider_acceleration_m_s2: Given
     solutions: list[Solution]
     note: str
-    """What is undefined or left out, and why; or empty."""
+    """Reasons for undefined or omitted values, or empty."""
 
 
 _GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
@@ -68,8 +68,8 @@ def numbers(
 ) -> CrankAngles:
     """Return dimensions, slider motion and every solution with keys that carry their units, and a note.
 
-    The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. For a swinging crank only the angles
-    of its swing count. null: values not requested, and values undefined at a dead centre, which the note reports.
+    The slider's position, m, velocity, m/s, and acceleration, m/s^2, are along +x. For a swinging crank only angles
+    within its swing count. null: values not requested, and values undefined at a dead centre, which the note explains.
     Raises the errors of `Linkage.from_slider` and `require_swing`, and `AssemblyError` for a position beyond the swing.
     """
     every = linkage.from_slider(slider_position, velocity=slider_velocity, acceleration=slider_acceleration)
@@ -129,7 +129,7 @@ def _degrees(angle: float) -> str:
 
 
 def blocks(record: CrankAngles) -> list[Block]:
-    """Return the slider's motion and the crank angles."""
+    """Return the slider's motion and the crank angles, for people."""
     motion = {key: recorded(record, key) for key in _GIVEN}
     motion_texts = [
         words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)

@@ -1,4 +1,4 @@
-"""The crank-speed law that a servo should follow, for given lengths."""
+"""Crank-speed law that a servo should follow, for given lengths."""
 
 from ....objectives.kinds import ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED, TIME, TORQUE
 from ....optimise.motion_law.words import RANGE, LawObjective, Timing

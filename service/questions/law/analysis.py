@@ -1,4 +1,4 @@
-"""A motion law against constant speed: numbers, text, cam table and figure."""
+"""Motion law compared with constant speed: numbers, text, cam table and figure."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _RPM = ANGULAR_SPEED.metric.factor
 
 
 class LawNumbers(Record):
-    """A motion law, and constant speed with the same cycle time. Torques are at the crank, rotor included."""
+    """Motion law, and constant speed with the same cycle time. Torques are at the crank, rotor included."""
 
     objective: LawObjective
     timing: Timing
@@ -46,14 +46,14 @@ class LawNumbers(Record):
     peak_slider_speed_m_s: float
     peak_power_W: float
     work_J: float
-    """Of the drive in a turn."""
+    """Work of the drive per revolution."""
     peak_torque_at_constant_speed_Nm: float
     rms_torque_at_constant_speed_Nm: float
     peak_power_at_constant_speed_W: float
     peak_slider_speed_at_constant_speed_m_s: float
     gap: Annotated[float, Note("share by which the law is at most worse than the best one")]
     proven: bool
-    """Whether the gap is within a thousandth."""
+    """Whether the gap is at most a thousandth."""
     relaxed: Annotated[
         bool, Note("whether the bound is that of a relaxation, below which even the best law may not be")
     ]
@@ -69,13 +69,13 @@ def prepare(
     optimum: OptimalLaw | None = None,
     **inputs: Any,
 ) -> dict[str, Any]:
-    """Return one law for numbers, cam table and figure. inputs: fields of `LawRequest`."""
+    """Return the law that numbers, cam table and figure share. inputs: fields of `LawRequest`."""
     found = optimum or optimal_law(mechanism, linkage, LawRequest(**inputs), names=words, cancelled=cancelled)
     return {"optimum": found}
 
 
 def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: Any) -> LawNumbers:
-    """Return a law ready for JSON, judged as any speed profile is."""
+    """Return a law ready for JSON, evaluated like any speed profile."""
     law, request = optimum.law, optimum.limits.request
     judged = speed_profile_cycle(law.turn.machine, linkage, law.motion)
     even = speed_profile_cycle(_at_constant_speed(optimum), linkage)
@@ -104,7 +104,7 @@ def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: A
 
 
 def _at_constant_speed(optimum: OptimalLaw) -> Mechanism:
-    """Return the machine at the constant speed that has the cycle time of the law."""
+    """Return the machine at the constant speed with the same cycle time as the law."""
     machine = optimum.law.turn.machine
     return replace(machine, speed=machine.direction * TURN / optimum.law.period)
 
@@ -117,7 +117,7 @@ def notes(numbers: LawNumbers) -> list[str]:
 
 
 def blocks(numbers: LawNumbers) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     even = "at constant speed"
     lines: list[NamedNumber] = [
         named_number(numbers, "peak_torque_Nm", compared(numbers, "peak_torque_at_constant_speed_Nm", even)),
@@ -147,7 +147,7 @@ def blocks(numbers: LawNumbers) -> list[Block]:
 
 
 def _gain(numbers: LawNumbers) -> str:
-    """Return the gain against constant speed in a sentence."""
+    """Return the gain over constant speed in a sentence."""
     changes = []
     for key, title in (("peak_torque", "peak torque"), ("rms_torque", "RMS torque")):
         even: float = numbers[f"{key}_at_constant_speed_Nm"]  # type: ignore[literal-required]
@@ -161,7 +161,7 @@ def _name(objective: LawObjective) -> str:
 
 
 def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **options: Any) -> list[dict[str, Any]]:
-    """Return rows of the cam table."""
+    """Return the rows of the cam table."""
     table = cam_table(optimum.law)
     rows = zip(table.time, table.crank_angle, table.speed, table.acceleration, strict=True)
     return rows_in(
@@ -179,7 +179,7 @@ def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **o
 
 
 def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Problem, **options: Any) -> PanelFigure:
-    """Return speed, torque and slider speed over the crank angle, by the law and at constant speed."""
+    """Return speed, torque and slider speed over the crank angle, for the law and for constant speed."""
     law = optimum.law
     theta = sampled_turn(law.turn.low)
     now = speed_profile_curves(law.turn.machine, linkage, theta, law.motion)

@@ -1,4 +1,4 @@
-"""The crank as a lever that a cylinder moves which turns about a fixed pivot."""
+"""Lever moved by a cylinder that pivots about a fixed point; the crank is the lever."""
 
 from ....model.swing.swing_types import LeverLaw
 from ....objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, MASS, PRESSURE, TIME

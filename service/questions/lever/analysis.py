@@ -1,4 +1,4 @@
-"""A lever and its turning cylinder over a swing: the JSON record, its text, curves and figure."""
+"""Lever and its pivoting cylinder over a swing: the JSON record, its text, curves and figure."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _POINTS = {
     "peak_power": POWER,
     "buckling_margin": RATIO,
 }
-"""Values with the lever angle and the length where they occur."""
+"""Values with the lever angle and the cylinder length at which they occur."""
 _LACKS = {
     "lever_angle_error": "null without tolerances",
     "peak_cylinder_speed": "null for a slow swing",
@@ -109,15 +109,15 @@ LeverNumbers = Annotated[
 def prepare(
     mechanism: Mechanism, linkage: Linkage, *, cancelled: Any = None, request: LeverRequest | None = None, **inputs: Any
 ) -> dict[str, Any]:
-    """Return the request, once for numbers, curves and figure. inputs: by name, in SI, with `swing` and `words`."""
+    """Return the request that numbers, curves and figure share. inputs: by name, in SI, with `swing` and `words`."""
     return {"request": request or lever_request(mechanism, linkage, **inputs)}
 
 
 def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **options: Any) -> LeverNumbers:
     """Return the numbers of a swing, ready for JSON.
 
-    Raises `AssemblyError` if the linkage does not close, `InputError` for a dead point within the swing and for a
-    cylinder that cannot make it.
+    Raises `AssemblyError` if the linkage does not close, and `InputError` for a dead point within the swing or an
+    unsuitable cylinder.
     """
     summary = summarise(request.machine, request.swing, request.cylinder, request.errors)
     sizes, swing = request.machine.sizes, request.swing
@@ -169,7 +169,7 @@ def _metric(name: str, kind: Kind, value: float | None) -> dict[str, float | Non
 
 
 def _with_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[str, float | None]:
-    """Return a value with the lever angle and the length where it occurs; none for zero."""
+    """Return a value with the lever angle and the length at which it occurs; no location for zero."""
     place = None if point is None or point.value == 0.0 else point
     return {
         **_metric(name, kind, None if point is None else point.value),
@@ -202,7 +202,7 @@ def _notes(mechanism: Mechanism, request: LeverRequest, summary: LeverSummary) -
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:
-    """Return the numbers of a metric record."""
+    """Return the numbers of a metric record for people."""
     how = "slowly" if record["law"] == "slow" else f"by the law {record['law']}, {record['duration_s']:g} s each way"
     skipped = ("law", "duration_s", "single_stage", "notes")
     keys = [key for key in record if key not in skipped and "_at_lever" not in key and "_at_length" not in key]
@@ -237,7 +237,7 @@ def _place(record: Mapping[str, Any], name: str) -> Text:
 def curves(
     mechanism: Mechanism, linkage: Linkage, *, units: System, request: LeverRequest, **_: Any
 ) -> list[dict[str, Any]]:
-    """Return rows of the curves from start to end, at even times."""
+    """Return rows of the curves from start to end, at evenly spaced times."""
     found = lever_curves(request.machine, request.swing, np.linspace(0.0, 1.0, POINTS))
     time = {} if request.swing.duration is None else {"time_s": request.swing.duration * found.share}
     columns = {

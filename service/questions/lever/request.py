@@ -1,4 +1,4 @@
-"""Request for a lever: numbers that are not given come from the job."""
+"""Request for a lever: omitted numbers come from the job."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _GRAVITY = 9.81  # m/s^2
 
 @dataclass(frozen=True)
 class LeverRequest:
-    """Machine, swing, cylinder and tolerances that are asked about."""
+    """Requested machine, swing, cylinder and tolerances."""
 
     machine: LeverMachine
     swing: LeverSwing
@@ -41,15 +41,15 @@ def lever_request(
 ) -> LeverRequest:
     """Return the request from a machine and inputs by name, SI. words: the interface's names for the inputs.
 
-    The crank is the lever, the rod the distance of the pivots. swing: swing of the job. Raises `InputError` for missing
-    inputs and a swing with a dead point, `AssemblyError` where the linkage does not close.
+    The crank is the lever, the rod the distance between the pivots. swing: swing of the job. Raises `InputError` for
+    missing inputs and a swing with a dead point, `AssemblyError` if the linkage does not close.
     """
     labels, pin_angle = dict(words or {}), inputs.get("pin_angle", 0.0)
     lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
     sizes = TurningCylinder(
         crank=float(linkage.crank),
         frame=float(linkage.rod),
-        # By default farthest from both dead points.
+        # The default start is farthest from both dead points.
         frame_angle=inputs.get("frame_angle", 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi),
         offset=float(linkage.offset),
         pin_angle=pin_angle,
@@ -82,7 +82,7 @@ def lever_request(
 
 
 def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any]) -> LeverBody:
-    """Return the crank of a design with what the lever carries besides."""
+    """Return the crank of a design with what the lever carries in addition."""
     mass, centre = inputs.get("mass", 0.0), inputs.get("centre")
     if mass and centre is None:
         raise InputError(
@@ -99,7 +99,7 @@ def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any])
 
 
 def _gravity(mechanism: Mechanism, downward: float | None) -> tuple[float, float]:
-    """Return the given gravity, else that of a job, else that of the earth."""
+    """Return the given gravity, or else that of the job, or else that of the earth."""
     if downward is None and mechanism != Mechanism(branch=mechanism.branch):
         return mechanism.gravity
     return 0.0, -(_GRAVITY if downward is None else downward)
@@ -108,7 +108,7 @@ def _gravity(mechanism: Mechanism, downward: float | None) -> tuple[float, float
 def _swing(
     mechanism: Mechanism, linkage: Linkage, swing: Swing | None, labels: Mapping[str, str], inputs: Mapping[str, Any]
 ) -> LeverSwing:
-    """Return the requested swing; what is not given is that of the job."""
+    """Return the requested swing; omitted values come from the job."""
     start, end = inputs.get("start"), inputs.get("end")
     if swing is not None and (start is None or end is None):
         of_job = placed(mechanism, linkage, swing)

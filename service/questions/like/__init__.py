@@ -1,4 +1,4 @@
-"""The design nearest to one of a front that also meets further conditions: numbers and text."""
+"""Design nearest to one on a front that also meets further conditions: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
 from ..typed_input import TypedInput

@@ -1,4 +1,4 @@
-"""A design similar to one of a front under further conditions, and the change of every number."""
+"""Design similar to one on a front under further conditions, and the change of every number."""
 
 from __future__ import annotations
 

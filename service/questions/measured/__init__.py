@@ -3,4 +3,4 @@
 from ..design_question import DesignQuestion
 
 MEASURED = DesignQuestion(__name__, 88, "comparison of measured and computed curves", needs_job=False)
-"""Shown where there are samples, and so none of the topics that are asked for by name."""
+"""Shown if there are samples, so not one of the topics that are requested by name."""

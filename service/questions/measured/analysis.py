@@ -36,29 +36,32 @@ _Curve = Annotated[dict[str, Any], Keys("CurveDeviation", "Measured minus comput
 
 
 class Deviations(Record):
-    """Deviation of measured curves from the computed ones. Shifts fit best if added to what was measured."""
+    """Deviation of measured curves from the computed ones.
+
+    Shifts give the best fit when added to the measured values.
+    """
 
     rows: int
     understood: str
-    """What was read of the file."""
+    """Data read from the file."""
     rows_without_crank_angle: int
     crank_angle_from_time: bool
     left_out: list[str]
-    """Columns that are no curve, or empty."""
+    """Columns that are empty or do not name a curve."""
     curves: dict[str, _Curve]
     """By name."""
 
 
-_DRAWN = 3000  # samples of a panel, spread over the measured ones
-_NAMED = 12  # of the columns that were left out
+_DRAWN = 3000  # number of samples in a panel, spread over the measured ones
+_NAMED = 12  # maximum number of omitted columns that are named
 _UNDETERMINED = "undefined where friction locks"
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Deviations:
     """Return the deviation of each measured curve, measured minus computed, by the curve's name.
 
-    best_crank_angle_shift_deg and best_shift: amounts added to the measured crank angles and values that leave the
-    least root mean square, left_rms. None stands for values that friction leaves undetermined, and for shifts that the
+    best_crank_angle_shift_deg and best_shift: amounts to add to the measured crank angles and values for the smallest
+    root mean square, left_rms. None stands for values that friction leaves undetermined, and for shifts that the
     samples do not determine.
     """
     found_deviations = deviations(mechanism, linkage, measured.crank_angle, measured.values)
@@ -94,7 +97,7 @@ def _deviation_entry(deviation: Deviation) -> dict[str, Any]:
 
 
 def blocks(numbers: Deviations) -> list[Block]:
-    """Return the deviation of each curve, then the best-fitting shifts, and the omitted data."""
+    """Return the deviation of each curve, then the best-fit shifts, and the omitted data."""
     source = ", crank angles derived from time at constant speed" if numbers["crank_angle_from_time"] else ""
     deviations: list[tuple[Text, ...]] = []
     fits: list[tuple[Text, ...]] = []
@@ -128,7 +131,7 @@ def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
 
 
 def file_notes(numbers: Mapping[str, Any]) -> list[str]:
-    """Return sentences on the data read from a file, and on the omitted rows and columns."""
+    """Return sentences on the data read from a file, and on omitted rows and columns."""
     rows, names = numbers["rows_without_crank_angle"], numbers["left_out"]
     lines = [f"Interpretation of the file: {numbers['understood']}"] if numbers["understood"] else []
     if rows:
@@ -141,7 +144,7 @@ def file_notes(numbers: Mapping[str, Any]) -> list[str]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> PanelFigure:
-    """Return a panel for each measured curve: computed, also shifted to fit, samples, and the largest deviation."""
+    """Return a panel for each measured curve: computed, shifted to fit, samples, and the largest deviation."""
     degrees = np.degrees(np.mod(measured.crank_angle, cycle_turns(mechanism) * 2.0 * np.pi))
     panels = tuple(
         _deviation_panel(
@@ -157,7 +160,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
 
 
 def _computed_curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviation) -> list[Line]:
-    """Return the computed curve, and, if there is a fit, the curve shifted to the samples."""
+    """Return the computed curve and, if there is a fit, the same curve shifted to the samples."""
 
     def line(style: int, angle: float, value: float) -> Line:
         turns = cycle_turns(mechanism)

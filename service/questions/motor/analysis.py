@@ -35,7 +35,7 @@ Moving = Annotated[float | None, Note("null where friction locks or may jam the 
 
 
 class Motor(Record):
-    """Torque, power and inertia that a motor moves; with several cylinders."""
+    """Torque, power and inertia that a motor must drive; with several cylinders, totals."""
 
     peak_torque_Nm: NullIfLocked
     peak_torque_angle_deg: PeakAngle
@@ -49,18 +49,18 @@ class Motor(Record):
     least_reflected_inertia_kg_m2: float
     least_reflected_inertia_angle_deg: PeakAngle
     mean_reflected_inertia_kg_m2: float
-    """Over the crank angle."""
+    """Mean over the crank angle."""
 
 
 _SAMPLES = 2048
-_MOST_DIPS = 64  # more than 24 cylinders have; a constant inertia has as many as samples
+_MOST_DIPS = 64  # more minima than 24 cylinders have; with constant inertia every sample is one
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
-    None if friction locks the linkage; power is None without a speed too. For several cylinders the values are totals.
+    None if friction locks the linkage; power is also None without a speed. For several cylinders the values are totals.
     """
     design = row_of(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
@@ -86,7 +86,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
 
 
 def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
-    """Return the least moving inertia and its crank angle, rad; the first of equal values."""
+    """Return the minimum of the moving inertia and its crank angle, rad; the first of equal minima."""
     angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
     values, step = _moving_inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
     dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
@@ -114,7 +114,7 @@ def _moving_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
 
 
 def blocks(numbers: Motor) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     remarks = {
         "rms_torque_Nm": "over time; it heats the motor",
         "mean_torque_Nm": "over the crank angle",
@@ -130,7 +130,7 @@ def blocks(numbers: Motor) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return torque, power and reflected inertia over the cycle; no torque and power where friction locks."""
+    """Return torque, power and reflected inertia over the cycle; torque and power are absent where friction locks."""
     design = row_of(linkage)
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     turns = cycle_turns(mechanism)

@@ -4,7 +4,7 @@ from ....objectives.kinds import ANGLE
 from ..design_question import DesignQuestion
 from ..inputs import Input
 
-# At 30 deg no link of common proportions is normal to the slider line.
+# At 30 deg no link with common proportions is normal to the slider line.
 AT = Input("crank_angle", ANGLE, "Crank angle", "Crank angle of the polygons.", "30 deg", "at")
 QUESTION = DesignQuestion(
     __name__, 80, "position, velocity and acceleration diagrams at --at", needs_job=False, inputs=(AT,)

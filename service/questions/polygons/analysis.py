@@ -1,4 +1,4 @@
-"""Kinematic polygons of one design at one crank angle, both branches: position, velocity and acceleration."""
+"""Kinematic polygons of one design at one crank angle, for both branches: position, velocity and acceleration."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from . import AT
 
 
 class BranchPolygons(Record):
-    """Vertices by name, each with x and y, and the rod's rates."""
+    """Vertices by name, each with x and y, and the rates of the rod."""
 
     position_mm: dict[str, list[float]]
     velocity_m_s: dict[str, list[float]]
@@ -34,7 +34,7 @@ class PolygonNumbers(Record):
 
     crank_angle_deg: float
     speed_rad_s: float
-    """1 where the crank has no speed."""
+    """1 if the crank has no speed."""
     acceleration_rad_s2: float
     open: BranchPolygons
     crossed: BranchPolygons
@@ -46,7 +46,7 @@ _POLYGONS = (
     ("velocity", Polygons.VELOCITY, SPEED),
     ("acceleration", Polygons.ACCELERATION, ACCELERATION),
 )
-_COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, the same on both branches
+_COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, which both branches share
 
 
 def both_branches(
@@ -61,7 +61,7 @@ def both_branches(
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PolygonNumbers:
-    """Return the vertices at one crank angle, rad, by branch and polygon; without a crank speed for 1 rad/s."""
+    """Return the vertices at one crank angle, rad, by branch and polygon; for 1 rad/s if there is no crank speed."""
     speed = mechanism.speed or 1.0
     by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     return {
@@ -111,7 +111,7 @@ def blocks(numbers: Mapping[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PanelFigure:
-    """Return the polygons at one crank angle, rad; without a crank speed for 1 rad/s."""
+    """Return the polygons at one crank angle, rad; for 1 rad/s if there is no crank speed."""
     speed = mechanism.speed or 1.0
     by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     rates = f"{format_number(speed)} rad/s, {format_number(mechanism.acceleration)} rad/s²"
@@ -123,7 +123,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.de
 def polygon_panels(
     by_branch: Mapping[Branch, Polygons], *, title: Text, subtitle: Text, units: tuple[str, str, str] | None = None
 ) -> PanelFigure:
-    """Return the three polygons as panels, one line for each branch; the vertices are named.
+    """Return the three polygons as panels with a line for each branch and named vertices.
 
     units: units of position, velocity and acceleration, for numbers drawn without conversion; None for SI.
     """

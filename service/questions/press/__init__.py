@@ -30,6 +30,6 @@ QUESTION = DesignQuestion(
     __name__,
     46,
     "force, speed and work of a press before a dead centre; dwell",
-    needs_job=False,  # with a touch distance and a rated torque
+    needs_job=False,  # if touch distance and rated torque are given
     inputs=(TOUCH, DWELL, RATED),
 )

@@ -38,13 +38,13 @@ class Press(Record):
     dead_centre: Literal["inner", "outer"]
     rated_torque_Nm: float
     torque_is_peak_of_design: bool
-    """True where no rated torque was given."""
+    """True if no rated torque was given."""
     touch_distance_mm: float
     touch_angle_deg: float
     touch_speed_m_s: Timed
     touch_force_N: float
     work_J: float
-    """That the rated torque does from there to the dead centre."""
+    """Work of the rated torque from there to the dead centre."""
     dwell_distance_mm: Dwelling
     dwell_angle_deg: Dwelling
     dwell_time_s: Annotated[float | None, Note("null without a dwell distance or a constant crank speed")]
@@ -64,10 +64,10 @@ def numbers(
 ) -> Press:
     """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
 
-    touch_distance, dwell_distance: distances to the dead centre, m, those of the machine if None. rated_torque: rated
-    torque, N m, the peak torque of the design if None. None: speeds and times without a constant crank speed, dwell
-    values without a dwell distance. Raises `InputError` without a touch distance or a torque, and for distances that
-    the stroke does not reach.
+    touch_distance, dwell_distance: distances to the dead centre, m; None for those of the machine. rated_torque: rated
+    torque, N m; None for the peak torque of the design. None: speeds and times without a constant crank speed, and
+    dwell values without a dwell distance. Raises `InputError` without a touch distance or a torque, and for distances
+    beyond the stroke.
     """
     touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
@@ -123,7 +123,7 @@ def _rated_or_peak_torque(mechanism: Mechanism, linkage: Linkage, rated: float |
 def _angles_before_dead_centre(
     mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before it, m."""
+    """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before the dead centre, m."""
     _require_stroke(distances[-1], float(linkage.stroke))
     return before_dead_centre(mechanism, row_of(linkage)[0], distances)
 
@@ -143,7 +143,7 @@ def _require_stroke(distance: float, stroke: float) -> None:
 
 
 def blocks(numbers: Press) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     origin = "the peak torque of this design" if numbers["torque_is_peak_of_design"] else ""
     lines: list[NamedNumber] = [
         named_number(numbers, "rated_torque_Nm", origin),
@@ -183,7 +183,7 @@ def figure(
     touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _SAMPLES + 1) / _SAMPLES
     _, travels = _angles_before_dead_centre(mechanism, linkage, distances)
-    drawn = slice(_SAMPLES // _ROWS - 1, None)  # nearer, the force goes to infinity
+    drawn = slice(_SAMPLES // _ROWS - 1, None)  # at smaller distances the force tends to infinity
     forces = Line("", distances[drawn], (torque / travels)[drawn])
     panels = [Panel("available force", _CAPTION, (forces,), FORCE, LENGTH)]
     speed = _crank_speed(mechanism)

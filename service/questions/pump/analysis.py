@@ -1,4 +1,4 @@
-"""Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from the pressures alone."""
+"""Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from pressure only."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ from ..static_forces.analysis import massless
 
 
 class Delivery(Record):
-    """Total delivery of all cylinders, and the torque from the pressures only."""
+    """Total delivery of all cylinders, and the torque from pressure only."""
 
     flow_L_min: float
-    """Mean over a turn; gas counts at suction pressure."""
+    """Mean over a revolution; gas is measured at suction pressure."""
     flow_ripple: Annotated[float | None, Note("of a liquid, over the mean; null for gas and along a speed profile")]
     mean_torque_Nm: float
     peak_torque_Nm: float
@@ -40,7 +40,8 @@ class Delivery(Record):
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     """Return flow, ripple and pressure torque of all cylinders together, ready for JSON.
 
-    flow_ripple: None for gas and with a speed profile. Raises `InputError` without a pump, a compressor or a speed.
+    flow_ripple: None for gas, and with a speed profile. Raises `InputError` without a pump or compressor, or without a
+    speed.
     """
     reason = FLOW.undefined_because([mechanism])
     if reason:
@@ -59,12 +60,12 @@ def _value(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
 
 
 def _is_even(mechanism: Mechanism) -> bool:
-    """Whether the flow has a ripple: liquid at constant speed."""
+    """Whether the flow has a ripple, as for liquid at constant speed."""
     return not FLOW_RIPPLE.undefined_because([mechanism])
 
 
 def _with_pressures_only(mechanism: Mechanism) -> Mechanism:
-    """Return the machine with only the pressures in its cylinders."""
+    """Return the machine with the cylinder pressures as its only loads."""
     return replace(massless(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder)))
 
 
@@ -79,7 +80,7 @@ def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float
 
 
 def blocks(numbers: Delivery) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     remarks = {
         "flow_L_min": "mean over a turn; gas volume at suction pressure",
         "flow_ripple": "maximum minus minimum liquid flow, relative to its mean",

@@ -1,4 +1,4 @@
-"""The best designs with round numbers near one of a front: numbers and text."""
+"""Best designs with round numbers near one on a front: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
 from ..typed_input import TypedInput

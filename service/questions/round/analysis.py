@@ -1,4 +1,4 @@
-"""Rounded neighbours of a design of a front: their losses and missed requirements, and the parsing of steps."""
+"""Rounded neighbours of a design on a front: their losses and missed requirements, and the parsing of steps."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def search(
     allow: Sequence[str] = (),
     count: int = 5,
 ) -> Iterator[Stage | Answer]:
-    """Yield the progress of the search, several times a second, and finally the answer; closing ends it.
+    """Yield the search progress several times a second, and finally the answer; closing the generator ends the search.
 
     to: steps, "0.5 mm" for all lengths, "rod=1 mm" for one number. allow: requirements that may be missed, each as
     "stroke=0.1 mm". count: maximum number of designs. words: the interface's names for these. Raises `InputError`.
@@ -103,7 +103,7 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
 
 
 def _read_step(text: str, kind: Kind, key: str) -> float:
-    """Return a step, SI, read as in a job."""
+    """Return a step, SI, parsed as in a job."""
     from ....optimise.job.grids import step_of
 
     small = SMALL_LENGTH if kind is LENGTH else kind
@@ -148,7 +148,7 @@ def _rounding_record(rounded: Rounded) -> dict[str, Any]:
 
 
 def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
-    """Return the answer in a system of units, with round numbers in the form used there."""
+    """Return the answer in a unit system, with round numbers as entered in that system."""
     converted: dict[str, Any] = record_in(deepcopy(record), units) | {"message": rounded.message_in(units)}
     keys = [key_in(rounded.names[name][0], units)[0] for name in rounded.steps]
     for row in (converted["steps"], *converted["designs"]):
@@ -174,7 +174,7 @@ def _rounding_blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list
     for key in original:
         title, unit = title_and_unit(key, original)
         if key in objectives:
-            title = objectives[key].title  # of a formula as written
+            title = objectives[key].title  # of a formula, as written
         rows.append((title, unit, recorded(original, key), *(recorded(design, key) for design in designs)))
         if key in objectives:
             stem = objectives[key].stem
@@ -202,7 +202,7 @@ def _format_loss(value: float) -> Value:
 
 
 def _requirements_text(design: Mapping[str, Any], rounded: Rounded) -> Text:
-    """Return in words the requirements that a design misses, or the tightest requirement."""
+    """Return in words the requirements that a design misses, or else the tightest one."""
     if design["misses"]:
         missed = joined([_format_miss(miss, rounded.problem) for miss in design["misses"]], " and ")
         return words("misses {missed}", missed=missed)

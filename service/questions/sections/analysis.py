@@ -1,4 +1,4 @@
-"""Widths and depths of crank and rod for least mass of one design: numbers and text."""
+"""Widths and depths of crank and rod for minimum mass of one design: numbers and text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..record_types import Record
 
 
 class Sections(Record):
-    """Rectangular bars of least mass."""
+    """Rectangular bars of minimum mass."""
 
     crank_mm: float
     rod_mm: float
@@ -29,19 +29,19 @@ class Sections(Record):
     mass_kg: float
     """Of both."""
     settled: bool
-    """Whether sections and dynamics have settled."""
+    """Whether the iteration between sections and dynamics has converged."""
     iterations: int
     utilisation: dict[str, float]
-    """By limit, how much of it is used: 1 where it is reached."""
+    """Utilisation of each limit: 1 if it is reached."""
     mass_percent_per_percent: dict[str, float]
-    """By limit, how much mass raising it by 1 % saves."""
+    """Mass saved by raising each limit by 1 %."""
 
 
-_ACTIVE = 1e-3  # percent of mass per percent of a limit, to be worth a remark
+_ACTIVE = 1e-3  # percent of mass per percent of a limit, from which a remark is worthwhile
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, **_: Any) -> Sections:
-    """Return the least-mass sections, ready for JSON; pins are those of the design.
+    """Return the minimum-mass sections, ready for JSON; the pins are those of the design.
 
     Raises `InputError` without limits, and the errors of `size_sections`.
     """
@@ -71,7 +71,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
 
 
 def blocks(numbers: Sections) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
 
     def size(bar: str) -> Sentence:
         sides = {side: recorded(numbers, f"{bar}_{side}_mm", digits=4) for side in ("width", "depth")}

@@ -41,14 +41,14 @@ _Change = Annotated[
 
 
 class Sensitivity(Record):
-    """Change of every quantity with every dimension."""
+    """Change of every quantity with each dimension."""
 
     quantities: list[_Change]
 
 
-_SAME = 1e-9  # relative: derivatives that differ by less are equal
+_SAME = 1e-9  # relative difference below which derivatives are equal
 _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
-"""Rows that the text leaves out, besides plain quantities: they follow from the dimensions at a glance."""
+"""Rows omitted from the text, besides plain quantities: they follow directly from the dimensions."""
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
@@ -56,13 +56,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
 
     quantities: one entry each with quantity, title, unit, value, and for each dimension its derivative
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
-    (<dimension>_tolerance), in the unit of the entry; each again with _below, for the side of smaller values.
+    (<dimension>_tolerance), in the unit of the entry; again with _below for the derivative towards smaller values.
     """
     return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
 
 
 def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
-    """Return the numbers in a system of units: each entry in its unit there, derivatives per mm or per in."""
+    """Return the numbers in a unit system: each entry in its unit there, derivatives per mm or per in."""
     per, length = metric_unit_in("mm", system)
 
     def entry(row: dict[str, Any]) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 
 
 def blocks(numbers: Sensitivity) -> list[Block]:
-    """Return the numbers for people: changes per mm or inch, in percent per percent, and for the tolerances."""
+    """Return the answer for people: changes per mm or inch, in percent per percent, and for the tolerances."""
     rows: list[tuple[Text, ...]] = []
     tolerance_rows: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, quantity in QUANTITIES.items() if quantity.plain)]
@@ -117,7 +117,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
 
 
 def _per_length(kind: Kind) -> Kind:
-    """Return the kind of a derivative with respect to a dimension, without a unit: the heading names the step."""
+    """Return the kind of a derivative with respect to a dimension, without a unit: the heading states the step."""
     inch = kind.display_unit("inch").factor / LENGTH.display_unit("inch").factor
     return replace(
         kind, metric=display_unit("", kind.metric.factor / LENGTH.metric.factor), inch=display_unit("", inch)
@@ -125,7 +125,7 @@ def _per_length(kind: Kind) -> Kind:
 
 
 def _derivative_text(row: dict[str, Any], key: str, kind: Kind, digits: int) -> Text:
-    """Return a derivative as text; both one-sided ones at a kink of the quantity."""
+    """Return a derivative as text; at a kink of the quantity, both one-sided derivatives."""
 
     def value(number: float | None) -> Value:
         return Value(

@@ -18,19 +18,19 @@ from ...render.numerals import format_number
 from ..peaks import row_of
 
 _STEPS: dict[System, tuple[str, float]] = {"metric": ("1 mm", 1.0), "inch": ("0.01 in", 0.254)}
-"""For how much more of an offset of zero the percentages are, and in mm."""
+"""Step of the offset, as text and in mm, for which percentages are given if the offset is zero."""
 
 
 def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None) -> pd.DataFrame:
-    """Return the rows of the figure: title and percentages of every quantity with percentages, most sensitive first.
+    """Return the rows of the figure: title and percentages of each quantity that has them, most sensitive first.
 
-    swing: swing of a crank that does not rotate fully. For a zero offset the percentages are for 1 mm.
-    <dimension>_percent_below: percentages on the side of smaller values.
+    swing: swing of a crank that does not rotate fully. For a zero offset the percentages are per 1 mm.
+    <dimension>_percent_below: percentages towards smaller values.
     """
     table = sensitivity(mechanism, row_of(linkage)[0], swing)
     columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
     if float(linkage.offset) == 0.0:
-        # Quantities with percentages: not zero, and not the crank angle of a dead centre.
+        # Quantities with percentages: nonzero, and not the crank angle of a dead centre.
         sizes = table["value"].where(table["crank_percent"].notna())
         for side in ("", "_below"):
             table[f"offset_percent{side}"] = 100.0 * table[f"offset_per_mm{side}"] / sizes
@@ -41,7 +41,7 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
 
 
 def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: float = 10.6, limit: int = 1000) -> Figure:
-    """Return the figure in a system of units: a panel for each dimension, a bar for each quantity.
+    """Return the figure in a unit system: a panel for each dimension, a bar for each quantity.
 
     width: width of the figure, inches. limit: number of most sensitive quantities to draw.
     """
@@ -78,7 +78,7 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
                 continue
             if abs(upper - lower) <= 1e-9 * max(abs(upper), abs(lower)):
                 _bar(panel, at, 0.62, float(upper), half_width)
-            else:  # a kink: below its own half of the row
+            else:  # at a kink: a bar in the lower half of the row
                 _bar(panel, at - 0.19, 0.3, float(lower), half_width, "below ")
                 _bar(panel, at + 0.19, 0.3, float(upper), half_width, "above ")
         if rows[column].isna().all():

@@ -21,13 +21,13 @@ from ..record_types import Note, Record
 
 
 class SteadyNumbers(Record):
-    """Steady running, one cycle after the other alike; means are over time."""
+    """Steady running, with identical cycles; means are over time."""
 
     mean_speed_rpm: float
     least_speed_rpm: float
     greatest_speed_rpm: float
     fluctuation: float
-    """Greatest less least speed over the mean."""
+    """Maximum minus minimum speed, relative to the mean."""
     period_s: float
     peak_motor_torque_Nm: float
     """On the crank."""
@@ -37,7 +37,7 @@ class SteadyNumbers(Record):
 
 
 class Start(Record):
-    """Start from rest at the inner dead centre, and the steady running that it comes to."""
+    """Start from rest at the inner dead centre, and the steady running that it reaches."""
 
     verdict: Verdict
     message: str
@@ -57,21 +57,21 @@ class Start(Record):
     kinetic_energy_gained_J: float
     potential_energy_gained_J: float
     energy_imbalance: float
-    """Error of the energy balance, as a share."""
+    """Relative error of the energy balance."""
     steady: Annotated[SteadyNumbers | None, Note("null where there is no steady running")]
     why_not_steady: Annotated[str | None, Note("null where there is steady running")]
 
 
 LONGEST = 60.0
-"""s; a start that takes longer is not followed to its end unless asked for."""
+"""s; a longer start is simulated to its end only on request"""
 TURNS = 300
 STEADY = 1e-4
-"""Share by which the speed may still change from turn to turn."""
+"""Relative change in speed from one revolution to the next that still counts as steady."""
 RPM = ANGULAR_SPEED.metric.factor
 
 
 def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Transient, SteadyRunning | None, str]:
-    """Return the start from rest at the inner dead centre, and steady running or the reason for its absence.
+    """Return the start from rest at the inner dead centre, and steady running or the reason why there is none.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
@@ -85,7 +85,7 @@ def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Trans
 
 
 def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
-    """Return the option that stops a simulation."""
+    """Return the option that cancels a simulation."""
     return {"cancelled": cancelled}
 
 
@@ -128,7 +128,7 @@ def steady_numbers(running: SteadyRunning) -> SteadyNumbers:
 
 
 def blocks(numbers: Start) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     titles = {
         "final_speed_rpm": "speed reached",
         "peak_motor_torque_Nm": "peak motor torque at the crank",
@@ -185,7 +185,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigur
 
 
 def in_order(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Return the crank angles of steady running, deg, from 0 to 360 or 720, and its columns in their order."""
+    """Return the crank angles of steady running, deg, from 0 to 360 or 720, and its columns in order."""
     angle = np.degrees(running.crank_angle) % (360.0 * running.turns)
     order = np.argsort(angle, kind="stable")
     return angle[order], [column[order] for column in columns]

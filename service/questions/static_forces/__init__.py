@@ -1,4 +1,4 @@
-"""Forces of the loads alone, without masses: numbers, text and figure."""
+"""Forces of the loads only, without masses: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

@@ -1,4 +1,4 @@
-"""Static forces of one design over the cycle: loads alone, without masses, gravity and friction."""
+"""Static forces of one design over the cycle: loads only, without masses, gravity and friction."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ from ..record_types import Note, PeakAngle, Record
 
 
 class StaticForces(Record):
-    """Forces of the loads alone: peaks over the cycle, and lists at crank angles every 30 deg."""
+    """Forces of the loads only: peaks over the cycle, and lists at crank angles every 30 deg."""
 
     load: str
-    """What acts on the slider."""
+    """Loads on the slider."""
     peak_rod_force_N: float
     peak_rod_force_angle_deg: PeakAngle
     peak_guide_reaction_N: float
@@ -49,7 +49,7 @@ class StaticForces(Record):
     peak_crank_torque_Nm: float
     peak_crank_torque_angle_deg: PeakAngle
     least_mechanical_advantage: float
-    """Slider load over tangential crank pin force."""
+    """Ratio of slider load to tangential crank pin force."""
     least_mechanical_advantage_angle_deg: PeakAngle
     crank_angle_deg: list[float]
     load_N: list[float]
@@ -61,13 +61,13 @@ class StaticForces(Record):
 
 _JOB_LOADS = "loads of the job"
 _STEP = 30
-_MOST_ADVANTAGE = 10.0  # beyond it the curve shows only that a dead centre is near
+_MOST_ADVANTAGE = 10.0  # larger values show only that a dead centre is near
 
 
 def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
-    """Return the mechanism without masses, gravity and friction; with a constant load, N outward, if given.
+    """Return the mechanism without masses, gravity and friction, optionally with a constant load, N outward.
 
-    If the mechanism has no loads and none is given, the load is 1 N towards the crank pivot.
+    If there are neither loads nor a given load, the load is 1 N towards the crank pivot.
     """
     slider_loads = _slider_loads(mechanism)
     constant = -1.0 if load is None and not slider_loads else load
@@ -90,9 +90,9 @@ def _slider_loads(mechanism: Mechanism) -> tuple[Load, ...]:
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:
-    """Return peaks over the cycle, continuous in the crank angle, and the forces every 30 deg.
+    """Return peaks over the continuous cycle, and the forces every 30 deg.
 
-    load: load on the slider, N outward; if None, the loads of the mechanism, or 1 N towards the crank without any.
+    load: load on the slider, N outward; None for the loads of the mechanism or, without any, 1 N towards the crank.
     """
     machine = massless(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
@@ -125,7 +125,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
 
 
 def blocks(numbers: StaticForces) -> list[Block]:
-    """Return the forces every 30 deg and the peaks."""
+    """Return the forces every 30 deg and the peaks, for people."""
     columns = {
         "crank_angle_deg": column("crank angle", ANGLE),
         "load_N": column("load", FORCE),

@@ -1,4 +1,4 @@
-"""Strength of crank and rod of one design: stresses, safety factors, pins, wear, location of the greatest stress."""
+"""Strength of crank and rod of one design: stresses, safety factors, pins, wear, location of the maximum stress."""
 
 from __future__ import annotations
 
@@ -64,9 +64,9 @@ StrengthNumbers = Annotated[
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
-    """Return the machine's strength quantities, and the greatest tension and compression of each bar.
+    """Return the machine's strength quantities, and the maximum tension and compression of each bar.
 
-    Each comes with its crank angle and its distance along the bar from the crank pin. Also returns the greatest stress
+    Each comes with its crank angle and its distance along the bar from the crank pin. Also returns the maximum stress
     of each eye with its crank angle, and `violated` as for a design. None: an undefined quantity; the safety factor of
     an uncompressed bar is infinite. Raises `InputError` for a machine without material and pins.
     """
@@ -98,7 +98,7 @@ def _bar_names(mechanism: Mechanism) -> list[str]:
 
 
 def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str, float | None]:
-    """Return the greatest stresses along a bar without its eyes, with locations; None for a sign that never occurs."""
+    """Return the maximum stresses along a bar without its eyes, with locations; None for a sign that never occurs."""
     extremes: dict[str, float | None] = {}
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
@@ -106,7 +106,7 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
         (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), limit=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]
-        if not value > 0.0:  # the other sign everywhere and always
+        if not value > 0.0:  # the stress has the other sign everywhere and always
             share, angles = math.nan, [math.nan, math.nan]
             value = math.nan
         extremes |= {
@@ -118,7 +118,7 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     titles = {stem.field: stem.title for stem in QUANTITIES.values()}
     lines = [(titles[key], recorded(numbers, key), "") for key in numbers if key in titles]
     rows: list[tuple[Text, ...]] = []
@@ -145,7 +145,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return the stress of each bar: both faces at the greatest stress, and the extremes along the bar.
+    """Return the stress of each bar: both faces at the maximum stress, and the extremes along the bar.
 
     Raises `InputError` for a machine without material and pins, and for a design that friction locks.
     """

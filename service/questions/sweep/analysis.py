@@ -1,4 +1,4 @@
-"""Quantities of a job over one or two parameters of crank, rod, offset and speed: a row for each point."""
+"""Quantities of a job over one or two of crank, rod, offset and speed: a row for each point."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ MOST_VALUES = 10_000
 def analyse(
     problem: Problem, *, words: Mapping[str, str], over: Sequence[str], of: Sequence[str], **given: Any
 ) -> Answer:
-    """Return the rows of the sweep. given: lengths not swept, m.
+    """Return the rows of the sweep. given: lengths that are not swept, m.
 
-    over: one or two texts such as "offset=0 mm..20 mm:5". of: names and formulas, separated by commas within a text.
-    Raises `InputError`, also for a swing problem.
+    over: one or two texts such as "offset=0 mm..20 mm:5". of: names and formulas, comma-separated within a text. Raises
+    `InputError`, also for a swing problem.
     """
     require_rotating_crank(problem.motion, "sweep")
     axes = [parse_axis(text, words["over"]) for text in over]
@@ -97,7 +97,7 @@ def _sweep_table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence
 def parse_axis(text: str, word: str = "over") -> Axis:
     """Return the axis of a sweep from "offset=0 mm..20 mm:5", or from a list of values. Raises `InputError`.
 
-    word: the interface's name for it.
+    word: the interface's name for the parameter.
     """
     parameters, parameter = get_args(Parameter), text.partition("=")[0].strip()
     example = f'{word} "offset=0 mm..20 mm:5" or {word} "offset=0 mm, 10 mm, 20 mm"'

@@ -33,18 +33,18 @@ from ...render.numerals import with_unit
 
 Array = NDArray[np.float64]
 MOST = 6
-"""Quantities drawn at most."""
+"""Maximum number of drawn quantities."""
 _LEVELS = 12
-_WIDTH, _SIDE = 5.4, 2.6  # inches of a panel of two parameters with its scale, and of the height of any panel
+_WIDTH, _SIDE = 5.4, 2.6  # inches: width of a two-parameter panel with its scale, and height of any panel
 
 
 def column_of(axis: Axis) -> str:
-    """Return the column of the table that an axis fills."""
+    """Return the table column for an axis."""
     return "speed_rpm" if axis.parameter == "speed" else f"{axis.parameter}_mm"
 
 
 def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tuple[list[Array], Array]:
-    """Return the values of each axis as shown, ascending, and the quantity's values over them; NaN if missing."""
+    """Return the values of each axis as displayed, ascending, and the quantity's values over them; NaN if missing."""
     shape = [len(axis.values) for axis in axes]
     values = table[item.field].to_numpy(dtype=np.float64).reshape(shape)
     values = np.where(np.isfinite(values), values, np.nan)
@@ -61,9 +61,9 @@ def sweep_grid(table: pd.DataFrame, axes: Sequence[Axis], item: Quantity) -> tup
 def sweep_figure(
     table: pd.DataFrame, axes: Sequence[Axis], quantities: Sequence[Quantity], *, title: str, system: System = "metric"
 ) -> Figure:
-    """Return the figure of a sweep over one or two axes: a panel for each quantity, six at most.
+    """Return the figure of a sweep over one or two axes: a panel for each quantity, at most six.
 
-    An axis with a single value is named in the heading and not drawn. system: system of units shown.
+    An axis with a single value is stated in the heading and not drawn. system: unit system of the figure.
     """
     items = list(quantities)[:MOST]
     drawn = [n for n, axis in enumerate(axes) if len(axis.values) > 1] or [0]
@@ -130,7 +130,7 @@ def _draw_contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -
     else:
         filled = panel.contourf(*grids, masked, levels=_LEVELS, cmap=colours())
         lines = panel.contour(*grids, masked, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
-        # Instead of labels, which crowd near locking.
+        # A colour scale instead of contour labels, which crowd near locking.
         panel.figure.colorbar(filled, cax=scale).add_lines(lines)
     panel.set_xlim(grids[0].min(), grids[0].max())
     panel.set_ylim(grids[1].min(), grids[1].max())

@@ -1,4 +1,4 @@
-"""A crank that swings between two angles or slider positions, and its drive."""
+"""Crank that swings between two angles or slider positions, and its drive."""
 
 from ....model.swing.swing_types import Driver, Law, Side
 from ....objectives.kinds import ANGLE, LENGTH, TIME

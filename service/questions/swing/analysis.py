@@ -1,4 +1,4 @@
-"""A swing of one design: the JSON record, its text, and its curves, with units in the keys."""
+"""Swing of one design: the JSON record, its text, and its curves, with units in the keys."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ _Known = Annotated[float | None, Note("null where friction may lock the linkage"
 _Way = Annotated[Literal["forth", "back"] | None, Note("null where the value is")]
 _Place = Annotated[float | None, Note("null where the value is, and for a constant curve")]
 _ENDS = [f"drive_at_{end}_{way}" for end in ("start", "end") for way in ("forth", "back")]
-_DRIVES = (TORQUE, FORCE)  # of the crank, of the slider
+_DRIVES = (TORQUE, FORCE)  # units of the crank and of the slider
 _PLACES = {"at_crank_angle_deg": _Place, "at_slider_position_mm": _Place}
 _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
@@ -144,7 +144,7 @@ def _swing_from_inputs(
 
 
 def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
-    """Return rows of the curves of both strokes."""
+    """Return rows of the curves for both strokes."""
     machine, swing = _swing_from_inputs(mechanism, **options)
     return rows_in(swing_rows(machine, linkage, swing), units)
 
@@ -196,7 +196,7 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
 
 
 def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, Any]:
-    """Return title, least and greatest values of each curve over both strokes, with locations; null if undefined.
+    """Return title, minimum and maximum of each curve over both strokes, with locations; null if undefined.
 
     Zero loads, errors without tolerances and forces without a cause are omitted.
     """
@@ -220,7 +220,7 @@ def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, An
 
 
 def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
-    """Return a value and its location. stem: prefix of the location's keys; the key without its unit if empty."""
+    """Return a value and its location. stem: prefix of the location's keys; the value's key without unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {
         key: finite_or_none(factor * at.value + 0.0),
@@ -245,7 +245,7 @@ def _swing_notes(mechanism: Mechanism, summary: SwingSummary) -> list[str]:
 
 
 def swing_title(record: Mapping[str, Any]) -> str:
-    """Return drive and law of the swing of a record."""
+    """Return drive and motion law of the swing in a record."""
     how = "slowly" if record["law"] == "slow" else f"{record['law']} law, {record['duration_s']:g} s per stroke"
     return f"Swing driven at the {record['driver']}, {how}"
 
@@ -262,7 +262,7 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:
-    """Return the numbers of a metric record, and the extremes of its curves."""
+    """Return the numbers of a metric record, and the extremes of its curves, for people."""
     title = heading("Extreme values over both strokes, with continuous crank angles")
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 

@@ -43,31 +43,31 @@ class Contribution(Record):
 
 
 class Histogram(Record):
-    """Machines by their greatest error, in even bins from 0."""
+    """Machines by maximum error, in equal bins from 0."""
 
     edges_mm: list[float]
     counts: list[int]
 
 
 class MonteCarlo(Record):
-    """Greatest errors of random machines within the tolerances."""
+    """Maximum errors of random machines within the tolerances."""
 
     samples: int
     seed: int
     stuck: int
-    """Machines that do not turn fully."""
+    """Machines that do not rotate fully."""
     mean_greatest_mm: Turning
     standard_deviation_greatest_mm: Turning
     percentiles_greatest_mm: dict[str, float]
-    """By percent of the machines; empty where all but one are stuck."""
+    """By percentage of machines; empty if at most one machine rotates fully."""
     histogram: Annotated[Histogram | None, Note("null where no machine turns, and where none errs")]
 
 
 class Yield(Record):
-    """Share of the random machines within a limit, with its confidence interval."""
+    """Fraction of random machines within a limit, with its confidence interval."""
 
     limit: str
-    """What it is: the root-sum-square, the worst case, or given."""
+    """Origin of the limit: root-sum-square, worst case, or given."""
     limit_mm: float
     yield_percent: float
     yield_low_percent: float
@@ -76,7 +76,7 @@ class Yield(Record):
 
 
 class PositionError(Record):
-    """Greatest position error over the counted part of the cycle, and what it comes from."""
+    """Maximum position error over the counted part of the cycle, and its sources."""
 
     worst_case_mm: float
     """To first order."""
@@ -88,7 +88,7 @@ class PositionError(Record):
     contributions: list[Contribution]
     monte_carlo: MonteCarlo
     yields: list[Yield]
-    """At the limit that is given; without one at the root-sum-square and at the worst case."""
+    """At the given limit, or else at the root-sum-square and at the worst case."""
 
 
 def numbers(
@@ -96,10 +96,10 @@ def numbers(
 ) -> PositionError:
     """Return the effect of a mechanism's tolerances on the slider position of one linkage, ready for JSON.
 
-    limit: position tolerance for the yield, m; without it, the yields at the root-sum-square and at the worst case are
-    given. Contributions are fractions of the simulated variance, at the crank angle of the first-order worst case. The
-    exact worst case is None if a linkage within the tolerances does not rotate fully. The histogram counts machines by
-    their greatest error, in even bins from 0. Raises `InputError` without tolerances.
+    limit: position tolerance for the yield, m; None gives the yields at the root-sum-square and at the worst case.
+    Contributions are fractions of the simulated variance, at the crank angle of the first-order worst case. The exact
+    worst case is None if a linkage within the tolerances does not rotate fully. The histogram counts machines by
+    maximum error, in equal bins from 0. Raises `InputError` without tolerances.
     """
     source_limits = limits(mechanism, linkage)
     if not np.any(source_limits):
@@ -165,7 +165,7 @@ def numbers(
 
 
 def _error_histogram(greatest: np.ndarray) -> Histogram | None:
-    """Return edges, mm, and counts of the machines that rotate fully; None without any."""
+    """Return bin edges, mm, and counts of the machines that rotate fully; None without any."""
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
         return None
@@ -174,7 +174,7 @@ def _error_histogram(greatest: np.ndarray) -> Histogram | None:
 
 
 def blocks(numbers: PositionError) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
 
     def size_and_angle(name: str) -> Text:
         size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))

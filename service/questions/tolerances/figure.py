@@ -1,4 +1,4 @@
-"""Position error of one design over the cycle: worst case, root-sum-square and Monte Carlo bands; its sources."""
+"""Position error of one design over the cycle: worst-case, root-sum-square and Monte Carlo bands, and its sources."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class Bands:
     """Deviations of the slider over the cycle, m, each (m,), at crank angles, deg.
 
     least, greatest: exact extremes; None if a linkage within the tolerances does not rotate fully. percentiles: (4, m),
-    at `PERCENTS`. shares: fractions of the variance (s, m), percent, for each source. machines: (n,), the greatest
-    error of each random machine that rotates fully, over the counted part of the cycle.
+    at `PERCENTS`. shares: fractions of the variance (s, m), percent, for each source. machines: (n,), the maximum error
+    of each random machine that rotates fully, over the counted part of the cycle.
     """
 
     angles: Array
@@ -47,7 +47,7 @@ class Bands:
 
 
 def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLES, seed: int = 1) -> Bands:
-    """Return the bands of one fully rotating linkage over a full revolution, whichever part of it counts."""
+    """Return the bands of one fully rotating linkage over a full revolution, including parts that do not count."""
     theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
     least = greatest = None
     with contextlib.suppress(AssemblyError):
@@ -70,7 +70,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
 
 
 def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
-    """Return the figure in a system of units: the bands, random machines beside them, and sources below."""
+    """Return the figure in a unit system: the bands, random machines beside them, and sources below."""
     unit = LENGTH.display_unit(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"

@@ -1,4 +1,4 @@
-"""A machine with the speed profile of its job, compared with constant speed."""
+"""Machine with the speed profile of its job, compared with constant speed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,10 @@ def _require_profile(mechanism: Mechanism) -> None:
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
-    """Return speeds, period and peaks with the profile, and the peaks at constant speed. Raises without a profile."""
+    """Return speeds, period and peaks with the profile, and the peaks at constant speed.
+
+    Raises `InputError` without a profile.
+    """
     _require_profile(mechanism)
     profile, even = (
         speed_profile_cycle(machine, linkage) for machine in (mechanism, replace(mechanism, speed_profile=None))
@@ -98,7 +101,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
-    """Return the numbers for people."""
+    """Return the answer for people."""
     even = "at constant speed"
     rms = joined(["over time", compared(numbers, "rms_torque_at_constant_speed_Nm", even)])
     lines = [

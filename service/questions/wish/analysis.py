@@ -18,7 +18,7 @@ from ..front_or_job_question import Answer
 
 
 def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **_: Any) -> Answer:
-    """Return the answer to wishes by objective. row: row of the design that improve, keep and worsen refer to.
+    """Return the answer to wishes by objective. row: reference design for improve, keep and worsen.
 
     Raises the errors of `optimise.decisions.wish.wish`.
     """
@@ -67,7 +67,7 @@ def sentences(wished: Wished) -> list[Phrase]:
 
 
 def _wish_blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
-    """Return the answer in words, then the design as a table."""
+    """Return the answer in words, followed by the design as a table."""
     head, *outcomes = sentences(wished)
     begin = f"{head.metric[0].upper()}{head.metric[1:]}:"
     objectives = {outcome.quantity.title for outcome in wished.outcomes}
