@@ -1,7 +1,7 @@
 """Mistakes in TOML syntax, in words: line and key, rule, typed text, and correction.
 
-The parser only says where it stops. So the line is tried with each of some edits; the one with which most of it can be
-read is kept, until all of it can be. A remedy is therefore always a line that the parser takes.
+The parser only says where it stops. So each of several edits is tried on the line; the edit that lets the parser read
+most of it is kept, until the whole line can be read. A remedy is therefore always a line that the parser accepts.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from .model import Job
 from .problem_order import key_above
 from .schema import schema_of
 
-_LONGEST = 1000  # of a line that is read and edited
-_LONGEST_EXCERPT = 200  # characters of a line that are repeated
-_MOST_JOINED = 8  # lines that may be one
+_LONGEST = 1000  # maximum length of a line to read and edit
+_LONGEST_EXCERPT = 200  # maximum number of characters to quote from a line
+_MOST_JOINED = 8  # maximum number of lines that may form one
 _LIST = "x = ["
-"""What stands before a line of a list that began above it."""
+"""Prefix for a line of a list that began above it."""
 _PLACE = re.compile(r"at line (\d+), column (\d+)")
 _TWICE = re.compile(r"Cannot |Duplicate inline table key '(.*)'")
 _WORD = r"""(?:[\w-]+|"[^"\n]*"|'[^'\n]*')"""
@@ -33,12 +33,12 @@ _KEY = re.compile(rf"\s*({_PATH})\s*[=:]")
 _BARE = re.compile(rf"\s*{_PATH}\s*[=:]?\s*")
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_PATH})\s*\]\]?\s*(?:#.*)?")
 _NAMES = re.compile(r"[\s(<{]*(\[*)\s*([^\W\d][\w-]*(?:[\s.,/]*[^\W\d][\w-]*)*)\s*(\]*)[\s)>}]*[=:;,]?\s*")
-"""A heading, however it is written."""
+"""A heading in any spelling."""
 _INNER = re.compile(r"([\w-]+)\s*=\s*\[?\s*$")
 _TEXT = r"""(?:"(?:[^"\\]|\\.)*"|'[^']*')"""
 _ITEM = rf"(?:{_TEXT}|[-+]?[\d.]+(?:e[-+]?\d+)?)"
 _PASSED = rf"({_TEXT}|#.*)|"
-"""Whole texts and comments, which an edit leaves as they are."""
+"""Complete texts and comments, which an edit leaves unchanged."""
 _COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
 _SEPARATORS = r"=,;:\[\]{}()#\"'"
 _VALUE = re.compile(
@@ -47,22 +47,25 @@ _VALUE = re.compile(
 )
 _DIGITS = re.compile(r"([+-]?)(\d*)([.,]?)(\d*)([eE][+-]?\d+)?", re.ASCII)
 _WRITTEN = re.compile(r"(?=.*[^\W\d]|.*[%°±\"]|[+-]?\d*[.,]?\d*$)")
-"""A text, a value with a unit or a number, however they are written."""
+"""A text, a value with a unit or a number, in any spelling."""
 _BORDER = re.compile(r"(?<=[=\[,{])\s*()(?=\S)|(?<=\S)()(?=\s*(?:[,\]}]|$))")
 Path = tuple[str | int, ...]
-"""Keys of a table and of what stands in it, from the top of the file on."""
+"""Keys of a table and of its content, from the top level of the file."""
 Edit = Callable[[str], tuple[str, str]]
-"""Returns the rule that it restores, and the line edited."""
+"""Returns the rule that the edit restores, and the edited line."""
 
 
 def _edit_code(wrong: str, right: str, rule: str) -> Edit:
-    """Return the edit that replaces a pattern outside of texts and comments."""
+    """Return an edit that replaces a pattern outside texts and comments."""
     pattern = re.compile(f"{_PASSED}(?:{wrong})")
     return lambda line: (rule, pattern.sub(lambda found: found[1] or found.expand(right), line).rstrip(" "))
 
 
 def _edit_all(wrong: str, right: str, rule: str) -> Edit:
-    """Return the edit that replaces a pattern, in texts too. Its groups count from 2 as those of `_edit_code`."""
+    """Return an edit that replaces a pattern, even within texts.
+
+    Its groups count from 2, as those of `_edit_code` do.
+    """
     pattern = re.compile(f"()(?:{wrong})")
     return lambda line: (rule, pattern.sub(right, line))
 
@@ -80,7 +83,7 @@ _SIGNS: tuple[Edit, ...] = (
     _edit_code("[−–]", "-", "a minus sign must be the - of the keyboard"),
     _edit_code(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
 )
-"""Before values are read."""
+"""Edits to make before values are read."""
 _COMMAS = _edit_code(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _COMMA_RULE)
 _EDITS: tuple[Edit, ...] = (
     _edit_code(r"(?:^\s*[;!%]|//|--|/\*)\s*(.*?)\s*(?:\*/\s*(.*))?$", r"# \2 \3", _COMMENTED),
@@ -130,9 +133,9 @@ _EDITS: tuple[Edit, ...] = (
 
 
 def in_words(text: str, error: str) -> str:
-    """Return line, key, rule, value and remedy for a parser's error in a text."""
+    """Return line, key, rule, value and remedy for a parser error in a text."""
     lines = text.replace("\r\n", "\n").split("\n")
-    place = _PLACE.search(error)  # none at the end of the text
+    place = _PLACE.search(error)  # at the end of the text there is none
     number = min(int(place[1]), len(lines)) if place else len(lines)
     number = next((n for n in range(number, 0, -1) if lines[n - 1].strip()), 1)
     begins = _begins_entry(lines[number - 1])
@@ -181,7 +184,7 @@ def in_words(text: str, error: str) -> str:
 
 
 def with_lines(message: str, text: str) -> str:
-    """Return a message on the tables of a TOML text, problems in the order of their lines."""
+    """Return a message on the tables of a TOML text, with mistakes in line order."""
     keys = list(_paths_of_lines(text.split("\n")))
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}
@@ -208,7 +211,7 @@ def _code_of(line: str) -> str:
 
 
 def _mistake_in_value(lines_above: Sequence[str], line: str) -> str:
-    """Return key and mistake of the value in a line with valid syntax; "" if it has none."""
+    """Return key and mistake for the value in a line with valid syntax; "" if it has none."""
     lines = [*(line_above for line_above in lines_above if _HEADER.fullmatch(line_above[:_LONGEST])), line]
     path = _path_of(lines)
     try:
@@ -218,20 +221,20 @@ def _mistake_in_value(lines_above: Sequence[str], line: str) -> str:
             place = keys_of(details["loc"])
             if path and tuple(place[: len(path)]) == path and details["type"] not in ("missing", "extra_forbidden"):
                 return f"{key_of(place)}: {sentence_of(details, schema_of(Job))}"
-    except ValueError:  # headings that stand twice
+    except ValueError:  # duplicate headings
         pass
     return ""
 
 
 def _begins_entry(line: str) -> bool:
-    """Whether a line begins a key or a table."""
+    """Whether a line starts a key or a table."""
     return bool(_KEY.match(line[:_LONGEST]) or _HEADER.fullmatch(line[:_LONGEST]))
 
 
 def _unread_size(lines: Sequence[str]) -> int:
-    """Return how much of lines the parser does not read, in signs other than quotes and spaces, counted from 1.
+    """Return the unread length of lines, in characters other than quotes and spaces, plus 1.
 
-    0 if it reads all of it, -1 if the lines end within a list or text.
+    0 if it reads everything, -1 if the lines end within a list or text.
     """
     text = "\n".join(lines) + "\n"
     try:
@@ -261,7 +264,7 @@ def _correct_line(line: str, path: Path) -> tuple[list[str], str]:
 
 
 def _with_values(line: str, path: Path) -> tuple[str, str]:
-    """Return a line whose values are numbers or in quotes, and the rule of the first that was neither."""
+    """Return a line whose values are numbers or quoted, and the rule for the first value that was neither."""
     rules = []
 
     def value(match: re.Match[str]) -> str:
@@ -278,7 +281,7 @@ def _with_values(line: str, path: Path) -> tuple[str, str]:
 
 
 def _correct_value(token: str, path: Path) -> tuple[str, str]:
-    """Return the rule that the value of a key breaks, and the corrected value."""
+    """Return the rule that a key's value breaks, and the corrected value."""
     if token.lower() in ("true", "false"):
         return "true and false must be in lower case", token.lower()
     point = re.sub(r"^([+-]?\d*),(\d)", r"\1.\2", token)
@@ -299,7 +302,7 @@ def _correct_value(token: str, path: Path) -> tuple[str, str]:
 
 
 def _unit_of(path: Path) -> str:
-    """Return the unit of the example of a key; "" without one."""
+    """Return the unit in a key's example; "" if it has none."""
     example = next((node["examples"][0] for node in nodes_at(schema_of(Job), path) if node.get("examples")), None)
     first = example[0] if isinstance(example, list) and example else example
     parts = number_and_unit(first) if isinstance(first, str) else None
@@ -307,7 +310,7 @@ def _unit_of(path: Path) -> str:
 
 
 def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
-    """Yield a line with one quote added at a border of a text, then with one quote or bracket removed."""
+    """Yield a line with one quote added at the edge of a text, then with one quote or bracket removed."""
     if re.search("[\"']", re.sub(_TEXT, "", line)):
         for place in (border.end() for border in _BORDER.finditer(line)):
             yield "text must have quotes on both sides", f'{line[:place]}"{line[place:]}'
@@ -318,7 +321,7 @@ def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
 
 
 def _with_brackets(line: str) -> tuple[str, str]:
-    """Return the heading of a table in its brackets."""
+    """Return a table's heading in its brackets."""
     rule = "a heading must be one name in matching brackets, its parts joined by dots"
     if (heading_match := _NAMES.fullmatch(line)) is None:
         return rule, line
@@ -331,7 +334,7 @@ def _with_brackets(line: str) -> tuple[str, str]:
 
 
 def _unclosed_message(lines: Sequence[str], end: str) -> str:
-    """Return the message on a list or text that begins in the last of some lines. end: where it is still open."""
+    """Return the message on a list or text that begins in the last of the lines. end: where it is still open."""
     line = _code_of(lines[-1])
     three = next((three for three in ('"""', "'''") if three in line), "")
     if three:
@@ -348,7 +351,7 @@ def _unclosed_message(lines: Sequence[str], end: str) -> str:
 
 
 def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
-    """Return the message on a key or table that stands in the last of some lines and above. inner: a key in braces."""
+    """Return the message on a key or table that occurs in the last of the lines and above. inner: a key in braces."""
     *above, (last, path, brackets) = _paths_of_lines(lines)
     if inner:
         return f"{_line_prefix(last, (*path, inner))}may be given only once; got it twice; remove one"
@@ -377,7 +380,7 @@ def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
 
 
 def _paths_of_lines(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
-    """Yield line, path and opening brackets of each table and, without brackets, of each key that lines begin."""
+    """Yield line, path and opening brackets of each table and, without brackets, of each key that starts a line."""
     table: Path = ()
     count = Counter[Path]()
     for number, line in enumerate((line[:_LONGEST] for line in lines), start=1):
@@ -396,25 +399,25 @@ def _words_of_path(path: str) -> Path:
 
 
 def _path_of(lines: Sequence[str]) -> Path:
-    """Return the key that the last of some lines begins; an empty one if it begins none."""
+    """Return the key that the last of the lines starts; an empty one if it starts none."""
     *_, (number, path, brackets) = ((0, (), ""), *_paths_of_lines(lines))
     return path if number == len(lines) and not brackets else ()
 
 
 def _line_prefix(number: int, path: Path) -> str:
-    """Return how a message on a line and its key begins."""
+    """Return the prefix of a message on a line and its key."""
     return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
 
 
 def _common_prefix_length(first: str, second: str) -> int:
-    """Return how many characters of two texts are the same from their beginnings on."""
+    """Return the length of the common prefix of two texts."""
     return next(
         (n for n, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), min(len(first), len(second))
     )
 
 
 def _quote_line(line: str, place: int = 0) -> str:
-    """Return a line for a message: printable, and of a long one what stands around a place in it."""
+    """Return a line for a message: printable, and if long only the part around a position."""
     first = max(place - _LONGEST_EXCERPT // 2, 0) if len(line) > _LONGEST_EXCERPT else 0
     text = re.sub(f"[{SPACES}]", "␣", line[first:].strip(" \t").replace("\n", " and below it "))
     text = "".join(sign if sign.isprintable() else "?" for sign in text)

@@ -1,6 +1,6 @@
-"""The types of the values in a job file: physical values, ranges and tolerances, read into SI.
+"""Types of the values in a job file: physical values, ranges and tolerances, converted to SI.
 
-Each states in the JSON Schema what it accepts, and can read what it writes: SI numbers are also valid in a job.
+Each type states in the JSON Schema what it accepts, and can read what it writes: SI numbers are also valid in a job.
 """
 
 from __future__ import annotations
@@ -32,27 +32,27 @@ from .grids import Grid, grid_schema, read_grid, says_values, swap
 from .named_files import SOURCE
 
 SHORTEST = 1e-9
-"""m; a shorter link is a mistaken unit."""
+"""m; a shorter link has a mistaken unit."""
 
 
 class Part(BaseModel):
-    """A table of a job file: unknown keys are refused, nothing changes after reading."""
+    """A table of a job file: unknown keys raise an error, and nothing changes after reading."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
 def required(description: str, *examples: object, default: Any = ..., **rules: Any) -> Any:
-    """Return an entry of a table that must be given. rules: further arguments of pydantic's `Field`."""
+    """Return a required entry of a table. rules: further arguments for pydantic's `Field`."""
     return Field(default, description=description, examples=list(examples), **rules)
 
 
 def optional(description: str, *examples: object, default: Any = None, **rules: Any) -> Any:
-    """Return an entry of a table that may be left out; then it is `default`."""
+    """Return an optional entry of a table; if omitted, it is `default`."""
     return required(description, *examples, default=default, **rules)
 
 
 Source = Annotated[str, Field(max_length=2000)] | None
-"""Type of the key of what was understood of a file."""
+"""Type of the key for a file's summary."""
 
 
 def source() -> Any:
@@ -67,14 +67,14 @@ Table = TypeVar("Table", bound=Part)
 class Built(Part, Generic[Made]):
     """A table that states a part of the model, entry by entry; the model has the defaults.
 
-    makes: gives the part from its values. renamed: the model's name for an entry, where that differs.
+    makes: builds the part from its values. renamed: the model's name for an entry if it differs.
     """
 
     makes: ClassVar[Callable[..., object]]
     renamed: ClassVar[Mapping[str, str]] = {}
 
     def build(self) -> Made:
-        """Return the part of the model that the table states. Raises InputError for values that exclude each other."""
+        """Return the part of the model that the table states. Raises InputError for incompatible values."""
         names = [name for name in type(self).model_fields if name != SOURCE]
         arguments = {self.renamed.get(name, name): getattr(self, name) for name in names}
         parts = {name: part.build() if isinstance(part, Built) else part for name, part in arguments.items()}
@@ -82,7 +82,7 @@ class Built(Part, Generic[Made]):
 
 
 class Checked(Built[Made], Generic[Made]):
-    """A table whose values may exclude each other: it is built when it is read."""
+    """A table with possibly incompatible values, so it is built when it is read."""
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -91,17 +91,17 @@ class Checked(Built[Made], Generic[Made]):
 
 
 def retyped(part: type[Table], **types: Any) -> type[Table]:
-    """Return a table with some of its entries of other types."""
+    """Return a table with other types for some of its entries."""
     fields: Any = {name: (new_type, part.model_fields[name]) for name, new_type in types.items()}
     return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
 
 
 PLAIN = "plain_number"
-"""Validation context, and type of its errors, that finds numbers without a unit: their places and kinds."""
+"""Validation context that finds numbers without a unit; also the type of its errors, with places and kinds."""
 
 
 def values_in(value: object) -> list[object]:
-    """Return the values of a list, or of a table of values and lists; a single value as a list."""
+    """Return the values in a list, or in a table of values and lists; a single value becomes a list."""
     items = list(value.values()) if isinstance(value, Mapping) else [value]
     return [entry for item in items for entry in (item if isinstance(item, list | tuple) else [item])]
 
@@ -113,7 +113,7 @@ def plain_in(value: object) -> list[float]:
 
 
 def of_spread(value: object, ends: Sequence[object], error: InputError) -> InputError:
-    """Return the error for a range whose ends are invalid; `error` itself for a value without ends."""
+    """Return the error for a range with invalid ends; `error` itself for a value without ends."""
     if ends[0] == value:
         return error
     rule = str(error).partition(";")[0]
@@ -124,7 +124,7 @@ def of_spread(value: object, ends: Sequence[object], error: InputError) -> Input
 
 
 class _Read:
-    """Marks a value that `read` turns into SI. kind: of numbers without a unit."""
+    """Marks a value that `read` converts to SI. kind: kind of numbers without a unit."""
 
     kind: Kind
 
@@ -132,7 +132,7 @@ class _Read:
         raise NotImplementedError
 
     def _validate(self, value: object, info: core_schema.ValidationInfo) -> object:
-        """Read a value; in the validation context `PLAIN` raise instead for one with numbers without a unit."""
+        """Read a value; in the validation context `PLAIN`, raise an error for one with numbers without a unit."""
         plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value)
         try:
             result_in_si = self.read(value)
@@ -164,7 +164,7 @@ class Physical(_Read):
 
 @dataclass(frozen=True)
 class ProperFraction(Physical):
-    """Marks a number of at most 1, which people may state in percent. example: in place of that of the kind."""
+    """Marks a number of at most 1, which people may state in percent. example: replaces the kind's example."""
 
     example: str = "0.9"
 
@@ -178,7 +178,7 @@ class ProperFraction(Physical):
 
 
 class GasPressure(Physical):
-    """Marks the absolute pressure of a gas: one below vacuum is mostly that of a gauge."""
+    """Marks the absolute pressure of a gas: a value below vacuum is usually a gauge pressure."""
 
     def read(self, value: object) -> float:
         """Return the pressure, Pa; raises InputError."""
@@ -194,7 +194,10 @@ class GasPressure(Physical):
 
 @dataclass(frozen=True, kw_only=True)
 class Within(Physical):
-    """Marks a physical value between limits, SI: beyond them its unit has slipped. rule, hint: of the refusal."""
+    """Marks a physical value between limits, SI; a value beyond them has the wrong unit.
+
+    rule, hint: for the error message.
+    """
 
     rule: str
     hint: str
@@ -211,7 +214,7 @@ class Within(Physical):
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         value_schema = super().__get_pydantic_json_schema__(schema, handler)
         number = {"type": "number", "minimum": self.least, "maximum": self.greatest}
-        if "anyOf" not in value_schema:  # of a kind without a unit, which no text has
+        if "anyOf" not in value_schema:  # for kinds without a unit, text is not allowed
             return {key: subschema for key, subschema in value_schema.items() if key != "exclusiveMinimum"} | number
         return value_schema | {
             "anyOf": [number if subschema.get("type") == "number" else subschema for subschema in value_schema["anyOf"]]
@@ -220,7 +223,10 @@ class Within(Physical):
 
 @dataclass(frozen=True)
 class Limited:
-    """Marks a number between limits, in the schema too. greater_than: an excluded limit. rule, hint: of the refusal."""
+    """Marks a number between limits, also in the schema.
+
+    greater_than: an excluded limit. rule, hint: for the error message.
+    """
 
     rule: str
     hint: str
@@ -265,13 +271,13 @@ def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Choices:
-    """Lengths, m, of which one is to be chosen; ascending."""
+    """Lengths, m, from which one is selected; ascending."""
 
     choices: tuple[float, ...]
 
 
 _ENDS = re.compile(r"\s*([\d.]*\d)\s*([a-zµ]*)\s*(?:-|–|—|,|;|\.{2,}|…|to|bis)\s*([\d.]*\d)\s*([a-zµ]+)\s*")
-"""A range within one text."""
+"""A range within a single text."""
 
 
 @dataclass(frozen=True)
@@ -282,7 +288,7 @@ class RangeOf(_Read):
     kind = kinds.LENGTH
 
     def read(self, value: object) -> tuple[float, float] | Choices | Grid:
-        """Return lower and upper end, m, or what there is to choose from; raises InputError."""
+        """Return the lower and upper end, m, or the possible values; raises InputError."""
         if isinstance(value, Choices | Grid):
             return value
         if isinstance(value, Mapping) and says_values(value):
@@ -350,13 +356,13 @@ _FIT = replace(kinds.LENGTH, believed=(1e-8, 1e-2))
 
 
 class ToleranceOf(_Read):
-    """Marks a value as the tolerance of a length: "0.05 mm", or a share of the length, "0.1 %"."""
+    """Marks a value as the tolerance of a length: "0.05 mm", or a fraction of the length, "0.1 %"."""
 
     kind = _FIT
 
     @staticmethod
     def share(value: object) -> float | None:
-        """Return the share that a string such as "0.1 %" says; None if it is no percentage."""
+        """Return the fraction that a string such as "0.1 %" states; None if it is not a percentage."""
         if not (isinstance(value, str) and value.rstrip().endswith("%")):
             return None
         try:
@@ -372,14 +378,14 @@ class ToleranceOf(_Read):
 
     @classmethod
     def read(cls, value: object) -> float | str:
-        """Return the tolerance in m, or the percentage as it stands; raises InputError."""
+        """Return the tolerance in m, or the percentage unchanged; raises InputError."""
         if cls.share(value) is not None:
             return str(value)
         return to_si(value, kinds.LENGTH, sign="zero or more")
 
     @classmethod
     def build(cls, value: float | str) -> Tolerance:
-        """Return the tolerance as the model has it."""
+        """Return the tolerance in the form that the model uses."""
         if isinstance(value, str):
             return Tolerance(fraction=cls.share(value) or 0.0)
         return Tolerance(absolute=value)
@@ -397,7 +403,7 @@ class PartOfStroke(_Read):
     _text: ClassVar = re.compile(r"\s*(?:the\s+)?(first|last|whole)\s+(.*?)\s*", re.IGNORECASE)
 
     def read(self, value: object) -> load.StrokePart:
-        """Return the part, its length in m; raises InputError."""
+        """Return the part with its length in m; raises InputError."""
         if isinstance(value, load.StrokePart):
             return value
         match = self._text.fullmatch(value) if isinstance(value, str) else None

@@ -1,8 +1,8 @@
 """Variables and choices of a job file: [variables] and [[choice]].
 
-A variable other than the three dimensions has the path of a number in the job as its name, as in messages:
+A variable other than the three dimensions is named by the path of its number in the job, as in messages:
 `mechanism.slider.mass = ["0.5 kg", "2 kg"]`, or `load.1.force` for the first [[load]]. The number in the job remains
-the value in analyses of single designs.
+the value for analyses of single designs.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .values import AnyRange, Part, PositiveRange, optional, required, retyped
 
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
-"""Example of the limits of an option."""
+"""Example of an option's limits."""
 
 
 def _variable_table(table_name: str, example: dict[str, Any]) -> Any:
@@ -57,7 +57,7 @@ class VariablesPart(Part):
     @model_validator(mode="before")
     @classmethod
     def _nested(cls, data: Any) -> Any:
-        """Take a path in quotes for the same without: both are dotted keys to an engineer, one key to TOML."""
+        """Treat a path in quotes as one without: engineers read both as dotted keys; TOML reads the former as one key."""
         if not isinstance(data, Mapping):
             return data
         nested: dict[str, Any] = {}
@@ -107,7 +107,7 @@ class OptionPart(Part):
 
     @property
     def paths(self) -> dict[str, Any]:
-        """The numbers that come with it: path and value."""
+        """The numbers that the option sets: path and value."""
         return dict(leaves_of(self.values, ""))
 
 
@@ -120,7 +120,7 @@ def _require_distinct_names(options: tuple[OptionPart, ...]) -> tuple[OptionPart
 
 
 class ChoicePart(Part):
-    """A choice between options that each set several numbers, such as sections or gearmotors of a catalogue."""
+    """A choice between options that each set several numbers, such as sections or gearmotors from a catalogue."""
 
     name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
         "name of the choice; its column in the table of designs is choice_<name>", "rod section"
@@ -157,13 +157,13 @@ class ChoicePart(Part):
 
 
 def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
-    """Return the choice whose options may constrain quantities of a job's own too."""
+    """Return the type of a choice whose options may also constrain custom quantities."""
     option: Any = retyped(OptionPart, constraints=constraints)
     return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
 
 
 def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the numbers that an incomplete job lets vary besides the dimensions: path and what is given for it."""
+    """Return the numbers besides the dimensions that vary in an incomplete job: path and stated value."""
     varying: dict[str, Any] = {}
     for key, value in table_in(tables, "variables").items():
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
@@ -177,7 +177,7 @@ def set_by_options(tables: Mapping[str, Any]) -> set[str]:
 
 
 def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) -> None:
-    """Put a value into tables within tables."""
+    """Set a value in nested tables."""
     for step in steps[:-1]:
         table = table.setdefault(step, {})
         if not isinstance(table, dict):
@@ -195,9 +195,9 @@ def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) ->
 
 
 def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
-    """Yield path and value of what is no table in tables within tables; { choices } counts as a value."""
+    """Yield path and value of everything in nested tables that is not a table; { choices } counts as a value."""
     for key, value in table.items():
-        name = printable_name(str(key))  # which no path has: a message shows it
+        name = printable_name(str(key))  # no path has this name: it is for a message
         path = f"{root}.{name}" if root else name
         if isinstance(value, Mapping) and set(value) != {"choices"} and value and not says_values(value):
             yield from leaves_of(value, path)

@@ -1,8 +1,8 @@
-"""From the paths in [variables] and [[choice]] to varying numbers of the machine and to variants of the problem.
+"""From the paths in [variables] and [[choice]] to extra variables of the machine and to variants of the problem.
 
-A path names a number of the job. Its effect is found by building the machine twice, with the number at both ends of its
-range: every number of the machine that differs must be proportional to it. Each is thus read, and refused, by the rules
-of its own key, and any number of a job may vary.
+A path names a number of the job. To find its effect, the machine is built twice, with the number at both ends of its
+range: every number of the machine that differs must be proportional to it. So each number is read, and rejected, by the
+rules of its own key, and any number in a job may vary.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ from .schema import schema_of
 from .values import Choices, RangeOf, ToleranceOf
 
 MOST = 200
-"""Combinations of choices that are enumerated."""
+"""Maximum number of combinations of choices to enumerate."""
 _MOST_READ = 2000
-"""Numbers that vary, counted in every combination: each takes up to 1 ms, with fifty loads."""
-_ROUNDING = 1e-12  # rounding of a factor
+"""Maximum number of extra variables, counted in every combination; each takes up to 1 ms with fifty loads."""
+_ROUNDING = 1e-12  # rounding error of a factor
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class _Option:
 
 
 def varying_machine(job: Job, key: str = "variables") -> Mechanism:
-    """Return the machine of a job with the numbers that vary in [variables]. Raises JobError, naming the path."""
+    """Return the machine of a job with the extra variables from [variables]. Raises JobError, naming the path."""
     base = job.machine()
     varying = []
     for path, stated_value in job.variables.paths.items():
@@ -76,9 +76,10 @@ def varying_machine(job: Job, key: str = "variables") -> Mechanism:
 def variants_of(
     job: Job, formulas: Formulas, amounts: Mapping[str, Amount]
 ) -> tuple[tuple[str, ...], tuple[Variant, ...], tuple[Variant, ...]]:
-    """Return the names of a job's choices, every combination of them, and those of the catalogue of the problem.
+    """Return the names of a job's choices, every combination of their options, and the combinations in the catalogue.
 
-    None if nothing is to be chosen. formulas: of the job, which its options may constrain too. amounts: of the job.
+    None if there are no choices. formulas: those of the job, which its options may also constrain. amounts: those of
+    the job.
     """
     every = list(_choice_axes(job, formulas, amounts))
     axes = [(name, [option for option in options if option.searched]) for name, options in every]
@@ -117,7 +118,7 @@ def variants_of(
 
 
 def discrete_of(job: Job) -> tuple[Discrete, ...]:
-    """Return the variables of a job that have some values only. Raises JobError, naming the path."""
+    """Return a job's variables with discrete values. Raises JobError, naming the path."""
     discrete = []
     for name in DIMENSIONS:
         stated = getattr(job.variables, name)
@@ -146,7 +147,7 @@ def _read_grid(job: Job, key: str, path: str, table: Mapping[str, Any]) -> Grid:
 
 
 def ends_of(stated: tuple[float, float] | Choices | Grid) -> Range:
-    """Return the range of a dimension; of choices and values the one from the least to the greatest."""
+    """Return the range of a dimension; for choices and discrete values, from the least to the greatest."""
     if isinstance(stated, Grid):
         return Range(lower=stated.values[0], upper=stated.values[-1])
     if isinstance(stated, Choices):
@@ -155,7 +156,7 @@ def ends_of(stated: tuple[float, float] | Choices | Grid) -> Range:
 
 
 def dimension_ranges(job: Job) -> dict[str, Range]:
-    """Return where each dimension may lie, whatever is chosen."""
+    """Return each dimension's possible range, whatever is chosen."""
     ranges_by_name = {}
     for name in DIMENSIONS:
         options = [
@@ -170,7 +171,7 @@ def dimension_ranges(job: Job) -> dict[str, Range]:
 
 
 def is_choice(value: object) -> bool:
-    """Return whether a variable is one of some values that need not be numbers."""
+    """Return whether a variable has a list of values that need not be numbers."""
     return isinstance(value, Mapping) and set(value) == {"choices"}
 
 
@@ -222,7 +223,7 @@ def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...])
     try:
         other = with_values(job, values, "choice") if values else job
     except JobError:
-        for name, option in zip(names, chosen, strict=True):  # one that is wrong by itself is named
+        for name, option in zip(names, chosen, strict=True):  # report the one that is invalid by itself
             single = next(iter(_path_of_choice(name, option)), None)
             name_of_part = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
             with_values(job, {path: value for path, value in option.values.items() if path in values}, name_of_part)
@@ -237,7 +238,7 @@ def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...])
 
 
 def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]:
-    """Return limits, amounts and notes of a combination of options."""
+    """Return limits, amounts and notes for a combination of options."""
     labelled = [option for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS]
     return {
         "labels": tuple(option.label for option in labelled),
@@ -250,7 +251,7 @@ def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]
 
 
 def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
-    """Return which stroke the options want to be the slow one. Raises JobError if they differ."""
+    """Return which stroke the options require to be slow. Raises JobError if they differ."""
     stroke_labels = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
     if len(stroke_labels) > 1:
         raise JobError(
@@ -261,7 +262,7 @@ def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
 
 
 def _path_of_choice(name: str, option: _Option) -> tuple[str, ...]:
-    """Return the path of a choice that [variables] itself gives."""
+    """Return the path of a choice that is stated in [variables] itself."""
     paths = tuple(option.values)
     return paths if len(paths) == 1 and paths[0].removeprefix("mechanism.") == name else ()
 
@@ -279,7 +280,7 @@ def _read_length_range(name: str, value: Any, key: str) -> tuple[float, float] |
 
 
 def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
-    """Return the varying number of a path."""
+    """Return the extra variable for a path."""
     if says_values(given):
         grid = _read_grid(job, key, path, given)
         if len(grid.values) < 2:
@@ -321,7 +322,7 @@ def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
 
 
 def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
-    """Raise `JobError` for a range of a time that states the crank speed. jobs: at the ends of the range."""
+    """Raise `JobError` if a time that states the crank speed varies. jobs: the jobs at the ends of its range."""
     stated = path.removeprefix("mechanism.")
     if path.startswith("mechanism.") and stated in TIME_KEYS:
         low, high = sorted(ANGULAR_SPEED.metric.factor * other.machine().speed for other in jobs)
@@ -332,7 +333,7 @@ def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
 
 
 def _require_smooth(path: str, places: list[str]) -> None:
-    """Refuse a path of a job that sets a number of the machine by which nothing has derivatives."""
+    """Reject a path to a number of the machine with respect to which there are no derivatives."""
     try:
         for place in places:
             unit_of(place)
@@ -343,9 +344,9 @@ def _require_smooth(path: str, places: list[str]) -> None:
 
 
 def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
-    """Return the job, without its [[choice]], with values put at paths, read by the rules of their own keys.
+    """Return the job, without its [[choice]], with values set at paths, read by the rules of their own keys.
 
-    key: where the values come from, for messages. Raises JobError.
+    key: source of the values, for messages. Raises JobError.
     """
     data: dict[str, Any] = stated(job)
     for path, value in values.items():
@@ -388,5 +389,5 @@ def _differing_numbers(low: Any, high: Any, root: str) -> Iterator[tuple[str, fl
             yield from _differing_numbers(*pair, f"{root}.{number}")
     elif isinstance(low, int | float) and isinstance(high, int | float):
         yield root, float(low), float(high)
-    else:  # of another kind: it does not follow
+    else:  # values of other types do not follow the number
         yield root, math.nan, math.nan

@@ -1,8 +1,8 @@
-"""A form as objectives of the polish: least weighted distance from a reference, plus a little of the sum.
+"""A form as objectives for the polish: least weighted distance from a reference, plus a small multiple of the sum.
 
-The polish takes objectives that are the greatest of smooth pieces, and with `hold=False` lowers their sum. So a `Form`
-of m objectives becomes 1 + m of them: first max_i w_i (f_i - z_i), whose pieces are those of all weighted objectives,
-then rho f_i each. Ceilings join the constraints. Kinks stay: nothing is smoothed, no variable is added.
+The polish accepts objectives that are the greatest of smooth pieces and, with `hold=False`, lowers their sum. So a
+`Form` with m objectives becomes 1 + m objectives: first max_i w_i (f_i - z_i), whose pieces are those of all weighted
+objectives, then each rho f_i. Ceilings join the constraints. Kinks stay: nothing is smoothed, and no variable is added.
 """
 
 from __future__ import annotations
@@ -14,11 +14,13 @@ from ..search.evaluation import Evaluator
 from ..search.pieces import Rows
 from .scalar_objective import Form
 
-_LABEL_STEP = 100.0  # between the labels of two objectives' pieces, so that no peak is taken for one of another curve
+_LABEL_STEP = (
+    100.0  # offset between the labels of two objectives' pieces, so that peaks of different curves are not confused
+)
 
 
 class Achievement:
-    """A form on one branch, as `polish.Evaluates`. ideal, span: (m,), scaling of the objectives."""
+    """A form on one branch, which satisfies `polish.Evaluates`. ideal, span: (m,), scaling of the objectives."""
 
     def __init__(self, evaluator: Evaluator, form: Form, ideal: Array, span: Array) -> None:
         self.evaluator, self.form = evaluator, form
@@ -29,7 +31,7 @@ class Achievement:
         return self.evaluator.valid(u)
 
     def exact(self, u: Array) -> tuple[Rows, Rows]:
-        """Return the rows of the form's 1 + m objectives and those of constraints and ceilings."""
+        """Return the rows of the form's 1 + m objectives, and the rows of constraints and ceilings."""
         goals, limits = self.evaluator.exact(u)
         owner, form = goals.owner, self.form
         values = (goals.values - self.ideal[owner]) / self.span[owner]

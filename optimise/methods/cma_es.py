@@ -1,14 +1,14 @@
-"""CMA-ES: one objective, continuous coordinates, a normal distribution that learns the shape of the objective.
+"""CMA-ES: one objective, continuous coordinates, and a normal distribution that learns the shape of the objective.
 
     N. Hansen, "The CMA evolution strategy: a tutorial", arXiv:1604.00772, 2016
     A. Auger, N. Hansen, "A restart CMA evolution strategy with increasing population size", IEEE CEC 2005
 
-Once converged, it restarts elsewhere with twice the population. Each branch has a separate climb, in turn: a normal
-distribution cannot span two. Only ranks matter to it, so constraints enter as ranks: feasible designs come first, by
+Once converged, it restarts elsewhere with twice the population. Each branch has a separate search, in turn: a normal
+distribution cannot span two. Only ranks matter, so constraints enter as ranks: feasible designs come first, by
 objective, then the others by violation.
 
-This is the `cmaes` package itself, not Optuna's sampler around it: that ignores constraints and stores the state as a
-pickle with every trial. The same generations lead to the same state again, so nothing else need be stored.
+This uses the `cmaes` package directly, because Optuna's sampler ignores constraints and stores the state as a pickle
+with every trial. The same generations lead to the same state again, so nothing else needs to be stored.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from .population import Brood, Generation, evolve, generation_seed, generation_s
 from .registry import Method
 
 STEP = 0.3
-"""First standard deviation, of the unit box: the optimum is expected within about two of the centre."""
+"""Initial standard deviation in the unit box: the optimum is expected within about two of them from the centre."""
 _CONVERGED = 1e-10
-"""Extent of a generation, of the unit box, at which a climb ends."""
+"""Extent of a generation in the unit box at which a search ends."""
 _FLAT = 1e-14
-"""The same for its objectives, relative: below, ranks are rounding."""
-_RESTART = 1_000_000  # stream of random numbers, beyond those of any generation
+"""Relative extent of its objectives at which it ends: below this, ranks are rounding."""
+_RESTART = 1_000_000  # random stream beyond those of any generation
 
 
 def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -54,7 +54,7 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 class _Climb:
-    """The search of one branch: a distribution that learns the values of its points, with restarts."""
+    """The search on one branch: a distribution that learns from the values of its points, with restarts."""
 
     def __init__(self, index: int, dimension: int, size: int, seed: int) -> None:
         self.index, self.dimension, self.size, self.seed = index, dimension, size, seed
@@ -81,7 +81,7 @@ class _Climb:
         self.generations += 1
         u, values = generation.u[:, : self.dimension], generation.values[:, 0]
         excess = np.where(generation.violation <= FEASIBLE, 0.0, generation.violation)
-        if np.isinf(excess).all():  # nothing to rank by
+        if np.isinf(excess).all():  # there is nothing to rank
             self.begin()
             return
         ranks = np.empty(len(u))

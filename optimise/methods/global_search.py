@@ -1,4 +1,4 @@
-"""Global methods of scipy for one objective."""
+"""SciPy's global methods for one objective."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from .local import archive_optimum, by_slsqp
 from .registry import Method, budget
 from .scalar_objective import Form, Programme
 
-_POPULATION = 20  # of differential evolution, members an unknown
-_RECOMBINATION = 0.9  # high: such valleys are not along an axis
-_CONVERGED = 1e-12  # of the objective: spread of a population that ends it
+_POPULATION = 20  # members per unknown, in differential evolution
+_RECOMBINATION = 0.9  # high, because such valleys are not aligned with an axis
+_CONVERGED = 1e-12  # relative to the objective: spread at which a population has converged
 _REPORT_EVERY = 20  # generations between two entries of the history
-_FAR = 1e3  # violation where no linkage turns fully
+_FAR = 1e3  # violation where no linkage rotates fully
 _STREAM = 3500  # of the seed
-_SAMPLED = 256  # points an iteration of SHGO
+_SAMPLED = 256  # points per iteration of SHGO
 _ITERATIONS = 3
-_ROUGH = 5  # steps of SHGO's own descent, which knows no kinks; the epigraph form goes on
+_ROUGH = 5  # steps of SHGO's own descent, which cannot handle kinks; the epigraph form continues
 _BASINS = 12
 
 
 class _ExactEvaluation:
-    """Objective and violation of one branch for a solver that requests them in turn.
+    """Objective and violation on one branch for a solver that requests them in turn.
 
-    Exact: the error of a screened peak may exceed the remaining gain near the optimum.
+    Values are exact, because the error of a screened peak may exceed the remaining gain near the optimum.
     """
 
     def __init__(self, index: int, evaluator: Evaluator, improvements: Archive) -> None:
@@ -58,7 +58,7 @@ class _ExactEvaluation:
         return np.where(violation <= FEASIBLE, 0.0, violation)
 
     def _evaluate(self, u: Array) -> tuple[Array, Array]:
-        """Return objective and violation (n,) of points, infinite and far where no linkage rotates fully."""
+        """Return objective and violation (n,) of points; infinite and `_FAR` where no linkage rotates fully."""
         values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
         valid = np.flatnonzero(self.evaluator.valid(u))
         if len(valid):
@@ -76,10 +76,11 @@ class _ExactEvaluation:
 
 
 def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optimum of differential evolution, with a part of the budget for every branch.
+    """Return the optimum from differential evolution, with part of the budget for each branch.
 
-    Constraints follow the rule that a feasible design beats an infeasible one and a smaller violation a greater one (J.
-    Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without penalties.
+    Constraints follow the rule that a feasible design beats an infeasible one, and a smaller violation beats a greater
+    one (J. Lampinen, "A constraint handling approach for the differential evolution algorithm", CEC 2002), without
+    penalties.
     """
     archive, improvements = Archive.empty(1), Archive.empty(1)
     run.archive = improvements
@@ -92,13 +93,13 @@ def differential_evolution(problem: Problem, evaluators: list[Evaluator], run: R
 def _evolve_branch(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive, run: Run
 ) -> None:
-    """Put the optimum of one branch into the archive, and every improvement into `improvements`."""
+    """Add the optimum on one branch to the archive, and every improvement to `improvements`."""
     from scipy.optimize import NonlinearConstraint
     from scipy.optimize import differential_evolution as evolve
 
     evaluator = evaluators[index]
     k, count = evaluator.dimension, 0
-    members = 1 << (_POPULATION * k - 1).bit_length()  # scipy takes a power of two of Sobol points
+    members = 1 << (_POPULATION * k - 1).bit_length()  # SciPy generates Sobol points in powers of two
     generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
     run.rounds = len(run.round_reports) + 1 + generations // _REPORT_EVERY
     exact = _ExactEvaluation(index, evaluator, improvements)
@@ -112,7 +113,7 @@ def _evolve_branch(
         run.report_round("evolving", evaluators, archive)
         return False
 
-    minimised: Any = evolve  # its stubs know no function of many points
+    minimised: Any = evolve  # its stubs do not allow a function of many points
     optimum = minimised(
         lambda x: exact.objective(x.T),
         [(0.0, 1.0)] * k,
@@ -120,7 +121,7 @@ def _evolve_branch(
             lambda x: exact.violation(np.atleast_2d(x.T)).reshape(1, *x.shape[1:]), -np.inf, FEASIBLE
         ),
         maxiter=generations,
-        strategy="rand1bin",  # best1bin runs dry in valleys that lie along the kink of two peaks
+        strategy="rand1bin",  # best1bin loses diversity in valleys along the kink of two peaks
         recombination=_RECOMBINATION,
         popsize=_POPULATION,
         tol=_CONVERGED,
@@ -135,11 +136,11 @@ def _evolve_branch(
 
 
 def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the optima of the basins found by simplicial homology, with a part of the budget for every branch.
+    """Return the optima of the basins found by simplicial homology, with part of the budget for each branch.
 
     S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
-    Optim. 72, 2018. It tells basins from feasible Sobol points and descends into each; where a peak has a kink that
-    ends short of the optimum, so that the epigraph form (`scalar_objective`) goes on from there.
+    Optim. 72, 2018. It identifies basins from feasible Sobol points and descends into each; if a peak has a kink, the
+    descent ends short of the optimum, so the epigraph form (`scalar_objective`) continues from there.
     """
     archive, improvements = Archive.empty(1), Archive.empty(1)
     run.archive = improvements
@@ -153,7 +154,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 def _search_basins(
     problem: Problem, evaluators: list[Evaluator], index: int, archive: Archive, improvements: Archive
 ) -> None:
-    """Put the optima of the basins of one branch into the archive, and every improvement into `improvements`."""
+    """Add the optima of one branch's basins to the archive, and every improvement to `improvements`."""
     from scipy.optimize import shgo as homology
 
     evaluator = evaluators[index]

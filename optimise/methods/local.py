@@ -1,4 +1,4 @@
-"""Gradient methods of scipy for one objective, from many starts; and its local solvers on a scalar programme."""
+"""SciPy's gradient methods for one objective, from many starts; and its local solvers on a scalar programme."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ VIOLATION = 1e-6
 """Relative violation that a solver may leave: the delivery moves the design onto the constraints."""
 _STEPS = 100
 _AGAIN = 6
-_STAYS = 1e-8  # of the unit box: a run that ends this near to where it began
+_STAYS = 1e-8  # distance in the unit box within which a run ends where it started
 _BARRIER_STEPS = 100
 _ATTEMPTS = 3
-_MARGIN, _NEARER = 0.1, 0.3  # of the objectives' range: where the barrier begins, and how much nearer each time
-_INSIDE = 1e-6  # of the unit box: a barrier cannot begin on a bound
-_EXACT = 1e-12  # of the objective's range
+_MARGIN, _NEARER = 0.1, 0.3  # relative to the objectives' range: initial barrier margin, and its reduction factor
+_INSIDE = 1e-6  # distance in the unit box: a barrier cannot start on a bound
+_EXACT = 1e-12  # relative to the objective's range
 
 Local = Callable[[Programme, Array], Array | None]
 
 
 def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
-    """Return feasible samples of all branches; if these are few, also samples with violations of up to 16 %.
+    """Return feasible samples from all branches; if there are few, also samples with violations of up to 16 %.
 
     Solvers remove the violation. No sample meets the remaining equalities.
     """
@@ -62,7 +62,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
 def search_from_starts(
     problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int
 ) -> Archive:
-    """Return the local optima that a solver finds from `starts` starts, the best ones that lie apart."""
+    """Return the local optima that a solver finds from `starts` starts, which are the best distant samples."""
     sampled = samples(problem, evaluators)
     archive = Archive.empty(1)
     run.archive.add(sampled[sampled.is_feasible])
@@ -84,7 +84,7 @@ def search_from_starts(
 
 
 def is_budget_spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
-    """Whether the budget of evaluations is used up."""
+    """Whether the evaluation budget is used up."""
     return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
 
 
@@ -110,7 +110,7 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
     """Return the optimum near u (k,) by sequential least squares programming, None if it is not feasible.
 
     D. Kraft, "A software package for sequential quadratic programming", DFVLR-FB 88-28, 1988. It mistakes a short step
-    for an optimum. So it restarts where it ends, without the learnt curvature and with the pieces that are highest
+    for an optimum. So it restarts at its end point, without the learnt curvature and with the pieces that are highest
     there, until it no longer moves.
     """
     best = None
@@ -128,7 +128,7 @@ def by_slsqp(programme: Programme, u: Array) -> Array | None:
 def _slsqp_run(programme: Programme, u: Array) -> Array:
     from scipy.optimize import minimize
 
-    minimised: Any = minimize  # its stubs know no mixed arguments
+    minimised: Any = minimize  # its stubs do not allow mixed arguments
     constraints: list[dict[str, Any]] = [
         {"type": "ineq", "fun": lambda z: -programme.inequalities(z), "jac": lambda z: -programme.slopes(z)}
     ]
@@ -152,7 +152,7 @@ def by_trust_constr(programme: Programme, u: Array) -> Array | None:
 
     R. H. Byrd, M. E. Hribar and J. Nocedal, "An interior point algorithm for large-scale nonlinear programming", SIAM
     J. Optim. 9(4), 1999. A peak that appears or vanishes makes a slack jump, which may end it early: it then restarts,
-    nearer to the limits. It stays within the inequalities, unless u lies on one. It does not support equalities.
+    closer to the limits. It stays within the inequalities, unless u lies on one. It does not support equalities.
     """
     for attempt in range(_ATTEMPTS):
         end, converged = _interior_point_run(programme, u, _MARGIN * _NEARER**attempt)
@@ -175,7 +175,7 @@ def _interior_point_run(programme: Programme, u: Array, margin: float) -> tuple[
     limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), starts_inside)]
     no_curvature = np.zeros((len(begin), len(begin)))
     with warnings.catch_warnings():
-        # On the way rows may be dependent and slopes constant, which scipy copes with.
+        # Intermediate rows may be dependent and slopes constant, which SciPy can handle.
         warnings.simplefilter("ignore", UserWarning)
         solution = minimised(
             lambda z: programme.cost @ z,

@@ -5,12 +5,12 @@
     K. Deb, H. Jain, "An evolutionary many-objective optimization algorithm using reference-point-based nondominated
     sorting approach, part I", the same, 18(4), 2014
 
-Children come from simulated binary crossover and polynomial mutation. Constraints count by constrained domination:
-feasible designs come first, then smaller violations. Several branches (signs of the offset) are one categorical
-parameter: selection follows the front, while a share of the budget for each would be wasted on poor branches.
+Children are created by simulated binary crossover and polynomial mutation. Constraints enter by constrained domination:
+feasible designs come first, then smaller violations. Several branches (signs of the offset) become one categorical
+parameter: selection follows the front, whereas a fixed part of the budget per branch would be wasted on poor branches.
 
 Selection and crossover need only the last generation and its parents. So each generation is a new Optuna study in
-memory with these designs and a new sampler: the cost of a generation is constant, and it depends only on them.
+memory with these designs and a new sampler: its cost is constant, and it depends only on them.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from .population import Brood, Generation, evolve, generation_seed, generation_s
 from .registry import Method
 
 POPULATION = 100
-"""Designs of a generation where the job sets no number of samples."""
+"""Number of designs in a generation if the job sets no number of samples."""
 
 
 def nsga2(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -61,7 +61,7 @@ def population_size(problem: Problem) -> int:
 
 
 def divisions(population: int, objectives: int) -> int:
-    """Return the number of divisions of the axes with at most as many reference directions as designs.
+    """Return the number of axis divisions that gives at most as many reference directions as designs.
 
     p divisions give (p + m - 1 over m - 1) directions (Das and Dennis, 1998).
     """
@@ -85,7 +85,7 @@ def _search_genetic(problem: Problem, evaluators: list[Evaluator], run: Run, sam
         if past:
             history = past[0].join(*past[1:])
             pool = np.concatenate([past[-1].parents, np.arange(len(history))[-len(past[-1]) :]])
-            # To the sampler all of them are one generation: it selects from both parts alike.
+            # The sampler treats them all as one generation, and selects from both parts alike.
             study.add_trials(completed_trials(axes, history[pool], {genetic._get_generation_key(): 0}))
         branch, u = ask_points(study, axes, size, run.checkpoints.poll)
         survivors = [trial.number for trial in genetic.get_parent_population(study, 1)] if past else []

@@ -1,4 +1,7 @@
-"""Between points of the unit box and Optuna's trials. Optuna proposes; evaluation, storage and resumption are ours."""
+"""Conversion between points in the unit box and Optuna's trials.
+
+Optuna proposes points; this package evaluates, stores and resumes.
+"""
 
 from __future__ import annotations
 
@@ -23,12 +26,12 @@ if TYPE_CHECKING:
 
     Space = dict[str, BaseDistribution]
 
-_BRANCH = "sheet"  # of the categorical parameter; samplers draw in the order of such names
+_BRANCH = "sheet"  # name of the categorical parameter; samplers draw parameters in alphabetical order
 
 
 @contextmanager
 def silence_optuna() -> Iterator[None]:
-    """Silence Optuna's reports of studies and its warnings about experimental operators within the context."""
+    """Silence Optuna's study messages and its warnings about experimental operators within the context."""
     import optuna
 
     level = optuna.logging.get_verbosity()
@@ -53,7 +56,7 @@ def search_space(evaluators: list[Evaluator]) -> Space:
 
 
 def new_study(problem: Problem, sampler: BaseSampler) -> Study:
-    """Return a study in memory with a problem's objectives, without trials."""
+    """Return a study in memory with a problem's objectives and no trials."""
     import optuna
 
     return optuna.create_study(directions=["minimize"] * len(problem.objectives), sampler=sampler)
@@ -62,9 +65,9 @@ def new_study(problem: Problem, sampler: BaseSampler) -> Study:
 def completed_trials(space: Space, points: Generation, mark: dict[str, Any]) -> list[FrozenTrial]:
     """Return evaluated points as completed trials, each with its constraint.
 
-    A trial without a constraint would count as feasible, and NaN or infinite objectives would be taken at face value.
-    So every trial has its violation, and only infeasible ones have substitute objectives, which no selection compares.
-    These are infinite, unless all are: NSGA-III scales by the finite ones.
+    Optuna would count a trial without a constraint as feasible, and accept NaN or infinite objectives as they are. So
+    every trial has its violation, and only infeasible ones have substitute objectives, which no selection compares. The
+    substitutes are infinite unless all objectives are: NSGA-III scales by the finite ones.
     """
     from optuna.trial import create_trial
 

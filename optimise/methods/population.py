@@ -1,7 +1,8 @@
 """Evolution by generations: breed, evaluate as one batch, store.
 
 A method only defines how to breed a brood from the previous generations. Every brood has its own random numbers, seeded
-by the run's seed and its number, and depends only on these generations: a recorded brood need not be bred again.
+by the run's seed and the brood's number, and depends only on these generations: a recorded brood need not be bred
+again.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ from .registry import budget
 Rows = IntArray
 
 BAND = 0.01
-"""Relative violation that counts as none where an equality is left, which no sample meets; the delivery removes it."""
+"""Relative violation that counts as none if an equality remains, which no sample meets; the delivery removes it."""
 
 
 @dataclass(frozen=True)
 class Brood:
-    """Points to be evaluated together.
+    """Points to evaluate together.
 
-    branch: (n,), index of each point's branch. u: (n, k), points of the unit box; columns beyond a branch's dimension
-    are ignored. parents: (p,), rows of the parents, counted over the points of all generations; empty if a method has
+    branch: (n,), index of each point's branch. u: (n, k), points in the unit box; columns beyond a branch's dimension
+    are ignored. parents: (p,), rows of the parents, counted over the points of all generations; empty if the method has
     none.
     """
 
@@ -59,7 +60,7 @@ class Generation(Table):
 
 
 def generation_seed(seed: int, generation: int) -> int:
-    """Return the seed of one generation, independent of all others, so that a run may resume at any."""
+    """Return the seed of one generation, independent of all others, so that a run may resume at any generation."""
     return int(np.random.SeedSequence([seed, generation]).generate_state(1)[0])
 
 
@@ -69,11 +70,11 @@ def generation_size(problem: Problem, usual: int) -> int:
 
 
 Breed = Callable[[Sequence[Generation]], Brood]
-"""How a method finds its next points: the brood that follows these generations, which depends on nothing but them."""
+"""How a method finds its next points: a function from the previous generations, and nothing else, to a brood."""
 
 
 def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed, *, size: int) -> Archive:
-    """Return the archive of the non-dominated feasible designs of all generations that the budget allows.
+    """Return the archive of non-dominated feasible designs from all generations that the budget allows.
 
     size: size of a generation, for progress reports.
     """
@@ -102,13 +103,13 @@ def _breed_recorded(evaluator: Evaluator, breed: Breed, past: list[Generation]) 
 
 
 _Evaluations = dict[tuple[int, bytes], tuple[Array, float]]
-"""Objectives and violation of every point that was evaluated, by branch and coordinates: none is evaluated twice."""
+"""Objectives and violation of every evaluated point, by branch and coordinates, so that none is evaluated twice."""
 
 
 def _evaluate_brood(
     evaluators: list[Evaluator], brood: Brood, archive: Archive, evaluations: _Evaluations
 ) -> Generation:
-    """Return the generation of a brood and archive its feasible designs; a branch's new points are one batch."""
+    """Return the generation from a brood and archive its feasible designs; each branch's new points form one batch."""
     points = zip(brood.branch.tolist(), brood.u + 0.0, strict=True)  # no negative zeros
     keys = [(index, point[: evaluators[index].dimension].tobytes()) for index, point in points]
     fresh = {key: row for row, key in enumerate(keys) if key not in evaluations}
@@ -128,7 +129,7 @@ def _evaluate_brood(
 
 
 def screen_points(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
-    """Return objectives (n, m) and violation beyond a band (n,) of points.
+    """Return objectives (n, m) and violation beyond a band (n,) for points.
 
     Infeasible points have NaN objectives, and points with a non-finite objective count as infinitely violated.
     """

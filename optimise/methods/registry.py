@@ -1,7 +1,7 @@
 """Search methods by name, and checks that a method can solve a problem.
 
-Each module of this package declares its own methods; `methods` finds them. Packages that a method uses are imported
-inside functions, so that reading the facts of a method costs next to nothing.
+Each module of this package declares its own methods; `methods` finds them. packages that a method uses are imported
+inside functions, so that reading a method's facts is cheap.
 """
 
 from __future__ import annotations
@@ -22,14 +22,15 @@ if TYPE_CHECKING:
 
 Family = Literal["default", "gradient", "global", "scalarisation", "evolutionary", "model-based", "sampling"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
-"""In the order in which lists name methods; within a family modules follow each other by name, as do lines in one."""
+"""Order in which lists name the methods; within a family, modules are in alphabetical order and methods in module
+order."""
 
 
 class Search(Protocol):
-    """The search of a method."""
+    """The search function of a method."""
 
     def __call__(self, problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-        """Return the designs found: feasible ones, or ones near enough for the delivery to move onto the limits.
+        """Return the designs found: feasible, or close enough for the delivery to move them onto the limits.
 
         evaluators: evaluators of the branches with free unknowns, at least one. Costly steps are recorded, so that a
         search can stop within a moment and resume.
@@ -42,9 +43,9 @@ class Method:
     """A method that a job can select.
 
     name: name in job files. title, help: a few words, and one sentence on how it searches. objectives: supported
-    numbers of objectives. budget: default number of evaluations; None for a method that ends by itself and takes no
+    numbers of objectives. budget: default number of evaluations; None for a method that ends by itself and has no
     budget. uses: packages that compute, besides NumPy. gradients: whether it needs them. equalities: whether it
-    supports one that cannot be eliminated. polishes: whether designs are polished to stationarity; otherwise they are
+    supports those that cannot be eliminated. polishes: whether designs are polished to stationarity; otherwise they are
     delivered as found, so that methods remain independent checks of one another.
     """
 
@@ -61,13 +62,13 @@ class Method:
     polishes: bool = False
 
     def takes(self, count: int) -> bool:
-        """Whether the method can take this many objectives."""
+        """Whether the method supports this number of objectives."""
         return self.objectives == "any" or (self.objectives == "one") == (count == 1)
 
 
 @cache
 def methods() -> dict[str, Method]:
-    """Return all methods by name: family by family, see `FAMILIES`."""
+    """Return all methods by name, family by family; see `FAMILIES`."""
     package = import_module(__package__)
     modules = sorted(module.name for module in pkgutil.walk_packages(package.__path__, f"{__package__}."))
     declared = [value for name in modules for value in vars(import_module(name)).values() if isinstance(value, Method)]
@@ -87,7 +88,7 @@ def method_of(problem: Problem) -> Method:
 
 
 def budget(problem: Problem) -> int:
-    """Return the evaluation budget of the problem's method. Raises `InputError` if it takes no budget."""
+    """Return the evaluation budget of the problem's method. Raises `InputError` if it has no budget."""
     default = method_of(problem).budget
     if default is None:
         raise InputError(f"the method {problem.settings.method} has no budget of evaluations; name another method")
@@ -95,7 +96,7 @@ def budget(problem: Problem) -> int:
 
 
 def require_fit(problem: Problem) -> None:
-    """Raise `InputError` if the method cannot take its number of objectives, or takes no budget but has one."""
+    """Raise `InputError` for an unsupported number of objectives, or for a budget that the method does not use."""
     method, count = method_of(problem), len(problem.objectives)
     evaluations = problem.settings.evaluations
     if evaluations is not None and method.budget is None:
@@ -125,7 +126,7 @@ def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
 
 
 def require_gradients(problem: Problem, caller: str | None = None) -> None:
-    """Raise `InputError` if the problem's method needs a gradient that a quantity does not have.
+    """Raise `InputError` if the problem's method needs a gradient and a quantity has none.
 
     caller: subject of the message in place of the method.
     """

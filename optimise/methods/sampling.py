@@ -1,4 +1,4 @@
-"""Random and Sobol points: the baseline for every other method."""
+"""Random and Sobol points: the baseline for all other methods."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from .registry import Method
 Draw = Callable[[int, int, int], Array]
 
 BATCH = 1024
-"""Designs of a generation where the job sets no number of samples: Sobol points are even in powers of two."""
+"""Number of designs in a generation if the job sets no number of samples: Sobol points are evenly spread in powers of
+two."""
 
 
 def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs found by uniformly random points, spread over the branches by chance."""
+    """Return the designs found by uniformly random points, distributed over the branches at random."""
 
     def draw(generation: int, size: int, dimension: int) -> Array:
         return np.random.default_rng(generation_seed(problem.settings.seed, generation)).random((size, dimension))
@@ -30,12 +31,12 @@ def random(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 
 
 def sobol(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs found by one scrambled Sobol sequence; one coordinate chooses among several branches."""
+    """Return the designs found by one scrambled Sobol sequence; one coordinate selects among several branches."""
     from scipy.stats import qmc
 
     def draw(generation: int, size: int, dimension: int) -> Array:
         sequence = qmc.Sobol(dimension, rng=np.random.default_rng(problem.settings.seed))
-        if not generation:  # as many as the next power of two: scipy warns of any other number
+        if not generation:  # rounded up to a power of two, because SciPy warns otherwise
             return np.asarray(sequence.random_base2((size - 1).bit_length())[:size])
         sequence.fast_forward(generation * size)
         return np.asarray(sequence.random(size))

@@ -1,16 +1,16 @@
-"""One objective composed from several, and its smooth programme for the solvers of scipy.
+"""One objective composed from several, and its smooth programme for SciPy's solvers.
 
-With objectives f_i scaled by their range over the front, ideal at zero, a `Form` stands for
+With objectives f_i scaled by their range over the front and with the ideal at zero, a `Form` stands for
 
     min over u   max_i w_i (f_i(u) - z_i) + rho sum_i f_i(u)      subject to   f_i(u) <= c_i   and the constraints.
 
-Each f_i is the greatest of smooth pieces, so that kinks are no problem to a smooth solver once they are written as
+Each f_i is the greatest of smooth pieces, so kinks are no problem for a smooth solver in the form
 
     min over u, s, t   t + rho sum_i s_i   subject to   p(u) <= s_i for each piece p of objective i,
                                                         w_i (s_i - z_i) <= t where w_i > 0,   s_i <= c_i,
 
-the epigraph form (Boyd and Vandenberghe, "Convex Optimization", 2004, ch. 4.1.3). A little of the sum, rho > 0, keeps
-designs out that are only weakly optimal (Miettinen, "Nonlinear Multiobjective Optimization", 1999, ch. 3.4.5).
+the epigraph form (Boyd and Vandenberghe, "Convex Optimization", 2004, ch. 4.1.3). A small multiple of the sum, rho > 0,
+excludes designs that are only weakly optimal (Miettinen, "Nonlinear Multiobjective Optimization", 1999, ch. 3.4.5).
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from ..search.evaluation import Evaluator
 from ..search.pieces import Rows, alone, greatest
 
 SUM = 1e-4
-"""rho: a design that loses less than 1e-4 of a range in one objective for a whole range of another is kept out."""
-_ABSENT = -1.0  # value of a row that a design does not have: fulfilled, without slope
-_OUT = 10.0  # violation of a point where no linkage turns fully, so that a line search turns back
-_CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points nearer than this keep their place for sure
+"""rho: excludes a design that loses less than 1e-4 of a range in one objective for a whole range of another."""
+_ABSENT = -1.0  # value of a row that a design lacks: fulfilled, without slope
+_OUT = 10.0  # violation where no linkage rotates fully, so that a line search turns back
+_CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points closer than this keep their order
 
 
 @dataclass(frozen=True)
@@ -41,13 +41,13 @@ class Form:
 
     @classmethod
     def single(cls, objectives: int, column: int, *, rho: float = 0.0) -> Form:
-        """Return the form that is one of the objectives."""
+        """Return the form that equals one of the objectives."""
         weights = np.zeros(objectives)
         weights[column] = 1.0
         return cls(weights, np.zeros(objectives), np.full(objectives, np.inf), rho)
 
     def value(self, scaled: Array) -> Array:
-        """Return the form's value (n,) at objectives (n, m), scaled; infinite above a ceiling."""
+        """Return the form's value (n,) for scaled objectives (n, m); infinite above a ceiling."""
         is_weighted = self.weights > 0.0
         reached = (self.weights[is_weighted] * (scaled[:, is_weighted] - self.reference[is_weighted])).max(axis=1)
         is_allowed = (scaled <= self.ceilings).all(axis=1)
@@ -55,7 +55,9 @@ class Form:
 
 
 class Programme:
-    """A form on one branch, by z = (u, s, t): (k + m + 1,). Remembers its last point, which solvers request repeatedly.
+    """A form on one branch as a function of z = (u, s, t): (k + m + 1,).
+
+    It stores its last point, because solvers request it repeatedly.
 
     ideal, span: (m,), scaling of the objectives.
     """
@@ -81,7 +83,7 @@ class Programme:
     def begin(self, u: Array) -> Array:
         """Return z at a point u (k,) where the evaluator is valid, with the lowest possible s and t.
 
-        A piece that an equality holds is the highest one here; another one may be highest after a run of the solver.
+        An equality holds the piece that is highest here; another one may be highest after a run of the solver.
         """
         self._u = None
         self._go(u)
@@ -141,10 +143,10 @@ class Programme:
             return
         first = self._u is None
         self._u = np.array(u)
-        clipped = np.clip(self._u, 0.0, 1.0)[None]  # solvers step out of the box by rounding
+        clipped = np.clip(self._u, 0.0, 1.0)[None]  # solvers leave the box by rounding errors
         self._valid = bool(self.evaluator.valid(clipped)[0])
         if not self._valid:
-            assert not first  # solvers begin at valid points
+            assert not first  # solvers start at valid points
             return
         goals, limits = (alone(rows, 0) for rows in self.evaluator.exact(clipped))
         goals = Rows(
@@ -164,7 +166,7 @@ class Programme:
 
 
 def _equal_rows(evaluator: Evaluator, limits: Rows) -> IntArray:
-    """Return the constraint rows (e, 2) of each equality that are to vanish: its highest piece, and the opposite row.
+    """Return two constraint rows of each equality (e, 2), of which one must vanish: highest piece, opposite row.
 
     Every piece has a row on one side; only the highest has one on the other side too. Its two rows are equivalent: with
     both, a solver has dependent constraints and ends early. The rows of the other pieces stay inequalities.
@@ -173,7 +175,7 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> IntArray:
     for owner, constraint in enumerate(evaluator.constraints):
         if constraint.equality:
             rows = np.flatnonzero(limits.owner == owner)
-            # The last row is the single one, or of the least of pieces the first.
+            # The last row is the single one; for the least of pieces, the first.
             pieces, single = (rows[:-1], rows[-1])
             if limits.values[pieces].max() != -limits.values[single]:
                 pieces, single = rows[1:], rows[0]
@@ -196,7 +198,7 @@ def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple
 
 
 def _align_pieces(rows: Rows, before: Rows, groups: list[IntArray]) -> Rows:
-    """Return the rows in the former order of the same pieces; peaks are sorted by height and swap in ties."""
+    """Return the rows with their pieces in the former order; peaks are sorted by height and swap when tied."""
     order = np.arange(len(rows.owner))
     for columns in groups:
         distances = np.abs(rows.labels[columns][:, None] - before.labels[columns])
@@ -207,7 +209,7 @@ def _align_pieces(rows: Rows, before: Rows, groups: list[IntArray]) -> Rows:
 
 
 def _match_labels(distances: Array) -> IntArray:
-    """Return the row for each place."""
+    """Return the row for each position."""
     from scipy.optimize import linear_sum_assignment
 
     if (np.diag(distances) < _CLOSE).all():

@@ -1,9 +1,9 @@
 """Fronts by scalarisation: many problems with one objective each, whose optima are Pareto-optimal.
 
-All begin with the optimum of each objective alone. These form the payoff table, whose ranges scale the objectives. Each
-further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The first round aims
-evenly. As fronts with more objectives than free unknowns are thin, many of its aims lead to the same designs; later
-rounds aim at the gaps between optima.
+All methods begin with the optimum of each objective alone. These optima form the payoff table, whose ranges scale the
+objectives. Each further problem starts from the sample or the optimum that is best for it, and is solved by SLSQP. The
+first round distributes its aims evenly. Fronts with more objectives than free unknowns are thin, so many aims lead to
+the same designs; later rounds aim at the gaps between optima.
 """
 
 from __future__ import annotations
@@ -27,28 +27,28 @@ from .local import archive_optimum, by_slsqp, is_budget_spent, samples
 from .registry import Method
 from .scalar_objective import SUM, Form, Programme
 
-_FIRST = 0.5  # problems of the first round a delivered design: many have the same optimum
-_MORE = 3.0  # optima wanted a delivered design: the best are chosen
-_ROUNDS = 6  # of aiming at gaps
-_POOL = 2000  # samples that gaps are looked for with
-_STARTS = 4  # of each objective alone
-_WORSE = 0.1  # of the ranges: a branch whose best start is worse by less is tried too
-_UTOPIAN = 1e-3  # of the ranges: how far below the ideal Chebyshev's reference lies
-_SLIVER = 1e-3  # least share of an objective in a direction, so that its weight stays finite
-_ROUND_SIZE = 16  # problems of a round
-_SLACK = 0.005  # of the ranges: samples above a ceiling by less may lead below it
-_CELLS = 20_000  # of the grid of ceilings at most
-_WIDER = 1.5  # how far beyond the triangle
+_FIRST = 0.5  # problems in the first round per delivered design, because many share an optimum
+_MORE = 3.0  # optima per delivered design, from which the best are selected
+_ROUNDS = 6  # rounds that aim at gaps
+_POOL = 2000  # samples to search for gaps
+_STARTS = 4  # starts for each objective alone
+_WORSE = 0.1  # relative to the ranges: a branch whose best start is worse by less is also tried
+_UTOPIAN = 1e-3  # relative to the ranges: distance of Chebyshev's reference below the ideal
+_SLIVER = 1e-3  # least weight of an objective in a direction, so that its reciprocal stays finite
+_ROUND_SIZE = 16  # problems per round
+_SLACK = 0.005  # relative to the ranges: samples above a ceiling by less may lead below it
+_CELLS = 20_000  # maximum number of cells in the grid of ceilings
+_WIDER = 1.5  # factor by which points extend beyond the triangle
 
 
 Aims = tuple[list[Form], Callable[[Array], Form]]
-"""What a method solves first, and the form by which it aims at scaled objectives (m,) in a gap."""
+"""The forms that a method solves first, and the form that aims at scaled objectives (m,) in a gap."""
 
 
 def epsilon_constraint(front: _Front) -> Aims:
-    """Return the aims of minimising the first objective with ceilings on all others, on a grid of the payoff table.
+    """Return aims that minimise the first objective with ceilings on all others, on a grid over the payoff table.
 
-    Ceilings far from every sample and optimum are left out; the grid is refined until enough others remain. With the
+    Ceilings far from every sample and optimum are omitted; the grid is refined until enough others remain. With the
     sum, see `scalar_objective`, this is the augmented epsilon-constraint method (G. Mavrotas, "Effective implementation
     of the epsilon-constraint method in multi-objective mathematical programming problems", Appl. Math. Comput. 213(2),
     2009).
@@ -58,7 +58,7 @@ def epsilon_constraint(front: _Front) -> Aims:
     parts = 2
     while len(ceilings) < _aims_per_round(front.problem) and parts ** (m - 1) <= _CELLS:
         cells = grid(np.zeros(m - 1), np.ones(m - 1), parts)
-        # Only what nothing dominates decides which ceilings can be kept.
+        # Only non-dominated designs decide which ceilings can be met.
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
         ceilings = cells[[bool((edge <= row + _SLACK).all(axis=1).any()) for row in cells]]
         parts += max(1, parts // 4)
@@ -68,7 +68,7 @@ def epsilon_constraint(front: _Front) -> Aims:
 
 
 def chebyshev(front: _Front) -> Aims:
-    """Return the aims of the augmented weighted Chebyshev norm from a utopian point, in evenly spread directions.
+    """Return aims by the augmented weighted Chebyshev norm from a utopian point, in evenly spread directions.
 
     R. E. Steuer and E.-U. Choo, "An interactive weighted Tchebycheff procedure for multiple objective programming",
     Math. Program. 26(3), 1983.
@@ -84,14 +84,14 @@ def chebyshev(front: _Front) -> Aims:
 
 
 def nbi(front: _Front) -> Aims:
-    """Return the aims of normal-boundary intersection.
+    """Return aims by normal-boundary intersection.
 
     From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
-    go as far as they can along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex`). As there is a design
-    that is better than the point reached where the front is not met, F <= Phi beta + t n is asked rather than equality
-    (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result is
-    Pareto-optimal, also on a front that is folded. Of three objectives and more the plane's triangle does not lie over
-    the whole front: points outside of it are used as well.
+    move as far as possible along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex`). Where the front is
+    not met, some design is better than the point reached, so F <= Phi beta + t n is required rather than equality (A.
+    Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result is
+    Pareto-optimal, even on a folded front. With three or more objectives, the plane's triangle does not cover the whole
+    front, so points outside it are used as well.
     """
     m = len(front.payoff)
     payoff = front.scaled(front.payoff)
@@ -129,7 +129,7 @@ class _Front:
         return np.asarray((values - self.ideal) / self.span)
 
     def optimum(self, form: Form, index: int, u: Array) -> Array | None:
-        """Keep the design that is the form's optimum near a point; return its objectives (m,), SI, None without one."""
+        """Archive the optimum of the form near a point; return its objectives (m,), SI, or None if there is none."""
         programme = Programme(self.evaluators[index], form, self.ideal, self.span)
         return archive_optimum(by_slsqp, programme, u, self.archive, index)
 
@@ -150,11 +150,11 @@ class _Front:
         return self.archive
 
     def _gaps(self) -> Array:
-        """Return scaled objectives (n, m) in gaps between optima, the farthest from all first; empty if there are none.
+        """Return scaled objectives (n, m) in gaps between optima, farthest from all first; empty if there are none.
 
-        They are non-dominated samples and the middles between neighbouring optima: those with no other optimum in the
+        They are non-dominated samples, and midpoints between neighbouring optima: those with no other optimum in the
         ball between them (K. R. Gabriel and R. R. Sokal, "A new statistical approach to geographic variation analysis",
-        Syst. Zool. 18(3), 1969). None is aimed at twice: what it leads to may lie elsewhere.
+        Syst. Zool. 18(3), 1969). No point is aimed at twice, because its optimum may lie elsewhere.
         """
         from scipy.spatial import distance_matrix
 
@@ -174,7 +174,7 @@ class _Front:
         return np.asarray(aims[picked])
 
     def _starts(self, form: Form) -> list[tuple[int, Array]]:
-        """Return the best point of every branch, unless it is clearly worse than that of another."""
+        """Return the best point on every branch, unless it is clearly worse than that on another."""
         points = self.archive.join(self.samples)
         scaled = self.scaled(points.values)
         excess = np.maximum(scaled - form.ceilings, 0.0).max(axis=1)
@@ -189,7 +189,7 @@ class _Front:
 
 
 def simplex(objectives: int, least: int) -> Array:
-    """Return at least `least` points (n, m) of the unit simplex, all sums of m shares of 1 / p.
+    """Return at least `least` points (n, m) of the unit simplex: all sums of m multiples of 1 / p.
 
     I. Das and J. E. Dennis, "Normal-boundary intersection: a new method for generating the Pareto surface in nonlinear
     multicriteria optimization problems", SIAM J. Optim. 8(3), 1998, sec. 4.
@@ -210,7 +210,7 @@ def grid(lower: Array, upper: Array, parts: int) -> Array:
 
 
 def _gabriel_middles(points: Array) -> Array:
-    """Return the middles (n, m) of the edges of the Gabriel graph of points."""
+    """Return the midpoints (n, m) of the edges in the Gabriel graph of points."""
     from scipy.spatial import distance_matrix
 
     first, second = np.triu_indices(len(points), 1)
@@ -223,13 +223,13 @@ def _gabriel_middles(points: Array) -> Array:
 
 
 def _aims_per_round(problem: Problem) -> int:
-    """Return the number of evenly aimed problems. With two objectives the front is a line: all optima differ."""
+    """Return the number of evenly distributed aims. With two objectives the front is a line, and all optima differ."""
     share = _MORE if len(problem.objectives) == 2 else _FIRST
     return max(1, int(share * problem.settings.designs))
 
 
 def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
-    """Return samples and payoff table; None if no starts were found."""
+    """Return samples and payoff table; None if there are no starts."""
     m = len(problem.objectives)
     sampled = samples(problem, evaluators)
     front = Archive.empty(m)

@@ -1,10 +1,10 @@
-"""TPE by Optuna: proposes points that are probably good, by densities fitted to the evaluated designs.
+"""TPE by Optuna: proposes promising points from densities fitted to the evaluated designs.
 
     J. Bergstra, R. Bardenet, Y. Bengio, B. Kegl, "Algorithms for hyper-parameter optimization", NIPS 2011
     Y. Ozaki et al., "Multiobjective tree-structured Parzen estimator", JAIR 73, 2022
 
-Intended for slow models: a proposal costs 20 to 100 ms, growing with the number of designs. The densities are over all
-coordinates together, since feasible regions lie obliquely in the box.
+Intended for slow models: a proposal takes 20 to 100 ms, growing with the number of designs. The densities are over all
+coordinates together, because feasible regions lie obliquely in the box.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .population import Brood, Generation, evolve, generation_seed, generation_s
 from .registry import Method
 
 BATCH = 20
-"""Designs proposed before any of them is evaluated, where the job sets no number of samples; those under way count as
-poor ones (constant liar), so that a batch spreads."""
+"""Designs proposed before any of them is evaluated, if the job sets no number of samples; pending ones count as poor
+(constant liar), so that a batch spreads."""
 
 
 def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
-    """Return the designs that the tree-structured Parzen estimator finds; its densities are fitted anew every time."""
+    """Return the designs that the tree-structured Parzen estimator finds; its densities are refitted every time."""
     from optuna.samplers import TPESampler
 
     size, axes = generation_size(problem, BATCH), search_space(evaluators)

@@ -1,6 +1,6 @@
-"""The default method (sampling, zooming, polish by SQP), and the delivery of the designs from any method.
+"""The default method (sampling, zooming, polish by SQP), and the delivery of designs from any method.
 
-The delivery polishes candidates, fills the gaps that they leave and chooses among them.
+The delivery polishes candidates, fills the gaps between them and selects among them.
 """
 
 from __future__ import annotations
@@ -36,25 +36,26 @@ from ...search.search import (
 from ..registry import Method
 
 ROUNDS = 4
-"""Rounds of the polish: the later ones fill gaps that the first one leaves."""
+"""Rounds of the polish: later ones fill gaps that the first one leaves."""
 BATCH = 256
-"""Designs polished together: enough for every worker, yet not too many to lose when a process is killed."""
-_POOL = 2000  # greedy choice among more would take longer than it gains
-_FEWEST = 16  # designs polished, however few are asked for: more of them reach the best
-_STARTS = 24  # for the best value of a single objective
-_EXTREMES = 6  # for the best value of one objective among several
-_ONE = 1e-6  # of the unit box: optima nearer than this are one
-_WIDTH = 0.02  # of the unit box: spread of fresh samples around polished designs
-_FILLING = 2000  # designs of the archive that gaps are filled from
-_CLEAR = 1e-6  # of the objectives' range: a domination that is more than rounding
-_GAIN = 1e-3  # of the same: a gain that is worth a loss of `_CLEAR`, for example by another choice for the same lengths
-_NEIGHBOURS = 2  # an objective, between which gaps are looked for
+"""Designs polished together: enough for every worker, but few enough to lose when a process is killed."""
+_POOL = 2000  # greedy selection among more would cost more time than it saves
+_FEWEST = 16  # minimum number of designs to polish, however few are requested, to reach the best ones
+_STARTS = 24  # descents for the best value of a single objective
+_EXTREMES = 6  # descents for the best value of one objective among several
+_ONE = 1e-6  # distance in the unit box within which optima are the same
+_WIDTH = 0.02  # spread, in the unit box, of new samples around polished designs
+_FILLING = 2000  # designs of the archive from which gaps are filled
+_CLEAR = 1e-6  # relative to the objectives' range: a smaller domination is rounding
+# Relative to the objectives' range: a gain worth a loss of `_CLEAR`, e.g. from another choice for the same lengths.
+_GAIN = 1e-3
+_NEIGHBOURS = 2  # neighbours per objective, between which gaps are sought
 
 
 def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront | None:
     """Return the front that a method finds, None if nothing is feasible.
 
-    Combinations without free unknowns are enumerated; the method searches the rest.
+    Combinations without free unknowns are enumerated; the method searches the others.
     """
     enumerate_branches(problem, evaluators, run)
     free = searched_evaluators(evaluators)
@@ -90,9 +91,9 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
 
 
 def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
-    """Return the front from the designs of an archive without polish, only moved onto the constraints.
+    """Return the front from an archive's designs without polish, only moved onto the constraints.
 
-    None if no design could be moved there. Designs that already meet the constraints stay unchanged.
+    None if no design could be moved onto them. Designs that already meet the constraints stay unchanged.
     """
     candidates = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
@@ -103,7 +104,7 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
 
 
 def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCandidates:
-    """Return the enumerated designs, to be joined by those of the archive; the run has them too."""
+    """Return the run's enumerated candidates, to which the archive's designs will be added."""
     values = np.concatenate([archive.values, run.candidates.values])
     if len(problem.objectives) > 1:
         values = values[nondominated(values)]
@@ -112,7 +113,7 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
 
 
 def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
-    """Add candidates unchanged, except that those that violate constraints are moved onto them."""
+    """Add candidates unchanged, except those that violate constraints, which are moved onto them."""
     for index, u in chosen.by_branch(evaluators):
         valid = u[evaluators[index].valid(u)]
         candidates.add(index, projected(evaluators[index], valid, candidates.span))
@@ -123,7 +124,7 @@ def _candidate_count(problem: Problem) -> int:
 
 
 def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run: Run) -> IntArray:
-    """Return the rows of designs to polish for the front; a recorded step."""
+    """Return the rows of the designs to polish for the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
         rows = distinct(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
@@ -139,9 +140,9 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
 def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
     """Yield the extreme designs of the front by branch: best in one objective, then in the others.
 
-    Each starts from several designs that lead in the objective, and is improved in it alone, then in all with that one
-    held firmly. If it still loses visibly, the best in the objective alone is an end too. Held less firmly, it would
-    move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
+    For each, several designs that lead in the objective are improved in it alone, then in all objectives with this one
+    held firmly. If the result still loses visibly, the best in the objective alone is an end too. Held less firmly, it
+    would move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
@@ -155,15 +156,14 @@ def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -
         best_in = np.concatenate([np.full(len(polished_batch), column) for column, polished_batch in batches])
         firm = polished(evaluators[index], alone.u, span, best_in=best_in)
         best_values = np.arange(len(alone)), best_in
-        lost = (
-            firm.values[best_values] > alone.values[best_values] + SAME
-        )  # no difference: both are infinite without a least value
+        # No difference counts if both are infinite because there is no least value.
+        lost = firm.values[best_values] > alone.values[best_values] + SAME
         unrestricted = polished(evaluators[index], alone.u, span)
         yield index, firm.join(alone[lost | (firm.violation > FEASIBLE)], unrestricted)
 
 
 def _distinct_points(u: Array) -> IntArray:
-    """Return the rows of points (n, k) that differ from those before."""
+    """Return the rows of points (n, k) that differ from earlier ones."""
     is_distinct = np.abs(u[:, None] - u).max(axis=2, initial=0.0) > _ONE
     return np.flatnonzero((is_distinct | np.triu(np.ones_like(is_distinct))).all(axis=1))
 
@@ -178,8 +178,8 @@ def challengers(
 ) -> list[tuple[int, Array]]:
     """Return points by branch for further polish; none if the front is good and full enough.
 
-    First those that dominate a polished design. Then, if candidates are too few, those that no polished design
-    dominates, and midpoints between neighbours. report: called many times a second.
+    Points that dominate a polished design come first. If candidates are too few, points that no polished design
+    dominates follow, and midpoints between neighbours. report: called many times a second.
     """
     best = candidates[candidates.best(report)]
     front = best.values / best.span
@@ -203,7 +203,7 @@ def challengers(
 def _screen_fresh_points(
     problem: Problem, evaluators: list[Evaluator], archive: Archive, best: FrontCandidates, attempt: int
 ) -> None:
-    """Screen points everywhere, the polished designs, points around them, and all these on other branches."""
+    """Screen new points everywhere, polished designs, points around them, and all these on other branches."""
     seed, k = problem.settings.seed, len(evaluators)
     random = generator(seed, 2000, attempt)
     everywhere = samples_per_branch(problem.settings.samples or FIRST, evaluators)
@@ -220,14 +220,14 @@ def _screen_fresh_points(
 
 
 def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
-    """Return which screened designs dominate one of the front, and which are dominated by none of it."""
+    """Return which screened designs dominate a design of the front, and which are not dominated by any."""
     undominated = np.zeros(len(front) + len(screened), dtype=bool)
     undominated[nondominated(np.concatenate([front, screened]))] = True
     return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), undominated[len(front) :]
 
 
 def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int, report: ReportProgress) -> IntArray:
-    """Return at most `count` of some rows: those that add most to the hypervolume of the front."""
+    """Return at most `count` of the given rows: those that add most to the front's hypervolume."""
     if len(rows) <= count:
         return rows
     if front.shape[1] == 1:
@@ -238,7 +238,7 @@ def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int
 
 
 def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int) -> list[tuple[int, Array]]:
-    """Return the middles between neighbours on the front, the farthest apart first."""
+    """Return the midpoints between neighbours on the front, farthest apart first."""
     scaled = best.values / best.span
     n, m = scaled.shape
     if n < 2:
@@ -256,9 +256,8 @@ def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int)
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the archive of designs from sampling and zooming, from which the polish starts."""
-    run.rounds = (
-        len(run.round_reports) + 1 + len(WIDTHS) + -(-_candidate_count(problem) // BATCH)
-    )  # if nothing needs filling
+    # This holds if no gaps need filling.
+    run.rounds = len(run.round_reports) + 1 + len(WIDTHS) + -(-_candidate_count(problem) // BATCH)
     return explore(problem, evaluators, run)
 
 

@@ -1,4 +1,4 @@
-"""The front so far of a cancelled search, delivered within a moment."""
+"""The front found so far by a cancelled search, delivered within a moment."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from ...search.evaluation import Evaluator
 from ...search.search import Archive, Run
 from .auto import add_projected
 
-_PROJECTING = 0.3  # s, for moving designs onto the constraints
-_ANALYSING = 0.7  # s, for the quantities of all designs
-_FUNCTION_TIME = 0.8  # s since the search was told to end, after which no call of an own function goes on
-_BATCH = 16  # designs moved at a time
-_TRIED = 50  # designs that tell how long all take, of functions of its own in one call, else one to begin with
-_MOST = 1000  # designs: to choose among more would take longer
+_PROJECTING = 0.3  # s, to move designs onto the constraints
+_ANALYSING = 0.7  # s, to compute the quantities of all designs
+_FUNCTION_TIME = 0.8  # s since the search was told to stop, after which calls of custom functions are ended
+_BATCH = 16  # designs to move at a time
+_TRIED = 50  # designs to time first; custom functions get them in one call
+_MOST = 1000  # maximum number of designs; selection among more would take longer
 
 
 def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: bool = False) -> ParetoFront:
-    """Return the front of the polished designs of a search, else of those found, moved onto the constraints.
+    """Return the front of a search's polished designs, otherwise of those found, moved onto the constraints.
 
-    If that or the quantities of all designs would take longer than a moment, it has fewer designs, evenly spread; none
-    if custom functions do not return in that time. silent: whether they did not return upon cancellation, and must not
-    be called again.
+    If this or the quantities of all designs would take longer than a moment, it has fewer designs, evenly spread; none
+    if custom functions do not return in time. silent: whether they did not return upon cancellation, and must not be
+    called again.
     """
     begin = time.perf_counter() if run.checkpoints.ended is None else run.checkpoints.ended
     run.checkpoints.close()
@@ -100,7 +100,10 @@ def _rows_in_time(
 
 
 def _evenly_spread_rows(values: Array, count: int) -> IntArray:
-    """Return at most `count` rows of objectives (n, m), never fewer than the best of each; spread over the first."""
+    """Return at most `count` rows of objectives (n, m), always with the best in each.
+
+    Spread over the first objective.
+    """
     if len(values) <= count:
         return np.arange(len(values))
     best = np.argmin(values, axis=0)

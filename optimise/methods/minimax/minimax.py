@@ -1,24 +1,25 @@
-"""Least greatest-of-pieces over the designs of a problem, by sequential convex programming: least peak torque first.
+"""Minimise the greatest of smooth pieces by sequential convex programming, such as the peak torque.
 
-A peak over the cycle is the greatest of its local peaks, max_p f_p(u), over continuous crank angle; at the optimum
+A peak over the cycle is the greatest of its local peaks, max_p f_p(u), over continuous crank angle; at the optimum,
 several are often equally high, where the peak has a kink and no gradient. Nothing is smoothed: each iteration
-linearises every local peak and every constraint at the present design (exact values and gradients; a local peak's
+linearises every local peak and every constraint at the current design (exact values and gradients; a local peak's
 gradient is that at its crank angle, by the envelope theorem) and solves the convex programme of `subproblem` within a
 trust region. The step is judged by actual over predicted decrease of the exact penalty function
 
     max_p f_p(u) + w max(0, max_j c_j(u)),
 
-and corrected to second order before it is refused (Conn, Gould and Toint, "Trust-Region Methods", 2000, ch. 11 and
-15.3). Where as many pieces and constraints hold the optimum as there are unknowns, first-order steps converge
-quadratically; where fewer do, the curvature of the Lagrangian, by differences of exact gradients with the multipliers
-of the step before, keeps them fast.
+and corrected to second order before it is rejected (Conn, Gould and Toint, "Trust-Region Methods", 2000, ch. 11 and
+15.3). If as many pieces and constraints as unknowns determine the optimum, first-order steps converge quadratically; if
+fewer do, the curvature of the Lagrangian, from differences of exact gradients with the previous step's multipliers,
+keeps them fast.
 
 The multipliers of the last programme prove the optimum: weights of the pieces that add up to one, and prices of the
-constraints, for which
+constraints, with
 
     sum_p lambda_p grad f_p + sum_j mu_j grad c_j + bounds = 0,   lambda_p (max f - f_p) = 0,   mu_j c_j = 0
 
-to the residual (Karush-Kuhn-Tucker). The proof is local; only the starts can show that no other valley is deeper.
+to within the residual (Karush-Kuhn-Tucker). The proof is local; only more starts can show that no other valley is
+deeper.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ from ..registry import Method
 from .scp import Descent
 
 STARTS = 12
-"""Designs that the programme starts from, the best screened ones that are apart."""
-_LAST = 4096  # samples for the starts where none is feasible
+"""Number of starts for the programme: the best screened designs that lie apart."""
+_LAST = 4096  # samples for the starts if none is feasible
 
 
 def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
@@ -72,7 +73,7 @@ def _end_of_descent(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[A
 
 
 def _limit_samples(problem: Problem) -> Problem:
-    """Return the problem with samples that leave evaluations to the descents: exploring takes 5 to 25 times them."""
+    """Return the problem with fewer samples, to leave evaluations to the descents; exploring takes 5 to 25 times more."""
     allowed = problem.settings.evaluations
     if allowed is None:
         return problem
@@ -81,7 +82,7 @@ def _limit_samples(problem: Problem) -> Problem:
 
 
 def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> tuple[float, list[tuple[int, Array]]]:
-    """Return the objective's scale, and branch and point of the designs to start from.
+    """Return the objective's scale, and branch and point of each start.
 
     They are the best distinct designs of an archive, or the least violating points if it is empty.
     """
@@ -102,7 +103,7 @@ def _highest_piece(evaluator: Evaluator, u: Array) -> float:
 
 
 def _objective_scale(problem: Problem, values: Array) -> float:
-    """Return the scale of the objective: its best size, or its spread where a target can be met."""
+    """Return the scale of the objective: its best magnitude, or its spread if a target can be met."""
     if not len(values):
         return 1.0
     target = abs(problem.objectives[0].target or 0.0)
@@ -110,7 +111,7 @@ def _objective_scale(problem: Problem, values: Array) -> float:
 
 
 def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Array]]:
-    """Return branches and points that violate the constraints least, if no sample comes near to meeting them."""
+    """Return the branches and points that violate the constraints least, if no sample comes close to meeting them."""
     ranked: list[tuple[float, int, Array]] = []
     for index, evaluator in enumerate(evaluators):
         u = first_samples(_LAST, evaluator.dimension, evaluator.problem.settings.seed, 400 + index)

@@ -1,4 +1,4 @@
-"""Sequential convex programming of a greatest-of-pieces from one start; see `minimax`."""
+"""Sequential convex programming for the greatest of smooth pieces, from one start; see `minimax`."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from ...search.polish import Evaluates
 from .subproblem import Step, Subproblem
 
 CONVERGED = 1e-8
-"""Residual at which a descent is done: what the solver's multipliers can show."""
+"""Residual at which a descent has converged: the limit of what the solver's multipliers can show."""
 _ITERATIONS = 80
-_RADIUS, _LARGEST, _SHORTEST = 0.1, 0.5, 1e-12  # trust region, of the unit box
-_POOR, _GOOD = 0.1, 0.75  # actual over predicted decrease that shrinks and that widens it
-_MET = 1e-11  # relative violation that more steps need not remove
-_NOISE = 1e-14  # of the objective: decreases that rounding may hide
-_WEIGHT, _HEAVIEST = 10.0, 1e7  # penalty of a relative violation, objective scaled to one
-_DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
+_RADIUS, _LARGEST, _SHORTEST = 0.1, 0.5, 1e-12  # trust region radii in the unit box
+_POOR, _GOOD = 0.1, 0.75  # ratios of actual to predicted decrease below which it shrinks and above which it widens
+_MET = 1e-11  # relative violation that further steps need not remove
+_NOISE = 1e-14  # relative to the objective: smaller decreases may be rounding
+_WEIGHT, _HEAVIEST = 10.0, 1e7  # penalty for a relative violation, with the objective scaled to one
+_DIFFERENCE = 1e-6  # in the unit box, for differences of gradients
 _CURVATURE = 1e-8  # least eigenvalue of the programme's curvature
 
 
@@ -27,8 +27,8 @@ _CURVATURE = 1e-8  # least eigenvalue of the programme's curvature
 class Point:
     """A design during a descent: its position, its rows, and the last programme there.
 
-    u: (k,). goals: pieces of the objective, scaled. limits: constraint rows. step: its multipliers. residual: see
-    `residual_of`.
+    u: (k,). goals: pieces of the objective, scaled. limits: constraint rows. step: last step, with its multipliers.
+    residual: see `residual_of`.
     """
 
     u: Array
@@ -53,14 +53,14 @@ class Point:
 
 
 class Descent:
-    """Descents of one evaluator; the programme is stated once for all of them."""
+    """Descents of one evaluator; each programme is built once for all of them."""
 
     def __init__(self, evaluator: Evaluates, scale: float) -> None:
         self.evaluator, self.scale = evaluator, scale
         self._programmes: dict[tuple[int, int, int], Subproblem] = {}
 
     def run(self, start: Array) -> Point:
-        """Return the end of the descent from a valid point (k,) of the unit box."""
+        """Return the end of the descent from a valid point (k,) in the unit box."""
         point = self._point_at(np.clip(start, 0.0, 1.0))
         radius, weight = _RADIUS, _WEIGHT
         root = np.zeros((len(start), len(start)))
@@ -99,7 +99,7 @@ class Descent:
     def _solve(
         self, point: Point, goals: Array, limits: Array, root: Array, radius: float, weight: float
     ) -> Step | None:
-        """Return the step for these values of the rows, the greatest piece of the point counting as zero."""
+        """Return the step for these values of the rows, relative to the point's greatest piece."""
         shape = (len(point.u), len(goals), len(limits))
         if shape not in self._programmes:
             self._programmes[shape] = Subproblem(*shape)
@@ -113,7 +113,7 @@ class Descent:
         )
 
     def _programme(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
-        """Return the step, and the penalty that its multipliers require: an exact one exceeds their sum."""
+        """Return the step, and the penalty that its multipliers require: an exact penalty exceeds their sum."""
         while True:
             step = self._solve(point, point.goals.values, point.limits.values, root, radius, weight)
             if step is None or step.limits.sum() < 0.9 * weight or weight >= _HEAVIEST:
@@ -149,7 +149,8 @@ class Descent:
         corrected = self._solve(point, goals, limits, root, radius, weight)
         if corrected is None:
             return None
-        # Judged by what the first step promised: the bent rows promise what they were made to.
+        # Judged by the decrease that the first step predicted, because the corrected rows predict what they were built
+        # to.
         return self._try(point, replace(step, move=corrected.move), root, weight)
 
     def _root(self, point: Point, step: Step) -> Array:
@@ -187,7 +188,7 @@ def residual_of(point: Point, step: Step) -> float:
 
 
 def _active_normals(point: Point, step: Step, least: float = 1e-6) -> Array:
-    """Return gradients of the rows active in a step: limits, bounds, and ties of pieces as differences."""
+    """Return the gradients of the rows active in a step: limits, bounds, and ties between pieces as differences."""
     tied = point.goals.gradients[step.goals > least]
     edge = np.eye(len(point.u))
     return np.concatenate(
@@ -200,7 +201,7 @@ def _active_normals(point: Point, step: Step, least: float = 1e-6) -> Array:
 
 
 def _convex_root(hessian: Array, normals: Array) -> Array:
-    """Return R: curvature across the active rows is added first; it is harmless, as the step has no length there."""
+    """Return R; curvature across the active rows is added first, which is harmless: the step does not cross them."""
     if not np.isfinite(hessian).all():
         return np.zeros_like(hessian)
     size = float(np.abs(hessian).max())

@@ -1,13 +1,13 @@
-"""The convex programme of one minimax step, stated once and solved repeatedly with other numbers.
+"""The convex programme for one minimax step, built once and solved repeatedly with other numbers.
 
-With objective pieces p (the present greatest is zero) of gradient g, constraint rows c <= 0 of gradient a, unit-box
-point u, a step solves
+With objective pieces p (relative to the current greatest) of gradient g, constraint rows c <= 0 of gradient a, and
+unit-box point u, a step solves
 
     min  t + w s + |R d|^2 / 2   over d, t, s
     subject to  p + g d <= t (each piece),   c + a d <= s,   0 <= s,   low <= d <= high,
 
-t being the epigraph of the greatest piece, s the greatest violation with its exact penalty w, R'R the curvature of the
-Lagrangian. Its multipliers of the pieces are a convex combination by construction: t has slope one.
+where t is the epigraph of the greatest piece, s the greatest violation with its exact penalty w, and R'R the curvature
+of the Lagrangian. Its multipliers for the pieces are a convex combination by construction, because t has slope one.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from ....model.arrays import Array
 from ....model.extras import required
 
 _ABSENT = -1e3
-"""Value of rows that are not there: no step within the unit box makes them count."""
-_HELD = 1e-7  # multipliers above it hold the step
+"""Value of absent rows: no step within the unit box makes them active."""
+_HELD = 1e-7  # a multiplier above it makes a row active
 _TOLERANCE = 1e-11
-_NEAR = 1e-6  # of the unit box: how far holding rows exactly may move what the solver found
+_NEAR = 1e-6  # in the unit box: limit on the correction that makes active rows exact
 
 
 @dataclass(frozen=True)
 class Step:
     """A step.
 
-    move: (k,). top: t, the greatest piece after it as slopes tell. slack: s. goals: (p,), limits: (q,),
+    move: (k,). top: t, the greatest piece after it according to the slopes. slack: s. goals: (p,), limits: (q,),
     lower_multipliers, upper_multipliers: (k,), multipliers of pieces, constraints and bounds, zero or more.
     """
 
@@ -46,7 +46,10 @@ class Step:
 
 
 class Subproblem:
-    """The programme for k unknowns, p pieces and q constraint rows; stating it costs a hundred solutions."""
+    """The programme for k unknowns, p pieces and q constraint rows.
+
+    Building it costs as much as a hundred solutions.
+    """
 
     def __init__(self, k: int, p: int, q: int) -> None:
         cp = required("cvxpy", "minimax searches need")
@@ -85,11 +88,11 @@ class Subproblem:
         self.root.value, self.weight.value = root, weight
         self.low.value, self.high.value = low, high
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the step is judged by what it gains
+            warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the step is judged by its gain
             try:
                 self.programme.solve(
                     solver=cp.CLARABEL,
-                    warm_start=False,  # a descent must not depend on those before it: a resumed run leaves them out
+                    warm_start=False,  # a descent must not depend on earlier ones, which a resumed run omits
                     tol_gap_abs=_TOLERANCE,
                     tol_gap_rel=_TOLERANCE,
                     tol_feas=_TOLERANCE,
@@ -114,13 +117,13 @@ class Subproblem:
 
 
 def _neutralise_absent(values: Array, slopes: Array) -> tuple[Array, Array]:
-    """Return rows with absent ones, and those too low to count, neutralised."""
+    """Return rows in which absent ones, and those too low to matter, are neutralised."""
     is_present = values > _ABSENT
     return np.where(is_present, values, _ABSENT), np.where(is_present[:, None], slopes, 0.0)
 
 
 def _refine_step(step: Step, goals: tuple[Array, Array], limits: tuple[Array, Array], low: Array, high: Array) -> Step:
-    """Return the step moved by the shortest way to where its active rows hold exactly.
+    """Return the step after the smallest correction that makes its active rows hold exactly.
 
     An interior-point method stops short of them by its tolerance, which would remain as a permanent violation.
     """
