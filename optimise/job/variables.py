@@ -57,7 +57,7 @@ class VariablesPart(Part):
     @model_validator(mode="before")
     @classmethod
     def _nested(cls, data: Any) -> Any:
-        """Treat a path in quotes as one without: engineers read both as dotted keys; TOML reads the former as one key."""
+        """Treat a path in quotes as one without: both are dotted keys to engineers; the former is one key to TOML."""
         if not isinstance(data, Mapping):
             return data
         nested: dict[str, Any] = {}

@@ -1,17 +1,17 @@
-"""A lower bound on the objective of every motion law, from multipliers: weak duality of the continuous problem.
+"""A lower bound on the objective of every motion law, from multipliers, by weak duality of the continuous problem.
 
-For any continuous p(phi) that repeats, every law with dK / d(phi) = T - Q has
+For any continuous, periodic p(phi), every law with dK / d(phi) = T - Q has
 
     integral of p (T - Q) + p' K = 0,
 
-so that with multipliers m of the limits of acceleration and l of the time t,
+so with multipliers m for the limits of acceleration and l for the time t,
 
     objective >= objective + integral of p (K' + Q - T) + m (limit exceeded by) + l (time - t),
 
-and the right side is at least the integral of its least value over K and T at each angle, each within its own limits of
-speed and torque. That is found by a search over K, and T by formula, at 16 nodes of each cell; nothing of it is
-discretised but p and m, which may be any functions: those of the programme, linear in each cell. For a negative l (a
-least time) the bound is that of the convex relaxation of the problem, and the law may be optimal in spite of a gap.
+and the right side is at least the integral of its minimum over K and T at each angle, each within its own limits of
+speed and torque. A search over K, with T by formula, finds that minimum at 16 nodes of each cell. Only p and m are
+discretised; they may be any functions, here those of the programme, linear in each cell. For a negative l (a least
+time), the bound is that of the convex relaxation, and the law may be optimal despite a gap.
 """
 
 from __future__ import annotations
@@ -30,13 +30,13 @@ from .programme import Aim, Multipliers, Requirement
 
 _GRID = 33
 _ROUNDS = 12
-_NARROWER = 9  # points of each further round
+_NARROWER = 9  # points in each further round
 
 
 def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, multipliers: Multipliers) -> float:
-    """Return the bound by a programme's multipliers.
+    """Return the lower bound from a programme's multipliers.
 
-    Of the peak torque, N m, the mean square of the torque over the cycle time, N^2 m^2, or the time, s.
+    It bounds the peak torque, N m, the mean square torque over the cycle time, N^2 m^2, or the time, s.
     """
     by_torque, by_energy, constant = _coefficients(turn, limits, multipliers)
     pace = multipliers.pace
@@ -45,7 +45,7 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
     torque_limit = math.inf if needs.torque_limit is None else needs.torque_limit
 
     def at_energies(energy: Array) -> Array:
-        """Return the least of the integrand over T at K, but for a torque that only its limit bounds."""
+        """Return the least integrand over T at K; it omits a torque that only its limit bounds."""
         slowness = np.sqrt(0.5 * turn.terms.inertia / energy)
         value = by_energy * energy + pace * slowness
         if aim != "rms torque":
@@ -65,14 +65,14 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
 
 
 def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) -> tuple[Array, Array, Array]:
-    """Return the integrand's coefficients of T and K and its constant, at the nodes, but for time and objective.
+    """Return the integrand's coefficients of T and K and its constant, at the nodes, without time and objective.
 
-    p is continuous. Near a limit of acceleration it changes as the limit's multipliers demand, so that K, whose range
-    may be wide, has a coefficient there of almost zero.
+    p is continuous. Near a limit of acceleration, it changes as the limit's multipliers require, so that the
+    coefficient of K, whose range may be wide, is almost zero there.
     """
     p, place, width = multipliers.momentum, NODES, turn.width
     by_torque, by_energy, constant = np.zeros((3, *turn.angle.shape))
-    gains = np.zeros((2, len(p)))  # of p by the limit, near the start and the end of a cell
+    gains = np.zeros((2, len(p)))  # changes of p by the limit, near the start and the end of a cell
     limit, ends = limits.acceleration(turn.terms), limits.acceleration(turn.end_terms)
     if limit is not None and ends is not None:
         hats = 2.0 * np.stack([1.0 - place, place]) / width[:, None, None]  # (n, 2, 16)
@@ -86,7 +86,7 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
         constant = (lower - upper) * turn.terms.load - (upper + lower) * limit.greatest
     starts = _at_starts(turn, p, gains)
     for cell, outside in limits.window_cells(turn):
-        # K is limited from there on, or up to there: p may jump, but only within the window.
+        # K is limited from here on, or up to here: p may jump, but only within the window.
         starts[cell] = p[outside] + (gains[1, outside] if outside != cell else -gains[0, outside])
     even = (np.roll(starts, -1) - starts - np.sum(turn.weights * by_energy, axis=1)) / width
     momentum = starts[:, None] + turn.integrals(by_energy) + (even * width)[:, None] * place
@@ -94,10 +94,10 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
 
 
 def _at_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
-    """Return p (n,) at the starts of cells, from multipliers (n,) of cells and gains (2, n) near their ends.
+    """Return p (n,) at the starts of cells, from the cells' multipliers (n,) and the gains (2, n) near their ends.
 
-    What the programme determines is the mean of two cells with weights by their width, which is p at the centroid of
-    the hat over both; multipliers of single cells may alternate.
+    The programme determines the mean of two cells weighted by their widths, which is p at the centroid of the hat
+    function over both; multipliers of single cells may alternate.
     """
     total = float(gains.sum())
     before = np.concatenate([[0.0], np.cumsum(gains.sum(axis=0))[:-1]])
@@ -111,7 +111,7 @@ def _at_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
 
 
 def _least(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
-    """Return the least values of a function of K between limits, by a grid over the speed that narrows."""
+    """Return the least values of a function of K between limits, on successively finer grids over the speed."""
     first, last = np.sqrt(low), np.sqrt(np.maximum(high, low))
     best = np.full(low.shape, np.inf)
     for count in (_GRID, *[_NARROWER] * _ROUNDS):

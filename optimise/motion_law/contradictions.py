@@ -1,4 +1,4 @@
-"""Limits that leave no motion law: which, by how much, and what to change."""
+"""Limits that allow no motion law: which ones, by how much, and what to change."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from .law_limits import LawLimits, rpm
 from .programme import Margins, Programme, Requirement
 from .reachable import Reachable
 
-_AMPLE = 1e3  # times the greatest torque of the loads: as good as any
+_AMPLE = 1e3  # multiple of the loads' greatest torque that is effectively unlimited
 _ROUNDING = 1e-9
 
 
 def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
-    """Raise `InputError` where the least crank speed exceeds what the slider's speed allows."""
+    """Raise `InputError` if the least crank speed exceeds what the slider's speed limit allows."""
     low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
     worst = np.unravel_index(int(np.argmax(low - high)), low.shape)
     if not low[worst] <= high[worst]:
@@ -32,7 +32,7 @@ def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
 
 
 def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
-    """Return the error for limits without a law: what excludes what, with the least change."""
+    """Return the error for limits without a law: which limits exclude each other, and the least change."""
     request, load = limits.request, float(np.abs(turn.terms.load).max())
     programme = Programme(turn, limits, Margins(*np.zeros((3, len(turn.width)))))
     longest = math.inf if request.objective == "cycle time" else limits.cycle_time * (1.0 + _ROUNDING)

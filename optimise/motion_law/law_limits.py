@@ -1,4 +1,4 @@
-"""Request for a motion law, and the limits that follow from it for one machine."""
+"""Request for a motion law, and the resulting limits for one machine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ...objectives.dead_centre import before_dead_centre
 from .words import RANGE, LawObjective, Timing
 
 _EDGE = 1e-9  # rad
-_ONLY_CONSTANT = 1e-5  # share between a limit and the mean speed below which no law but constant speed is left
+_ONLY_CONSTANT = 1e-5  # relative distance of a limit from the mean speed below which only constant speed remains
 _NARROWS = {"narrows": True}  # a limit that may leave almost no law
 
 
@@ -27,8 +27,8 @@ _NARROWS = {"narrows": True}  # a limit that may leave almost no law
 class LawRequest:
     """A request for a motion law; SI, magnitudes.
 
-    objective: what is least. cycle_time: s, by default that of the machine's speed, from which default speeds follow
-    where it is the objective. timing: whether the cycle may be shorter. torque_limit: greatest drive torque.
+    objective: quantity to minimise. cycle_time: s, by default that of the machine's speed, from which default speeds
+    follow if it is the objective. timing: whether the cycle may be shorter. torque_limit: greatest drive torque.
     window: distance before the slider's dead centre within which window_speed limits the slider.
     """
 
@@ -66,10 +66,10 @@ class AccelerationLimit(NamedTuple):
 
 @dataclass(frozen=True)
 class LawLimits:
-    """Limits of a law for one machine; SI, infinite where there is none.
+    """Limits of a law for one machine; SI, infinite if unlimited.
 
-    cycle_time: s. least_speed, greatest_speed: of the crank. window: crank angle at which the window begins, and the
-    angle passed in it, rad. names: the interface's names for the fields of the request.
+    cycle_time: s. least_speed, greatest_speed: limits on the crank speed. window: crank angle at the start of the
+    window, and the angle that it covers, rad. names: the interface's names for the request's fields.
     """
 
     request: LawRequest
@@ -82,35 +82,35 @@ class LawLimits:
 
     @property
     def marks(self) -> tuple[float, ...]:
-        """Crank angles at which the window begins and ends, rad."""
+        """Crank angles at the start and the end of the window, rad."""
         return () if self.window is None else (self.window[0], self.window[0] + self.way * self.window[1])
 
     def name(self, field: str) -> str:
-        """Return the interface's name of a field."""
+        """Return the interface's name for a field."""
         return self.names.get(field, field)
 
     def window_cells(self, turn: LawTurn) -> list[tuple[int, int]]:
-        """Return the cells that start where the window begins and ends, each with the adjacent cell outside."""
+        """Return the cells that start at the start and the end of the window, each with the adjacent cell outside."""
         if self.window is None:
             return []
         begin, end = (int(turn.locate(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.marks)
         return [(begin, (begin - 1) % len(turn.width)), (end, end)]
 
     def slider_speed(self, crank_angle: Array) -> Array:
-        """Return the greatest speed of the slider, m/s, at crank angles."""
+        """Return the greatest allowed slider speed, m/s, at crank angles."""
         speed = np.full(crank_angle.shape, self.request.slider_speed or math.inf)
         if self.request.window_speed is not None:
             speed[self._in_window(crank_angle)] = min(self.request.window_speed, self.request.slider_speed or math.inf)
         return speed
 
     def energies(self, crank_angle: Array, inertia: Array, travel: Array) -> tuple[Array, Array]:
-        """Return least and greatest K, J, at crank angles with J, kg m^2, and x', m."""
+        """Return the least and the greatest allowed K, J, at crank angles. inertia: J, kg m^2. travel: x', m."""
         with np.errstate(divide="ignore"):
             fastest = np.minimum(self.greatest_speed, self.slider_speed(crank_angle) / np.abs(travel))
         return 0.5 * inertia * self.least_speed**2, 0.5 * inertia * fastest**2
 
     def acceleration(self, terms: LawTerms) -> AccelerationLimit | None:
-        """Return the limit of the crank acceleration, as one of J alpha, at crank angles with terms of any shape."""
+        """Return the limit on crank acceleration as one on J alpha, at crank angles with terms of any shape."""
         greatest = self.request.crank_acceleration
         if greatest is None:
             return None
@@ -126,10 +126,10 @@ class LawLimits:
 def resolve_limits(
     mechanism: Mechanism, linkage: Linkage, request: LawRequest, names: Mapping[str, str] | None = None
 ) -> LawLimits:
-    """Return the limits for a machine; names: the interface's names for the fields.
+    """Return the limits for a machine. names: the interface's names for the fields.
 
-    The greatest speed is at most that of the motor. Raises `InputError` without a cycle time, for one half of a window,
-    a window outside the stroke, speeds that exclude each other or the cycle time, and an objective without what it
+    The greatest speed is at most that of the motor. Raises `InputError` if the cycle time is missing, if a window is
+    incomplete or outside the stroke, if speeds exclude each other or the cycle time, or if an objective lacks what it
     needs.
     """
     labels = dict(names or {})

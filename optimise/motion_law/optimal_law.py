@@ -1,7 +1,7 @@
-"""The best motion law of a machine with given lengths, and its proof.
+"""The best motion law for a machine with given lengths, with a proof.
 
-The law is found on coarse cells first (`stage`). These are halved until the law,
-exact on the continuous turn, is within a thousandth of a bound on all laws (`bound`, `reachable`).
+The law is first found on coarse cells (`stage`). These are halved until the law, which is exact on the continuous turn,
+is within a thousandth of a bound on all laws (`bound`, `reachable`).
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from .reachable import Reachable
 from .stage import Stage, solve_stage
 
 GAP = 1e-3
-"""Greatest gap between a law and the bound, as a share, at which the law counts as proven."""
+"""Greatest relative gap between a law and the bound at which the law counts as proven."""
 _ROUNDS = 16
 LIMIT_TOLERANCE = 1e-6
-"""Greatest share by which a limit may be exceeded."""
-_STUCK = 0.9  # of the gap: finer cells that leave more of it show that it is the relaxation's
+"""Greatest relative excess over a limit."""
+_STUCK = 0.9  # fraction of the gap: if finer cells leave more of it, the gap is due to the relaxation
 _ROUNDING = 1e-9
-_NO_TORQUE = 1e-6  # of the peak at constant speed: rounding
+_NO_TORQUE = 1e-6  # relative to the peak at constant speed: a smaller torque is rounding
 _LEAST_CELLS, _MOST_CELLS = 150, 600
 
 
 @dataclass(frozen=True)
 class OptimalLaw:
-    """A law, and a lower bound on the objective of every law within the limits.
+    """A law, and a lower bound on the objective over all laws within the limits.
 
     value, bound: peak torque, N m, RMS torque over time, N m, or cycle time, s. relaxed: whether the bound is that of a
-    relaxation, which may be below the best law. rounds: refinements. exceeded: greatest share by which a limit is
-    exceeded at a node of a cell.
+    relaxation, which may lie below the best law. rounds: refinements. exceeded: greatest relative excess over a limit
+    at a cell's node.
     """
 
     law: MotionLaw
@@ -53,7 +53,7 @@ class OptimalLaw:
 
     @property
     def gap(self) -> float:
-        """Greatest share by which the law can be worse than the best one."""
+        """Greatest relative amount by which the law can be worse than the best one."""
         if self.limits.request.objective != "cycle time":
             terms, speed = self.law.turn.terms, TURN / self.limits.cycle_time
             if self.value <= _NO_TORQUE * float(np.abs(terms.load + 0.5 * terms.inertia_slope * speed**2).max()):
@@ -74,11 +74,11 @@ def optimal_law(
     names: Mapping[str, str] | None = None,
     cancelled: Callable[[], bool] = lambda: False,
 ) -> OptimalLaw:
-    """Return the best law for one fully turning linkage.
+    """Return the best law for one fully rotating linkage.
 
-    names: the interface's names for the fields of the request. cancelled: polled between refinements; once true, the
-    latest law is returned. Raises `InputError` for machines that `LawTurn` refuses, and for limits that exclude each
-    other or the cycle time.
+    names: the interface's names for the request's fields. cancelled: polled between refinements; once true, the latest
+    law is returned. Raises `InputError` for machines that `LawTurn` rejects, and for limits that exclude each other or
+    the cycle time.
     """
     limits = resolve_limits(mechanism, linkage, request, names)
     at_speed = replace(mechanism, speed=mechanism.direction * TURN / limits.cycle_time)
@@ -106,7 +106,7 @@ def optimal_law(
 
 
 def _bound(dual: float, stage: Stage, limits: LawLimits) -> float:
-    """Return a bound in the unit of the objective: by multipliers, or by what a torque reaches."""
+    """Return a bound in the unit of the objective: from multipliers, or from what a torque can reach."""
     request = limits.request
     if request.objective == "rms torque":
         return math.sqrt(max(0.0, dual))

@@ -1,13 +1,13 @@
 """The motion law on the cells of a turn, as a cone programme.
 
-Unknown are K at the starts of the cells and the drive torque T there, linear in between:
+The unknowns are K at the starts of the cells and the drive torque T there, linear in between:
 
     K_next = K + width (T + T_next) / 2 - integral of Q,
 
-exactly. Limits of torque, speed and crank acceleration, peak and time are convex in K and T: the time per angle,
-sqrt(J / 2 K), is convex in K, and T^2 sqrt(J / 2 K), whose integral is that of T^2 over time, in both (the perspective
-of a square over a concave function). A time of at least t is not convex. In its place stands the tangent of the time at
-another law, below which no law's time is (the convex-concave procedure: A. L. Yuille and A. Rangarajan, Neural
+exactly. Limits on torque, speed and crank acceleration, peak and time are convex in K and T: the time per angle, sqrt(J
+/ 2 K), is convex in K; T^2 sqrt(J / 2 K), whose integral is that of T^2 over time, is convex in both (the perspective
+of a square over a concave function). A lower limit on the time is not convex. It is replaced by the tangent of the time
+at another law, which lies below every law's time (the convex-concave procedure: A. L. Yuille and A. Rangarajan, Neural
 Computation 15, 2003).
 """
 
@@ -33,9 +33,9 @@ _TOLERANCE = 1e-9
 class Requirement:
     """Requirements of a programme besides speeds and accelerations; None for nothing.
 
-    torque_limit: N m. longest: greatest time, s. least: least time, s: by the tangent at a law with `energies`, K at
-    starts and middles of cells, J, (2, n), which is stricter; without it by the chord between the limits of K, which
-    is less strict.
+    torque_limit: N m. longest: upper limit on the time, s. least: lower limit on the time, s: by the tangent at a law
+    with `energies`, K at starts and middles of cells, J, (2, n), which is stricter; otherwise by the chord between the
+    limits of K, which is less strict.
     """
 
     torque_limit: float | None = None
@@ -48,8 +48,9 @@ class Requirement:
 class Multipliers:
     """Multipliers of a programme in SI.
 
-    momentum: of dK / d(phi) = T - Q in each cell, (n,). pace: of the time, positive for a longest, negative for a least
-    one. sides: of the limit of acceleration at start and end of each cell, upper and lower side, (2, 2, n).
+    momentum: multipliers of dK / d(phi) = T - Q in each cell, (n,). pace: multiplier of the time, positive for an upper
+    limit, negative for a lower one. sides: multipliers of the acceleration limit at start and end of each cell, upper
+    and lower side, (2, 2, n).
     """
 
     momentum: Array
@@ -70,7 +71,7 @@ class Solution:
 
 @dataclass(frozen=True)
 class Margins:
-    """Shares (n,) by which a law keeps off limits in each cell: least and greatest K, crank acceleration."""
+    """Relative distances (n,) that a law keeps from limits in each cell: least and greatest K, crank acceleration."""
 
     least: Array
     greatest: Array
@@ -81,10 +82,10 @@ class Programme:
     """Programmes on the cells of one turn, within limits."""
 
     def __init__(self, turn: LawTurn, limits: LawLimits, margins: Margins) -> None:
-        """Take a turn, limits, and margins to these.
+        """Store a turn, limits, and margins to these.
 
-        Torques are solved for in `unit`, N m, energies in `energy_unit`, J, times in the cycle time: then all numbers
-        are of size 1, and `ratio` is that of an energy to the torque that changes it.
+        Torques are scaled by `unit`, N m, energies by `energy_unit`, J, and times by the cycle time, so that all
+        numbers are of order 1; `ratio` is the unit of energy over that of torque.
         """
         self.turn, self.limits = turn, limits
         self.unit = max(float(np.abs(turn.terms.load).max()), 1e-6 * float(turn.terms.inertia.max()))
@@ -110,11 +111,11 @@ class Programme:
         return float(self.slowness @ np.sqrt(self.energy_unit / energies.ravel())) * self.time_unit
 
     def size_of(self, aim: Aim) -> float:
-        """Return the objective in SI that is 1 in the programme."""
+        """Return the objective in SI that equals 1 in the programme."""
         return {"peak torque": self.unit, "cycle time": self.time_unit, "rms torque": self.unit**2}.get(aim, 1.0)
 
     def solve(self, aim: Aim, needs: Requirement) -> Solution | None:
-        """Return the solution; None if there is none, or the solver finds none."""
+        """Return the solution; None if it has none, or the solver finds none."""
         cone = _Cone(self)
         if needs.torque_limit is not None:
             cone.rules.append(cone.cp.abs(cone.torque) <= needs.torque_limit / self.unit)
@@ -123,7 +124,7 @@ class Programme:
         objective = cone.objective(aim)
         problem = cone.cp.Problem(cone.cp.Minimize(objective), cone.rules)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # what an inaccurate answer is worth shows in its bound
+            warnings.simplefilter("ignore", UserWarning)  # the bound shows the effect of an inaccurate answer
             try:
                 problem.solve(
                     solver=cone.cp.CLARABEL, tol_gap_abs=_TOLERANCE, tol_gap_rel=_TOLERANCE, tol_feas=_TOLERANCE
@@ -146,7 +147,10 @@ class Programme:
 
 @dataclass
 class _Cone:
-    """Unknowns and rules of a programme; `places` and `torques` are K and T at starts, then at middles, of cells."""
+    """Unknowns and rules of a programme.
+
+    `places` and `torques` are K and T at the starts, then at the middles, of cells.
+    """
 
     programme: Programme
     rules: list[Any] = field(default_factory=list)
@@ -169,25 +173,25 @@ class _Cone:
         self._root: Any = None
 
     def _product(self, first: Any, second: Any, factor: Any) -> Any:
-        """Return the rule first second >= factor^2, with a sum of at least 0, element by element."""
+        """Return the rule first second >= factor^2, with first + second >= 0, element by element."""
         return self.cp.SOC(first + second, self.cp.vstack([2.0 * factor, first - second]), axis=0)
 
     @property
     def root(self) -> Any:
-        """An unknown that does not exceed the root of K."""
+        """An unknown that is at most the root of K."""
         if self._root is None:
             self._root = self.cp.Variable(len(self.ones))
             self.rules.append(self._product(self.places, self.ones, self._root))
         return self._root
 
     def time(self) -> Any:
-        """Return the time of the turn, or more."""
+        """Return an upper bound on the time of the turn."""
         inverse = self.cp.Variable(len(self.ones))
         self.rules.append(self._product(self.root, inverse, self.ones))
         return self.programme.slowness @ inverse
 
     def limit_time(self, needs: Requirement) -> list[tuple[float, Any]]:
-        """Add limits of the time; return each with the sign of its multiplier."""
+        """Add limits on the time; return each with the sign of its multiplier."""
         time_unit = self.programme.time_unit
         limits: list[tuple[float, Any]] = []
         if needs.longest is not None:
@@ -205,7 +209,7 @@ class _Cone:
         return limits
 
     def limit_acceleration(self, relaxed: bool) -> list[Any]:
-        """Add the limit of acceleration, multiplied by `size` if relaxed; return its sides: by end, upper one first."""
+        """Add the acceleration limit, multiplied by `size` if relaxed; return its sides: by end, upper one first."""
         turn, unit = self.programme.turn, self.programme.unit
         limit = self.programme.limits.acceleration(turn.end_terms)
         sides: list[Any] = []
@@ -222,7 +226,7 @@ class _Cone:
         return sides
 
     def objective(self, aim: Aim) -> Any:
-        """Return the objective; add its rules."""
+        """Return the objective, and add its rules."""
         if aim == "peak torque":
             self.rules.append(self.cp.abs(self.torque) <= self.size)
         if aim in ("peak torque", "acceleration"):
@@ -231,7 +235,7 @@ class _Cone:
             return self.time()
         slowness = self.programme.slowness
         if aim == "long cycle":
-            return self.cp.sum(self.places) / len(self.ones)  # the slowest law is slowest at every angle (`reachable`)
+            return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`reachable`)
         square = self.cp.Variable(len(self.ones))
         self.rules.append(self._product(square, self.root, self.torques))
         return slowness @ square

@@ -1,13 +1,13 @@
-"""Least and greatest kinetic energy that any law within a torque can have: bounds of the continuous problem.
+"""Least and greatest kinetic energy of any law within a torque: bounds on the continuous problem.
 
-With |T| <= tau the energy changes by at most tau -+ Q per angle. Of all laws within the limits of speed K_low and
-K_high one is therefore the slowest at every angle at once, and one the fastest:
+With |T| <= tau, the energy changes by at most tau -+ Q per angle. So among all laws within the speed limits K_low and
+K_high, one is the slowest at every angle simultaneously, and one the fastest:
 
     K_slowest(phi) = greatest over psi of K_low(psi) less what tau can take or give between psi and phi,
 
-and likewise from K_high. The smaller of two such laws is one again, which proves it. So no law within tau has a turn
-shorter than the fastest one, nor longer than the slowest one. Limits of acceleration are ignored: the bounds hold, but
-may be loose.
+and likewise from K_high. The smaller of two such laws is also such a law, which proves it. So no law within tau has a
+shorter turn than the fastest one, or a longer turn than the slowest one. Acceleration limits are ignored: the bounds
+hold, but may be loose.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class ReachableLaws:
 
 
 class Reachable:
-    """Laws of a turn that are possible within limits of speed."""
+    """Laws that a turn allows within the speed limits."""
 
     def __init__(self, turn: LawTurn, limits: LawLimits) -> None:
         self.turn = turn
@@ -54,19 +54,19 @@ class Reachable:
         self.passed = turn.passed[cell] + place * turn.width[cell]
 
     def laws_within(self, torque: float) -> ReachableLaws:
-        """Return the laws within a torque, N m."""
+        """Return the slowest and fastest law within a torque, N m."""
         loss = self._three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
         gain = self._three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
         slowest, fastest = self._least(self.low, loss, gain), -self._least(-self.high, gain, loss)
         within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
-        fastest = np.maximum(fastest, slowest)  # where no law exists, it may be below
+        fastest = np.maximum(fastest, slowest)  # it may be lower if no law exists
         closes = abs(self.turn.work) <= torque * TURN * (1.0 + _ROUNDING)
         return ReachableLaws(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
 
     def least_torque(self, torque: float, longest: float, least: float) -> float:
         """Return the torque, N m, below which no law takes between `least` and `longest`, s.
 
-        torque: a first guess above zero. Infinite if no torque within reason is enough.
+        torque: a positive initial guess. Infinite if no reasonable torque is enough.
         """
 
         def suffices(torque: float) -> bool:
@@ -89,7 +89,7 @@ class Reachable:
         return float(np.sum(self.turn.weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
 
     def _least(self, limit: Array, loss: Array, gain: Array) -> Array:
-        """Return the least K over a limit that loses at most `loss`, and gains at most `gain`.
+        """Return the least K above a limit that loses at most `loss` and gains at most `gain`.
 
         It loses after an angle at which it is on the limit, and gains before it.
         """

@@ -1,10 +1,11 @@
 """The best law on the cells of a turn.
 
-A cycle time that must be equal makes the problem non-convex only if the best law would be faster. Then the tangent of
-the time is renewed until it changes nothing (`programme`), and the law is the convex combination of the slow and the
-fast one with exactly the cycle time: limits, peak and RMS torque are convex, so that it is no worse.
+A required cycle time makes the problem non-convex only if the best law would be faster. Then the tangent of the time is
+renewed until it changes nothing (`programme`), and the law is the convex combination of the slow and the fast law with
+exactly the cycle time: it is no worse, because limits, peak and RMS torque are convex.
 
-Of the laws of least peak torque, that of least RMS torque is taken, for a ten-thousandth of the peak.
+Among the laws with the least peak torque, the one with the least RMS torque is chosen, at the cost of a ten-thousandth
+of the peak.
 """
 
 from __future__ import annotations
@@ -25,23 +26,25 @@ from .programme import Aim, Margins, Multipliers, Programme, Requirement, Soluti
 _RENEWALS = 20
 _DOUBLINGS = 8
 _CONVERGED = 1e-6
-_NOTHING = 1e-8  # of what is 1 in a programme: ten times what its solution may be wrong by
-_TIE = 1e-4  # of the peak torque
-_EQUAL = 1e-7  # of the cycle time
+_NOTHING = 1e-8  # relative to a programme's unit: ten times the error of its solution
+_TIE = 1e-4  # relative to the peak torque
+_EQUAL = 1e-7  # relative to the cycle time
 _MARGIN = 2e-7  # of a limit
 _ROUNDS = 8
-_COARSE = 0.01  # of a limit, by which it is exceeded within a cell: then the cell is too coarse for margins ...
-_UNTIMED = 1e-5  # ... or if its time is wrong by more of the cycle time
+_COARSE = 0.01  # relative excess over a limit within a cell above which the cell is too coarse for margins ...
+_UNTIMED = 1e-5  # ... as it is if its time is wrong by more than this fraction of the cycle time
 
 Proof = tuple[Aim, Requirement, Multipliers]
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A law on the cells of a turn. value: of the objective. proofs: programmes whose multipliers bound it from below.
+    """A law on the cells of a turn.
 
-    relaxed: whether a least time binds, so that these bounds are those of a relaxation. exceeded: greatest share by
-    which a limit is exceeded at a node. coarse: cells (n,) that do not resolve the law.
+    value: its objective. proofs: programmes whose multipliers bound the objective from below.
+
+    relaxed: whether a least time is active, so that these bounds are those of a relaxation. exceeded: greatest relative
+    excess over a limit at a node. coarse: cells (n,) that do not resolve the law.
     """
 
     law: MotionLaw
@@ -55,8 +58,8 @@ class Stage:
 def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> Stage | None:
     """Return the best law on the cells, or None. guess: a law on other cells.
 
-    Between the angles of the programme a law may exceed limits, and its time is not that of Simpson's rule. Both are
-    measured, and the programme is solved again with margins.
+    Between the programme's angles, a law may exceed limits, and its time differs from that of Simpson's rule. Both
+    deviations are measured, and the programme is solved again with margins.
     """
     margins, target = Margins(*np.full((3, len(turn.width)), _MARGIN)), limits.cycle_time
     for _ in range(_ROUNDS):
@@ -88,14 +91,14 @@ def value_of(law: MotionLaw, limits: LawLimits) -> float:
 
 
 class _Search:
-    """The search for the best law of a programme. proofs: what it solved, with multipliers of the objective."""
+    """The search for the best law of a programme. proofs: solved programmes with their multipliers."""
 
     def __init__(self, programme: Programme, guess: MotionLaw | None, cycle_time: float) -> None:
         self.programme, self.limits, self.guess, self.cycle_time = programme, programme.limits, guess, cycle_time
         self.proofs: list[Proof] = []
 
     def best(self) -> tuple[Solution, Solution | None] | None:
-        """Return the best law, and a faster one to mix in where a least time binds; or None."""
+        """Return the best law, and a faster one to combine with it if a least time is active; or None."""
         request = self.limits.request
         if request.objective == "cycle time":
             only = self._prove("cycle time", Requirement(torque_limit=request.torque_limit))
@@ -129,7 +132,7 @@ class _Search:
         return None if slow is None else (slow, calm)
 
     def time_errors(self, law: MotionLaw) -> Array:
-        """Return the errors of the programme's time of a law in each cell, (n,), s."""
+        """Return the errors of the programme's time in each cell of a law, (n,), s."""
         turn = self.programme.turn
         if not law.node_energies.min() > 0.0:
             return np.full(len(turn.width), math.inf)
@@ -159,7 +162,7 @@ class _Search:
         return np.asarray(fast + float(brentq(late, 0.0, 1.0, xtol=1e-15)) * (slow - fast))
 
     def _reference(self, slow: Solution | None) -> Array:
-        """Return K of a law near the best one: the guess, else a slow one, else that of constant speed."""
+        """Return K of a law near the best one: the guess, otherwise a slow one, otherwise constant speed."""
         if self.guess is not None:
             return np.stack([self.guess.energy(angles) for angles in self.programme.angles])
         if slow is not None:
@@ -167,10 +170,10 @@ class _Search:
         return self._constant_speed
 
     def _slow_reference(self, fast: Solution, request: LawRequest) -> Array:
-        """Return K of a law with the cycle time, by torques above a faster law's; else of constant speed.
+        """Return K of a law with the cycle time, by torques above those of a faster law; otherwise of constant speed.
 
-        The tangent of the time at a law takes at most 1.5 times as long as the law itself, so that no law within it has
-        the cycle time if that one is much too fast.
+        The tangent of the time at a law is at most 1.5 times the law's own time, so no law satisfies it if that law is
+        much too fast.
         """
         torque, most = fast.value, request.torque_limit or math.inf
         for _ in range(_DOUBLINGS):
@@ -206,7 +209,7 @@ class _Search:
 
 
 def _timed(turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None) -> tuple[MotionLaw, float, bool]:
-    """Return the law with exactly the cycle time, or at most that; the time missing before; whether it is combined."""
+    """Return the law with the cycle time, or at most that; the time that was missing; whether laws were combined."""
     law = MotionLaw.closed(turn, slow.torque, float(slow.energy[0]))
     request, cycle_time = limits.request, limits.cycle_time
     if not law.node_energies.min() > 0.0 or request.objective == "cycle time":
@@ -225,7 +228,7 @@ def _timed(turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | No
 
 
 def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float, period: float) -> MotionLaw:
-    """Return the law of a family with a period, s; if none has it, the nearer end."""
+    """Return the law with a given period, s, from a family; if none has it, the nearer end."""
     from scipy.optimize import brentq
 
     errors = [law_of(number).period - period for number in (first, last)]
@@ -235,7 +238,7 @@ def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float
 
 
 def _excess(law: MotionLaw, limits: LawLimits) -> Margins:
-    """Return the greatest shares by which a law exceeds limits at the nodes of each cell."""
+    """Return the greatest relative excess of a law over limits at the nodes of each cell."""
     turn, energy = law.turn, law.node_energies
     low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
     limit = limits.acceleration(turn.terms)

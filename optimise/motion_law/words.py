@@ -1,4 +1,4 @@
-"""Words and numbers that requests for a motion law and their inputs share."""
+"""Words and numbers shared by requests for a motion law and their inputs."""
 
 from typing import Literal
 
@@ -6,4 +6,4 @@ LawObjective = Literal["peak torque", "rms torque", "cycle time"]
 Timing = Literal["equal", "at most"]
 
 RANGE = 5.0
-"""Greatest crank speed over the mean one, and mean over least, unless limits say otherwise."""
+"""Default ratio of greatest to mean crank speed, and of mean to least."""

@@ -1,4 +1,4 @@
-"""Quantities that are zero for every design: refused as objectives and if excluded; warned of in idle constraints."""
+"""Quantities that are zero for every design: an error as objectives or where excluded; a warning where idle."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def require_ranking(problem: Problem) -> None:
 
 
 def idle_rules(problem: Problem) -> list[str]:
-    """Return a warning for each constraint on a quantity that is zero for every design, which all of them meet."""
+    """Return a warning for each constraint on a quantity that is zero, and so meets it, for every design."""
     machines = [part.mechanism for part in problem.parts()]
     reasons = {
         sentence.quantity: problem.quantity(sentence.quantity).zero_because(machines)

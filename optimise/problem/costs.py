@@ -16,8 +16,8 @@ from ...model.tolerance.sources import limits
 class Cost:
     """Cost of holding a tolerance t: fixed + cost (at / t)^exponent.
 
-    With exponent 1 the reciprocal model a + b / t (b = cost at), with others the power model a + b / t^k; both in M. F.
-    Spotts, "Allocation of tolerances to minimize cost of assembly", J. Engineering for Industry 95, 1973, and the
+    Exponent 1 gives the reciprocal model a + b / t (b = cost at), others give the power model a + b / t^k; both in M.
+    F. Spotts, "Allocation of tolerances to minimize cost of assembly", J. Engineering for Industry 95, 1973, and the
     survey of K. W. Chase and W. H. Greenwood, "Design issues in mechanical tolerance analysis", Manufacturing Review
     1(1), 1988. Any currency, the same in all costs.
 
@@ -55,13 +55,13 @@ class Cost:
         return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
 
     def slope(self, tolerance: float) -> float:
-        """Return the change of the cost with the tolerance, per m or rad; never positive."""
+        """Return the derivative of the cost by the tolerance, per m or rad; never positive."""
         return -self.exponent * (self.cost_at(tolerance) - self.fixed) / tolerance
 
 
 @dataclass(frozen=True, kw_only=True)
 class Costs:
-    """The costs of the tolerances; None leaves a tolerance at the mechanism's value."""
+    """Costs of the tolerances; None leaves a tolerance at the mechanism's value."""
 
     crank: Cost | None = None
     rod: Cost | None = None
@@ -83,7 +83,7 @@ NAMES = (*DIMENSIONS, "crank_angle")
 
 
 def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
-    """Return the cost of each tolerance of a mechanism, by name; None if one with a cost is zero."""
+    """Return the cost of each tolerance of a mechanism, by name; None if a tolerance with a cost is zero."""
     limits_by_name = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
     if not all(limits_by_name[name] > 0.0 for name in costs.by_name):
         return None

@@ -57,10 +57,11 @@ _PLOTTED = ("slider_position", "slider_velocity", "slider_acceleration", "torque
 class Analysis(Mapping[str, float]):
     """One design with all its quantities: `analysis["peak_torque"]` is a number in SI.
 
-    A mapping from the names of job files. It excludes quantities that the machine does not define: accessing one raises
-    `InputError` with the reason, and `undefined` has the reasons for all. mechanism: the machine of this design.
+    It maps the quantities' names in job files to their values. It excludes quantities that the machine does not define:
+    accessing one raises `InputError` with the reason, and `undefined` has the reasons for all. mechanism: the machine
+    of this design.
     linkage: its dimensions. quantity_values: the mapping itself. title: title of the problem, "" without one. swing:
-    motion of its crank in place of a full turn.
+    motion of its crank instead of a full turn.
     """
 
     mechanism: Mechanism
@@ -72,7 +73,7 @@ class Analysis(Mapping[str, float]):
     swing: Swing | None = None
 
     def __getitem__(self, name: str) -> float:
-        """Return a quantity or formula, SI. Raises `InputError` if it is undefined or unknown."""
+        """Return the value of a quantity or formula, SI. Raises `InputError` if it is undefined or unknown."""
         if name in self.quantity_values:
             return self.quantity_values[name]
         if name in self.undefined:
@@ -98,7 +99,7 @@ class Analysis(Mapping[str, float]):
     @overload
     def get(self, name: str, /, default: float | Default) -> float | Default: ...
     def get(self, name: str, /, default: object = None) -> object:
-        """Return a quantity, SI, or `default` if it is undefined or unknown."""
+        """Return the value of a quantity, SI, or `default` if it is undefined or unknown."""
         return self.quantity_values.get(name, default)
 
     def __contains__(self, name: object) -> bool:
@@ -112,15 +113,15 @@ class Analysis(Mapping[str, float]):
 
     @property
     def violated(self) -> dict[str, float]:
-        """Excess over each allowable value that the design violates, SI, by the name of its quantity.
+        """Excess over each allowable value that the design violates, SI, by quantity.
 
         Allowable values are the bearing pressure and the shear yield strength S_y / sqrt(3) of the material at the
-        pins, and safeties of 1 in the bars. Without a material there are none.
+        pins, and safety factors of 1 in the bars. Without a material, there are none.
         """
         return {name: float(beyond[0]) for name, beyond in violations(self.mechanism, self.quantity_values.get).items()}
 
     def table(self) -> pd.DataFrame:
-        """Return a table with a row for each quantity, by name: title, value, display unit, reason if undefined."""
+        """Return a table with one row per quantity, by name: title, value, display unit, reason if undefined."""
         rows = {
             item.name: {
                 "title": item.title,
@@ -135,15 +136,15 @@ class Analysis(Mapping[str, float]):
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def cycle(self, angles: int | ArrayLike = 360) -> pd.DataFrame:
-        """Return the curves over the cycle, a row for each crank angle, in SI; of a swing, over both strokes.
+        """Return the curves over the cycle in SI, one row per crank angle; for a swing, over both strokes.
 
         angles: number of crank angles, evenly spaced over the cycle from 0 (two turns if a load has a cycle of 720
         deg); or crank angles (n,), rad. Columns carry their unit: crank_angle_rad, slider_position_m,
         slider_velocity_m_s, slider_acceleration_m_s2, slider_jerk_m_s3, rod_angle_rad, transmission_angle_rad,
-        torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`.
-        Warns with `InputWarning` of angles beyond two turns, which are probably in degrees.
+        torque_Nm, power_W, load_N, the joint forces, position errors. See `cycle_curves`. Issues an `InputWarning` for
+        angles beyond two turns, which are probably in degrees.
 
-        For a swing, angles is the number of evenly spaced times, see `objectives.tables.swing_curves.swing_table`.
+        For a swing, angles is the number of evenly spaced times; see `objectives.tables.swing_curves.swing_table`.
         """
         if self.swing is not None:
             return swing_table(self.mechanism, self.linkage, self.swing, angles)
@@ -156,13 +157,13 @@ class Analysis(Mapping[str, float]):
         return cycle_table(self.mechanism, self.linkage, angles)
 
     def deviations(self, measured: Mapping[str, ArrayLike] | pd.DataFrame) -> pd.DataFrame:
-        """Return the deviations of measured curves from the computed ones, a row for each curve by name, in SI.
+        """Return the deviations of measured curves from the computed ones in SI, one row per curve, by name.
 
         measured: columns with units in their names: crank_angle_deg, or time_s at constant speed, and curves of `cycle`
         in SI, metric or inch units, such as slider_position_mm; NaN where nothing was measured. Columns of the result:
         title, unit, samples, rms, mean, largest (with its sign) and largest_at_rad; best_shift_rad and best_shift,
-        which, added to the measured crank angles and values, leave the least rms_left. Raises `InputError` for a table
-        without crank angle or curve, wrong units, values that no machine has, and a design that swings.
+        which minimise rms_left when added to the measured crank angles and values. Raises `InputError` for a table
+        without crank angle or curve, wrong units, impossible values, or a design that swings.
         """
         if self.swing is not None:
             raise InputError(
@@ -180,7 +181,7 @@ class Analysis(Mapping[str, float]):
         return pd.DataFrame.from_dict(rows, orient="index")
 
     def plot(self) -> Figure:
-        """Return a matplotlib figure of position, velocity, acceleration and drive over the cycle, or both strokes."""
+        """Return a matplotlib figure of position, velocity, acceleration and drive over the cycle or both strokes."""
         from ...model.notebook_figure import NotebookFigure
 
         strokes = self._curves_of_strokes()
@@ -200,7 +201,7 @@ class Analysis(Mapping[str, float]):
         return found
 
     def _curves_of_strokes(self) -> list[dict[str, Curve]]:
-        """Return the curves by name: over the closed cycle, or over the forward and the return stroke of a swing."""
+        """Return the curves by name: over the closed cycle, or over the forward and return strokes of a swing."""
         if self.swing is None:
             turns = cycle_turns(self.mechanism)
             closed_angles = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)
@@ -212,7 +213,7 @@ class Analysis(Mapping[str, float]):
         ]
 
     def _repr_html_(self) -> str:
-        """Picture of the linkage and table of its quantities, for notebooks."""
+        """Drawing of the linkage and table of its quantities, for notebooks."""
         table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
         lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._violation_text()) if line)
         return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
@@ -236,7 +237,7 @@ class Analysis(Mapping[str, float]):
 
 
 def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
-    """Return the machine of one design and the design's numbers (3 + k,); raise `InputError` for any other."""
+    """Return a design's machine and numbers (3 + k,); raise `InputError` for anything that is not a design."""
     require_machine(mechanism)
     names = numbers_of(mechanism)
     sizes = given_designs(design, names)
@@ -257,11 +258,11 @@ def analyse(
     title: str = "",
     swing: Swing | None = None,
 ) -> Analysis:
-    """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the machine's k varying numbers, SI.
+    """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the machine's k extra variables, SI.
 
-    own: custom quantities besides the built-in ones. swing: motion that the design must make in place of a full turn.
+    own: custom quantities besides the built-in ones. swing: motion that the design must make instead of a full turn.
     Raises `AssemblyError` for a design that does not rotate fully, and `InputError` for one that is not 3 + k finite
-    numbers or cannot make the swing. Warns once for each machine about lengths that are probably in mm.
+    numbers or cannot make the swing. Warns once per machine about lengths that are probably in mm.
 
     >>> from slidercrank import Mechanism, analyse
     >>> analysis = analyse(Mechanism(slider_mass=0.8, speed=30.0), [0.04, 0.1, 0.02])

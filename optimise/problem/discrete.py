@@ -1,4 +1,4 @@
-"""Numbers of a design with discrete values: multiples of a step, preferred numbers, a list."""
+"""Design numbers with discrete values: multiples of a step, preferred numbers, a list."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ...model.errors import InputError
 from .requirements import Range
 
 SAME = 1e-12
-"""Relative: values nearer than this are one."""
+"""Relative: closer values are the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Discrete:
-    """A number of a design with discrete values.
+    """A design number with discrete values.
 
-    name: crank, rod, offset, or a varying number of the machine. values: possible values, ascending, SI. rule: rule in
+    name: crank, rod, offset, or an extra variable of the machine. values: possible values, ascending, SI. rule: rule in
     words, such as "multiples of 0.5 mm". Raises `InputError` for values that are empty, not finite, or not ascending.
     """
 

@@ -1,4 +1,4 @@
-"""Contradictory problems, which a search would not notice."""
+"""Contradictory problems that a search would not notice."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .problem import Problem
 
 
 def require_possible(problem: Problem) -> None:
-    """Raise `InfeasibleError` if no option of a choice is left, or a slow stroke must not take longer."""
+    """Raise `InfeasibleError` if no option of a choice is left, or if a slow stroke is required to be faster."""
     if problem.left_out and not problem.variants:
         raise no_option(problem.left_out)
     if all(part.slow_stroke is not None for part in problem.parts()):
@@ -26,7 +26,7 @@ def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
 
 
 def require_longer_slow_stroke(problem: Problem) -> None:
-    """Raise `InfeasibleError` if bounds on ratios of stroke times exclude that the slow stroke takes longer.
+    """Raise `InfeasibleError` if bounds on ratios of stroke times prevent the slow stroke from taking longer.
 
     All parts of the problem must have a slow stroke.
     """

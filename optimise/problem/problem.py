@@ -52,9 +52,9 @@ _IN_WORDS: dict[Word, str] = {"min": "at least ", "max": "at most ", "equals": "
 class Settings:
     """Settings of the search.
 
-    method: a name from `methods.registry`. designs: greatest number of designs to return. samples: designs evaluated
-    per round before the polish; None lets the method choose. evaluations: number of designs that a method other than
-    "auto" may evaluate; None for its own budget. seed: seed of all random numbers.
+    method: a name from `methods.registry`. designs: maximum number of designs to return. samples: designs evaluated per
+    round before the polish; None lets the method choose. evaluations: number of designs that a method other than "auto"
+    may evaluate; None for its own budget. seed: seed of all random numbers.
     """
 
     method: str = "auto"
@@ -77,10 +77,10 @@ class Variant:
     """One combination of discrete choices.
 
     labels: the chosen options, one for each of the problem's `choices`. mechanism, crank, rod, offset: those of the
-    problem with the choice in place. limits: constraints that come with it (such as the greatest torque of a
-    gearmotor); where the problem constrains the same quantity, both hold. slow_stroke: the stroke that must be slow
-    with it. amounts: values of the problem's amounts, SI. notes: texts such as a maker, each preceded by its choice and
-    its column heading. ranks: for each choice, the number of options in its catalogue that are less than this one.
+    problem with this choice. limits: constraints that the choice adds (such as the greatest torque of a gearmotor);
+    where the problem constrains the same quantity, both hold. slow_stroke: the stroke that it requires to be slow.
+    amounts: values of the problem's amounts, SI. notes: texts such as a maker, each preceded by its choice and its
+    column heading. ranks: for each choice, the number of options in its catalogue that are smaller than this one.
     """
 
     labels: tuple[str, ...]
@@ -99,7 +99,7 @@ class Variant:
         _require_stroke(self.slow_stroke)
 
     def note(self, choice: str, head: str) -> str:
-        """Return a text that comes with the chosen option; empty if it has none."""
+        """Return a text of the chosen option; empty if it has none."""
         return next((text for *of, text in self.notes if of == [choice, head]), "")
 
 
@@ -120,18 +120,18 @@ _CHANGE = "change the problem with `dataclasses.replace`, or state it again with
 class Problem:
     """A complete optimisation problem.
 
-    mechanism: the machine; its varying numbers are extra variables besides the dimensions. crank, rod, offset: ranges
-    of the three dimensions, m. choices: names of the discrete choices. variants: every combination of them; empty
-    without choices. left_out: combinations whose limits the constraints exclude, label and reason, to be reported. With
-    variants, use the mechanism and ranges of `parts`: those here belong to no particular variant. catalogue:
-    combinations that a design may name as the least that also serves, see `search.least`; some are not searched.
-    costs: costs of the tolerances, for their allocation. sections: limits within which bars are sized, in the material
-    of the mechanism. own: quantities besides those that every problem has; objectives and constraints may name them
-    too. slow_stroke: the stroke that must be slow, if one is required. The time ratio is then above 1, see
-    `violation.constraints_of`, and the offset has only one sign, see `slow_side`, unless the speed follows a profile.
-    discrete: the numbers of a design that take only listed values; their ranges are the hulls of these. motion: a swing
-    of the crank, which then need not rotate fully. Its quantities are among the own ones; quantities of a rotating
-    crank are refused. warnings: sentences on statements of the job that are probably not meant.
+    mechanism: the machine with its extra variables. crank, rod, offset: ranges of the three dimensions, m. choices:
+    names of the discrete choices. variants: every combination of them; empty without choices. left_out: combinations
+    whose limits the constraints exclude, label and reason, to be reported. With variants, use the mechanism and ranges
+    of `parts`: those here belong to no particular variant. catalogue: combinations that may be the least sufficient
+    option for a design, see `search.cheapest_sufficient`; some are not searched. costs: costs of the tolerances, for
+    their allocation. sections: limits within which bars are sized, in the material of the mechanism. own: quantities
+    besides those that every problem has; objectives and constraints may name them too. slow_stroke: the stroke that
+    must be slow, if one is required. The time ratio is then above 1, see `violation.constraints_of`, and the offset has
+    only one sign, see `slow_side`, unless the speed follows a profile. discrete: the numbers of a design with discrete
+    values; their ranges are the hulls of these. motion: a swing of the crank, which then need not rotate fully. Its
+    quantities are among the own ones; quantities of a rotating crank raise an error. warnings: sentences on statements
+    in the job that are probably not intended.
     """
 
     name: str
@@ -239,7 +239,7 @@ class Problem:
         return f"Problem({self.name!r}: {senses}; {count})"
 
     def _repr_html_(self) -> str:
-        """Picture of a linkage within the ranges and its requirements, for notebooks."""
+        """Drawing of a linkage within the ranges, and its requirements, for notebooks."""
         sizes = [0.5 * (ends.lower + ends.upper) for ends in (self.crank, self.rod, self.offset)]
         try:
             picture = Linkage(sizes[0], sizes[1], sizes[2], self.mechanism.branch)._repr_html_() or ""
@@ -251,7 +251,7 @@ class Problem:
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{requirements}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity with a name, custom ones included, or the quantity of a formula as in job files.
+        """Return the quantity with a name, including custom ones, or the quantity of a formula as in job files.
 
         Raises `InputError` with the nearest names, or with the error in the formula.
         """
@@ -271,9 +271,9 @@ class Problem:
     def evaluate(
         self, designs: ArrayLike, quantities: Sequence[str] | None = None, *, gradients: bool = False
     ) -> Array | tuple[Array, Array]:
-        """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients` the Jacobian too.
+        """Return quantities (n, q) of designs (n, 3 + k), SI; with `gradients`, also the Jacobian.
 
-        The Jacobian is (n, q, 3 + k). quantities: names or formulas; if None the objectives, in the order of
+        The Jacobian is (n, q, 3 + k). quantities: names or formulas; by default the objectives, in the order of
         `objectives`. Values are those of the quantities, before any change of sign for minimisation. Rows of designs
         that do not rotate fully are NaN. See `tables.evaluate`. Raises `InputError` for a problem with choices: use its
         `parts`.
@@ -285,7 +285,7 @@ class Problem:
         return evaluated(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
-        """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the varying numbers, SI.
+        """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the extra variables, SI.
 
         Raises `AssemblyError` for a design that does not rotate fully, or not as far as a swing requires; `InputError`
         for a problem with choices.
@@ -299,13 +299,13 @@ class Problem:
         """Answer a question about a design (3 + k,), with the keys of the JSON: `problem.ask("press", design=...)`.
 
         Without a design, the question is about the job: `problem.ask("sweep", over="offset=0 mm..20 mm:5",
-        of="peak_torque")` returns `rows` as the command prints them. Lengths that the job leaves open are further
+        of="peak_torque")` returns `rows` as the command prints them. Lengths that the job does not fix are further
         inputs, `crank="40 mm"`.
 
         question: a topic of `analyse --show`, "inverse", "swing", "allocate", "counterweight" (the command `balance`),
         "sections", or a question from another installed package. inputs: its inputs, in SI or as text with a unit,
         `touch_distance="12 mm"`. Keys and values are those of `analyse --show press --json`. Raises `InputError` for an
-        unknown question or input, for anything that the design does not have, and as `analyse` does.
+        unknown question or input, for anything that the design lacks, and as `analyse` does.
         """
         self._require_chosen()
         if design is None:
@@ -329,15 +329,15 @@ class Problem:
         duration: float | None = None,
         actuator_tolerance: float | None = None,
     ) -> SwingSummary:
-        """Return the summary of a swing of the crank for a design (3 + k,), which need not rotate fully.
+        """Return the summary of a crank swing for a design (3 + k,), which need not rotate fully.
 
-        Arguments left out are those of the problem's own motion; without one the crank drives, slowly. start, end:
+        Omitted arguments are those of the problem's own motion; without one, the crank drives, slowly. start, end:
         crank angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side`
         of the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: motion law of the
-        driver, see `model.swing.swing_types`. duration: time from end to end, s, for all laws but "slow".
-        actuator_tolerance: tolerance of the driven slider, m.
-        Raises `AssemblyError` where the linkage does not close, `InputError` for a dead point that the slider cannot
-        pass, for ends that are missing or of two kinds, and as `analyse` does.
+        driver, see `model.swing.swing_types`. duration: time from end to end, s, for all laws except "slow".
+        actuator_tolerance: tolerance of the driven slider, m. Raises `AssemblyError` if the linkage does not close,
+        `InputError` for a dead point that the slider cannot pass, for ends that are missing or of two kinds, and as
+        `analyse` does.
         """
         from ...model.swing.summary import summarise
         from ...model.swing.swing_request import SwingRequest, resolve_swing
@@ -372,13 +372,13 @@ class Problem:
 
     @property
     def ranges(self) -> dict[str, Range]:
-        """The ranges of a design's numbers by name, in their order."""
+        """Ranges of a design's numbers by name, in order."""
         lengths: dict[str, Range] = {name: getattr(self, name) for name in DIMENSIONS}
         return lengths | {item.name: Range(lower=item.lower, upper=item.upper) for item in self.mechanism.varying}
 
     @property
     def machines(self) -> tuple[Mechanism, ...]:
-        """The machine of every variant; without choices, that of the problem."""
+        """Machine of every variant; without choices, that of the problem."""
         return tuple(variant.mechanism for variant in self.variants) or (self.mechanism,)
 
     @property
@@ -408,13 +408,13 @@ class Problem:
 
     @property
     def catalogues(self) -> tuple[int, ...]:
-        """Indices of the choices whose options are ordered, least first."""
+        """Indices of the choices whose options are ordered, smallest first."""
         ranks = {variant.ranks for variant in self.catalogue}
         return tuple(place for place in range(len(self.choices)) if len({of[place] for of in ranks}) > 1)
 
     @property
     def every_constraint(self) -> tuple[Constraint, ...]:
-        """The constraints, including those that come with choices."""
+        """The constraints, including those from choices."""
         return (*self.constraints, *(limit for variant in self.variants for limit in variant.limits))
 
     def common_bounds(self, of: Quantity) -> QuantityBounds | None:
@@ -431,9 +431,8 @@ class Problem:
     def slow_side(self) -> float | None:
         """Sign of the offset (+1 or -1) that gives the required slow stroke; None if none is required.
 
-        The inward stroke is the slow one where e w s > 0, with s = +1 on the open branch and -1 on the crossed one.
-        Also None along a speed profile: there a constraint replaces the sign, see
-        `violation.constraints_of`.
+        The inward stroke is slow if e w s > 0, with s = +1 on the open branch and -1 on the crossed one. Also None
+        along a speed profile, where a constraint replaces the sign, see `violation.constraints_of`.
         """
         if self.slow_stroke is None or self.mechanism.speed_profile is not None:
             return None
@@ -487,7 +486,7 @@ def _common_stroke(stroke: SlowStroke | None, more: SlowStroke | None) -> SlowSt
 
 
 def require_problem(problem: object, what: str) -> None:
-    """Raise `InputError` unless the argument is a problem. what: name of the function that takes one."""
+    """Raise `InputError` unless the argument is a problem. what: name of the function that was called."""
     if not isinstance(problem, Problem):
         raise InputError(f"{what} needs a problem; got {type(problem).__name__}; make one with problem or load_job")
 

@@ -1,8 +1,8 @@
-"""Questions by name; installed packages register theirs, this package those of `service`.
+"""Questions by name; installed packages register their own, and this package registers those of `service`.
 
-The questions of interfaces belong to a layer above the problem, which therefore cannot import them. The entry points of
-the group `slidercrank.questions` invert that, like those of `slidercrank.quantities` for quantities: each is a mapping
-from names to questions.
+The questions of interfaces belong to a layer above the problem, which therefore cannot import them. Entry points in the
+group `slidercrank.questions` invert the dependency, as those in `slidercrank.quantities` do: each is a mapping from
+names to questions.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 GROUP = "slidercrank.questions"
 SUBJECTS = {"design": "a design", "front": "a front", "runs": "several runs", "job": "a job"}
-"""What a question can be about, in messages."""
+"""Possible subjects of a question, as named in messages."""
 _REMEDIES = {
     "front": "write it like front.ask(question)",
     "job": "write it like problem.ask(question)",
@@ -29,16 +29,16 @@ _REMEDIES = {
 
 
 class DesignQuestion(Protocol):
-    """Question about a design. One with a `subject`, "front" or "job", is a `FrontOrJobQuestion`."""
+    """Question about a design. A question with a `subject`, "front" or "job", is a `FrontOrJobQuestion`."""
 
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Any, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
-        """Return the answer as JSON has it, in metric units that its keys end with.
+        """Return the answer as JSON data, in the metric units that its keys end with.
 
         mechanism, linkage: machine and lengths of the design, which need not rotate fully. problem: the `Problem` that
-        it answers, if any. inputs: inputs by name, in SI or as text with a unit; None for usual ones. Raises
-        `InputError` for anything that the design does not have, and for unknown inputs.
+        it solves, if any. inputs: inputs by name, in SI or as text with a unit; None for the defaults. Raises
+        `InputError` for anything that the design lacks, and for unknown inputs.
         """
 
 
@@ -46,16 +46,19 @@ class FrontOrJobQuestion(Protocol):
     """A question about a front or a job."""
 
     def answer_of(self, subject: Any, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
-        """Return the answer as JSON has it, in metric units that its keys end with.
+        """Return the answer as JSON data, in the metric units that its keys end with.
 
         subject: the `ParetoFront` or the `Problem`. row: row of the design that the question is about, if any. inputs:
-        inputs by name; None for usual ones. Raises `InputError` as `Question.answer` does.
+        inputs by name; None for the defaults. Raises `InputError` as `Question.answer` does.
         """
 
 
 @cache
 def questions() -> dict[str, Any]:
-    """Return the questions of all installed packages by name. Raises `InputError` if two have one of the same name."""
+    """Return the questions of all installed packages by name.
+
+    Raises `InputError` if two packages register the same name.
+    """
     from importlib.metadata import entry_points
 
     found: dict[str, Any] = {}
@@ -83,7 +86,7 @@ def subject_of(name: str) -> str:
 
 
 def question_to(subject: str, name: str) -> Any:
-    """Return a question about a subject. Raises `InputError` as `subject_of`, and if it has another subject."""
+    """Return a question about a subject. Raises `InputError` as `subject_of` does, or if it has another subject."""
     if (of := subject_of(name)) != subject:
         if of == "design":
             raise InputError(

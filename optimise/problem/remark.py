@@ -1,4 +1,4 @@
-"""Sentences on a job with the change of the job that settles them."""
+"""Sentences about a job with the change to the job that resolves them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Change:
-    """A change of a job. path: key in its tables, such as "load #1.force". label: what it does, as an instruction.
+    """A change to a job. path: key in its tables, such as "load #1.force". label: its effect, as an instruction.
 
     value: new value at the key, as a job file writes it; None removes the key.
     """
@@ -20,7 +20,7 @@ class Change:
 
 
 class Remark(str):
-    """A sentence on a job, and the change that settles it."""
+    """A sentence about a job, and the change that resolves it."""
 
     change: Change | None
 
@@ -32,6 +32,6 @@ class Remark(str):
 
 
 def changes_of(sentences: Iterable[str]) -> list[dict[str, Any]]:
-    """Return the changes that settle some sentences, each with its sentence, path, value and label."""
+    """Return the changes that resolve sentences, each with its sentence, path, value and label."""
     remarks = [sentence for sentence in sentences if isinstance(sentence, Remark)]
     return [{"sentence": str(remark), **vars(remark.change)} for remark in remarks if remark.change is not None]

@@ -23,14 +23,15 @@ SENSES: dict[str, Sense] = {
     "maximize": "maximise",
     "target": "target",
 }
-"""The sense of every word for it, in either spelling."""
+"""The sense for each word, in either spelling."""
 Word = Literal["min", "max", "equals"]
 """Words of a constraint's bounds."""
 RELATIONS: dict[Word, str] = {"min": "at least", "max": "at most", "equals": "exactly"}
 """The words as relations, in messages."""
 _TURN = 2.0 * math.pi
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-_FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")  # a `Problem` wants it as `expression.text_of` writes it
+# A `Problem` requires the spelling of `expression.text_of`.
+_FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,13 +49,13 @@ class Range:
 
     @property
     def fixed(self) -> bool:
-        """Whether the range is one value."""
+        """Whether the range is a single value."""
         return self.lower == self.upper
 
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint:
-    """A quantity that must lie in [lower, upper], SI; None leaves a side open, equal bounds require a value.
+    """A quantity that must lie in [lower, upper], SI; None leaves a side open; equal bounds require a value.
 
     Warns about a bound that was probably meant in another unit.
     """
@@ -78,12 +79,12 @@ class Constraint:
 
     @property
     def equality(self) -> bool:
-        """Whether one value is required."""
+        """Whether a single value is required."""
         return self.lower is not None and self.lower == self.upper
 
     @property
     def sides(self) -> list[tuple[Word, float]]:
-        """The bounds that are not open, with their words in a job."""
+        """The closed sides: each bound with its word in a job."""
         if self.equality and self.lower is not None:
             return [("equals", self.lower)]
         pairs: tuple[tuple[Word, float | None], ...] = (("min", self.lower), ("max", self.upper))
@@ -96,8 +97,8 @@ class Objective:
 
     sense: "minimize" and "maximize" become "minimise" and "maximise". Warns as `Constraint` does.
 
-    Raises `InputError` for any other word, and for a name that no quantity can have. The `Problem`, which may have
-    custom quantities, checks whether the quantity exists.
+    Raises `InputError` for any other word, and for a name that no quantity can have. `Problem`, which may have custom
+    quantities, checks whether the quantity exists.
     """
 
     quantity: str
@@ -115,7 +116,7 @@ class Objective:
 
 
 def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
-    """Return constraints with those on one quantity merged. Raises `InputError` if these contradict each other."""
+    """Return constraints with those on the same quantity merged. Raises `InputError` if these contradict each other."""
     merged_constraints: dict[str, Constraint] = {}
     for constraint in constraints:
         name = constraint.quantity
@@ -146,7 +147,7 @@ def _standard_sense(name: str, sense: object) -> Sense:
 
 
 def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
-    """Warn about the first number, SI, whose size is plausible only in the quantity's usual unit."""
+    """Warn about the first number, SI, whose magnitude is plausible only in the quantity's usual unit."""
     kind = FACTS[quantity].kind if quantity in FACTS else None
     if kind is None or kind.believed is None:
         return

@@ -1,9 +1,10 @@
 """Constraints on formulas that are equivalent to a known quantity, restated as constraints on that quantity.
 
-A formula may be a factor times a quantity plus a constant, such as `2 * stroke - 10 mm`, or write out the closed form
-of one, such as `rod / crank`. Elimination, bounds and floors work on the quantity. A quantity that a formula names is
-recognised exactly. A closed form is recognised by its values: analytic functions that agree to rounding at many random
-designs within the job's ranges are the same; formulas made of several such functions (min, max, abs) are left alone.
+A formula may be a factor times a quantity plus a constant, such as `2 * stroke - 10 mm`, or the closed form of a
+quantity written out, such as `rod / crank`. Elimination, bounds and floors work with the quantity. A quantity that a
+formula names is recognised exactly. A closed form is recognised by its values: analytic functions that agree to
+rounding at many random designs within the job's ranges are the same; formulas with several such functions (min, max,
+abs) are left unchanged.
 """
 
 from __future__ import annotations
@@ -28,9 +29,9 @@ from .problem import Problem
 from .requirements import Constraint, Range
 
 _DRAWN, _COMPARED, _FEWEST = 4096, 256, 32
-"""Random designs drawn; how many of the fully rotating ones are compared; the fewest that prove equality."""
+"""Random designs to draw; fully rotating ones to compare; fewest designs that prove equality."""
 _SEED = 14
-_SAME = 1e-11  # share of the values' range: agreement to rounding
+_SAME = 1e-11  # relative to the values' range: agreement to rounding
 _SNAP = 1e-12  # a factor this close to one is one; a constant this close to zero is zero
 
 RealFunction = Callable[[float], float]
@@ -47,7 +48,7 @@ class Restatement:
     inverse: RealFunction = float
 
     def quantity_value(self, bound: float) -> float:
-        """Return the value of the quantity at which the formula has a value; NaN if there is none."""
+        """Return the value of the quantity at which the formula has a given value; NaN if there is none."""
         try:
             return self.inverse((bound - self.constant) / self.factor)
         except (ValueError, ZeroDivisionError):
@@ -61,18 +62,18 @@ _FORMS: tuple[tuple[Quantity, Callable[[Array], Array], RealFunction, bool], ...
     (ROD_TO_OFFSET, np.asarray, float, True),
     (ROD_TO_OFFSET, np.reciprocal, lambda x: 1.0 / x, False),
     (TIME_RATIO, np.asarray, float, True),
-    # The excess angle: pi (q - 1) / (q + 1).
+    # Excess angle: pi (q - 1) / (q + 1).
     (TIME_RATIO, lambda q: (q - 1.0) / (q + 1.0), lambda x: (1.0 + x) / (1.0 - x), True),
     (TRANSMISSION_ANGLE, np.asarray, float, True),
     (TRANSMISSION_ANGLE, np.cos, math.acos, False),
     (TRANSMISSION_ANGLE, np.sin, math.asin, True),
     (TRANSMISSION_ANGLE, np.tan, math.atan, True),
 )
-"""Closed forms, functions of them, the inverses of these functions, and whether these rise."""
+"""Closed forms, functions of them, the inverses of these functions, and whether they increase."""
 
 
 def restate(problem: Problem, constraint: Constraint) -> Constraint:
-    """Return a constraint of a problem without choices, restated on the quantity of its formula if any."""
+    """Return a constraint of a problem without choices, restated on its formula's quantity if there is one."""
     if constraint.quantity in QUANTITIES:
         return constraint
     of = next((own for own in problem.own if own.name == constraint.quantity), None)
@@ -94,7 +95,7 @@ def restate(problem: Problem, constraint: Constraint) -> Constraint:
 
 
 def _is_possible(quantity: Quantity, value: float, *, least: bool) -> bool:
-    """Return whether the quantity can have a value as a bound."""
+    """Return whether a value is a possible bound on the quantity."""
     refused = quantity.domain is not None and quantity.domain.refuses(value, least=least)
     return math.isfinite(value) and not refused and (quantity.signed or value >= 0.0)
 
@@ -115,7 +116,7 @@ def _restatement(
         return None
     values = of.evaluate(machine, designs).values
     for quantity, form, inverse, rises in _FORMS:
-        if quantity is TIME_RATIO and not steady:  # along a speed profile it is not a formula of the dimensions
+        if quantity is TIME_RATIO and not steady:  # along a speed profile, it is not a formula of the dimensions
             continue
         found = _line_through(form(quantity.evaluate(machine, designs).values), values)
         if found is not None:
@@ -132,7 +133,7 @@ def _known_parts(formula: FormulaQuantity) -> Iterator[Quantity]:
 def _is_analytic(formula: FormulaQuantity) -> bool:
     """Return whether a formula and its parts are analytic for each sign of the offset.
 
-    An argument of an inverse sine or cosine may be clipped to 1: beyond it the function is undefined.
+    An argument of an inverse sine or cosine may be clipped to 1, because the function is undefined beyond it.
     """
 
     def has_analytic_form(node: Node) -> bool:

@@ -34,11 +34,11 @@ class Robust:
 def robust(problem: Problem, plan: Robust) -> Problem:
     """Return a problem whose objectives and constraints are robust, under separate names.
 
-    A quantity that is minimised or has a maximum is taken on its high side, one that is maximised or has a minimum on
-    its low side: peak_torque becomes peak_torque_robust. A quantity that is needed on both sides becomes two,
-    _robust_low and _robust_high. Equalities stay nominal: the drawn dimensions meet them; no machine with errors can.
-    So do targets. Each requirement is robust separately: 99 % of the machines for each, not 99 % for all together. The
-    problem's seed seeds the sample. Limits that come with a choice, such as a gearmotor's, become robust too.
+    A quantity that is minimised or has a maximum is taken at its high side; one that is maximised or has a minimum, at
+    its low side: peak_torque becomes peak_torque_robust. A quantity needed at both sides becomes two, _robust_low and
+    _robust_high. Equalities stay nominal: drawn dimensions meet them, but no machine with errors can. So do targets.
+    Each requirement is robust separately: 99 % of the machines meet each one, not all of them together. The problem's
+    seed determines the sample. Limits of a choice, such as those of a gearmotor, become robust too.
 
     Raises `InputError` for a quantity that is not in the problem, cannot be robust, or has no gradient.
     """
@@ -112,7 +112,7 @@ def _robust_names(problem: Problem, plan: Robust) -> list[str]:
     able = list(dict.fromkeys([o.quantity for o in problem.objectives if o.sense != "target"] + bounded))
     held = {c.quantity for c in problem.every_constraint if c.equality}
     aimed = {o.quantity for o in problem.objectives if o.sense == "target"}
-    same = {"".join(name.split()): name for name in (*able, *held, *aimed)}  # a formula is the same with other spaces
+    same = {"".join(name.split()): name for name in (*able, *held, *aimed)}  # spaces in a formula do not matter
     chosen = (
         [name for name in able if not (of := problem.quantity(name)).about_tolerances and not of.constant]
         if plan.quantities is None
@@ -168,5 +168,5 @@ def _robust_constraints(
 
 
 def _on_nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
-    """Return constraints on the nominal quantities, with the two sides of one joined again."""
+    """Return constraints on the nominal quantities, with their two sides joined again."""
     return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

@@ -1,4 +1,4 @@
-"""Limits of sections: safety factors, pins, producible sizes."""
+"""Limits on sections: safety factors, pins, available sizes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ def _require_at_least(subject: str, name: str, value: float, least: float = 0.0)
 
 @dataclass(frozen=True, kw_only=True)
 class SectionLimits:
-    """Safety factors, pins, and producible sections, SI.
+    """Safety factors, pins and available sections, SI.
 
     crank_pivot, crank_pin, slider_pin: pin diameters, m. width, depth: least and greatest, m. criterion: fatigue
-    criterion. eye_concentration: ratio of greatest to mean stress in the net section of an eye.
-    The factors' defaults are customary for known loads and materials; set your own.
+    criterion. eye_concentration: ratio of greatest to mean stress in the net section of an eye. The default factors are
+    customary for known loads and materials; set your own.
     """
 
     crank_pivot: float

@@ -1,4 +1,4 @@
-"""Columns of the table of designs, and names that custom quantities must not take."""
+"""Columns in the table of designs, and names that custom quantities must not take."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from ...objectives.tables.turn_columns import OF_A_TURN
 from ...objectives.tables.varying_column import columns_of_numbers
 
 RESIDUAL, STATUS = "residual", "status"
-"""Columns that say how far from stationary a design is, and whether that is proven."""
+"""Columns with the distance of a design from stationarity, and whether stationarity is proven."""
 _EVERY = ("design", RESIDUAL, STATUS, *OF_A_TURN)
 _SLACK = "slack_"
-_CHOICE = "choice_"  # of texts: JSON and the page read no number in them
+_CHOICE = "choice_"  # of texts: JSON and the page do not treat it as a number
 
 
 def choice_field(name: str) -> str:
@@ -25,7 +25,7 @@ def choice_field(name: str) -> str:
 
 
 def least_field(name: str) -> str:
-    """Return the key of the column with the least sufficient option of a catalogue."""
+    """Return the key of the column with a catalogue's least sufficient option."""
     return choice_field(f"least {name}")
 
 
@@ -35,7 +35,7 @@ def least_amount_field(choice: str, quantity: Quantity) -> str:
 
 
 def note_field(choice: str, head: str) -> str:
-    """Return the key of the column with a text of a catalogue, such as the maker of the chosen option."""
+    """Return the key of the column with a catalogue text, such as the maker of the chosen option."""
     return choice_field(f"{choice} {head}")
 
 
@@ -47,7 +47,7 @@ def slack_field(quantity: Quantity) -> str:
 def require_free_columns(
     own: Iterable[Quantity], varying: Sequence[Varying], choices: Iterable[tuple[str, str]]
 ) -> None:
-    """Raise `InputError` for a custom quantity or a choice whose column is already taken.
+    """Raise `InputError` for a custom quantity or a choice whose column name is already in use.
 
     choices: columns of choices, each with its description.
     """

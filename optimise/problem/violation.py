@@ -23,15 +23,16 @@ from .restatement import restate
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
 Side = tuple[float, float, float]
-"""A side of what is asked: 1 from above or -1 from below, the bound, and the scale of what lies beyond."""
+"""One side of a requirement: 1 for an upper or -1 for a lower bound, the bound, and the scale of an excess."""
 
 
 def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
-    """Return the constraints of a problem with the default floors where none is set.
+    """Return a problem's constraints, with default floors where none is set.
 
-    Floors apply to the transmission angle; with friction, to the self-locking margin; if a compressor may deliver
-    nothing, to the volumetric efficiency. For a required slow stroke one applies to the time ratio, or along a speed
-    profile to the ratio of that stroke. A swing has only one, on its transmission angle: the margin from dead points.
+    Floors apply to the transmission angle; with friction, also to the self-locking margin; if a compressor may deliver
+    nothing, also to the volumetric efficiency. For a required slow stroke, a floor applies to the time ratio or, along
+    a speed profile, to that stroke's ratio. A swing has only one, on its transmission angle, as the margin from dead
+    points.
     """
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
@@ -68,7 +69,7 @@ def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
 def _with_floor(
     problem: Problem, constraints: tuple[Constraint, ...], of: Quantity, above: float | None = None
 ) -> tuple[Constraint, ...]:
-    """Return constraints with a floor on a quantity unless they have one. above: a lower bound that does not count.
+    """Return constraints with a floor on a quantity if it has none. above: a lower bound that does not count.
 
     A bound on a formula that restates the quantity counts as a bound on it, and so does one on its robust form, except
     for a floor with `above`.
@@ -87,7 +88,7 @@ def _with_floor(
 
 
 def minimised(objective: Objective, values: Array) -> Array:
-    """Return an objective's values as they are minimised: negated if maximised, a distance if it has a target."""
+    """Return an objective's values as minimised: negated if maximised, a distance if it has a target."""
     if objective.sense == "maximise":
         return -values
     if objective.target is not None:
@@ -96,14 +97,14 @@ def minimised(objective: Objective, values: Array) -> Array:
 
 
 def all_minimised(problem: Problem, values: Array) -> Array:
-    """Return the objectives (n, m) of a problem as they are minimised."""
+    """Return the objectives (n, m) of a problem as minimised."""
     return np.stack(
         [minimised(quantity, values[:, column]) for column, quantity in enumerate(problem.objectives)], axis=1
     )
 
 
 def sides(constraint: Constraint) -> list[Side]:
-    """Return the sides of a constraint that are not open."""
+    """Return the closed sides of a constraint."""
     bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
     return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
 
@@ -122,7 +123,7 @@ def violated_by(constraint: Constraint, values: Array, *, allowed: float = 0.0) 
 def greatest_violation(
     problem: Problem, designs: Array, constraints: Sequence[Constraint], *, allowed: Mapping[str, float] | None = None
 ) -> Array:
-    """Return the greatest relative violation (n,) of some constraints by designs (n, 3 + v), zero where all hold.
+    """Return the greatest relative violation (n,) of constraints by designs (n, 3 + v), zero where all hold.
 
     allowed: allowed excess of quantities over their bounds, SI, by name.
     """
@@ -138,7 +139,7 @@ def greatest_violation(
 def clearly_turning(designs: Array) -> Mask:
     """Return which designs (n, 3 + v) rotate fully by more than rounding.
 
-    Round numbers lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
+    Round numbers can lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
     """
     crank, rod, offset = designs.T[:3]
     return np.asarray((crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod))
@@ -150,5 +151,5 @@ def excess(values: Array, side: float, bound: float, scale: float) -> Array:
 
 
 def costly(quantity: Quantity) -> bool:
-    """Return whether a quantity has no closed form, so that the cycle must be computed."""
+    """Return whether a quantity has no closed form, so that a cycle must be computed."""
     return not quantity.of_dimensions

@@ -28,8 +28,8 @@ from .search import Run
 
 SELECTING, FINISHING = "selecting designs", "finishing designs"
 """Stages after the rounds: selecting the best designs, then computing all their quantities."""
-_BATCH = 100  # designs analysed between two polls for cancellation
-_GLIMPSE = 40  # designs of a round that count in the history of a search that was told to end: all would take seconds
+_BATCH = 100  # designs to analyse between two polls for cancellation
+_GLIMPSE = 40  # designs per round in the history of a cancelled search, because all would take seconds
 
 
 def assemble(
@@ -39,7 +39,7 @@ def assemble(
     run: Run,
     rows: IntArray | None = None,
 ) -> ParetoFront:
-    """Return the front of the best candidates, of which there is at least one.
+    """Return the front of the best candidates; there must be at least one.
 
     rows: rows of the designs to return from a cancelled search.
     """
@@ -56,7 +56,7 @@ def assemble(
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
-    if problem.without_gradient():  # slopes are unknown, hence optimality and trade-off rates too
+    if problem.without_gradient():  # slopes are unknown, and so are optimality and trade-off rates
         residual[:] = np.inf
         goals = [(owner, slopes[:, :0]) for owner, slopes in goals]
         active = [edges[:, :0] for edges in active]
@@ -89,7 +89,7 @@ def assemble(
 def _on_unseen_kink(problem: Problem, variants: IntArray, dimensions: Array) -> Mask:
     """Return which designs (n,) lie on a kink that their slopes describe only in part.
 
-    For a formula with kinks of both kinds, such as a difference of peaks, slopes cover the kinks of one kind with the
+    For a formula with both kinds of kinks, such as a difference of peaks, slopes cover the kinks of one kind with the
     active piece of the other: where two of these tie, nothing is proven.
     """
     is_torn = np.zeros(len(dimensions), np.bool_)
@@ -128,7 +128,7 @@ def columns_of(
 
     parts: list[Columns] = []
     order, count = [], 0
-    alike: dict[tuple[object, ...], list[int]] = {}  # variants of one machine and its rules are analysed together
+    alike: dict[tuple[object, ...], list[int]] = {}  # variants with the same machine and rules are analysed together
     for variant in distinct(variants).tolist():
         part = problem.part(variant)
         alike.setdefault((part.mechanism, part.constraints, part.own), []).append(variant)
@@ -206,7 +206,7 @@ def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status:
 
 
 def span_of(problem: Problem, values: Array) -> Array:
-    """Return the ranges (m,) that scale the objectives (n, m); for a single objective, its size."""
+    """Return the ranges (m,) that scale the objectives (n, m); for a single objective, its magnitude."""
     _, span = scaling(values)
     sizes = np.array([abs(objective.target or 0.0) for objective in problem.objectives])
     if values.shape[1] == 1:

@@ -18,12 +18,14 @@ from .evaluation import Evaluator
 from .sampling import distant_rows
 
 EQUAL = 1e-9
-"""Of the objectives' range: a design as good as another one to this everywhere, and better somewhere, displaces it."""
+"""Relative to the objectives' range: a design as good as another to within this in all objectives, and better in one,
+displaces it."""
 SAME = 1e-7
-"""The same for designs that the polish has moved: it ends some of this away from where it would go."""
+"""The same for designs that the polish has moved, which end about this far from their optimum."""
 COVERED = 1e-3
-"""The same for designs that are not stationary, beside one that is; a single objective has one answer, hence SAME."""
-_ROUNDING = 1e-11  # of an objective's size: differences that its computation may have
+"""The same for designs that are not stationary, beside a stationary one; a single objective has one optimum, hence
+SAME."""
+_ROUNDING = 1e-11  # relative to an objective's magnitude: rounding error of its computation
 
 
 @dataclass
@@ -41,12 +43,12 @@ class Table:
         return replace(self, **{name: getattr(self, name)[rows] for name in self._columns()})
 
     def join(self, *tables: Table) -> Self:
-        """Return these rows and those of others below them, see `stacked`."""
+        """Return these rows with those of other tables below; see `stacked`."""
         parts = (self, *tables)
         return replace(self, **{name: stacked(*(getattr(part, name) for part in parts)) for name in self._columns()})
 
     def become(self, other: Self) -> None:
-        """Take the place of another table of the same kind."""
+        """Replace this table's content by that of another table of the same kind."""
         vars(self).update(vars(other))
 
 
@@ -73,8 +75,8 @@ def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
 class Candidates(Table):
     """Designs with their objectives.
 
-    branch: (n,), index. u: (n, k), unit-box points, padded to the greatest number of columns of any branch. values:
-    (n, m), SI, as minimised. is_feasible: (n,), whether each meets every constraint; the others are near enough to move
+    branch: (n,), index. u: (n, k), unit-box points, padded to the greatest number of columns on any branch. values: (n,
+    m), SI, as minimised. is_feasible: (n,), whether each meets every constraint; the others are close enough to move
     there.
     """
 
@@ -95,7 +97,7 @@ class Candidates(Table):
     def leading(self, column: int, count: int) -> IntArray:
         """Return at most `count` rows that meet every constraint, and at most `count` others.
 
-        The best in an objective come first, each `apart` from the better ones.
+        The best in an objective come first, each at a distance from the better ones.
         """
         groups = [np.flatnonzero(self.is_feasible), np.flatnonzero(~self.is_feasible)]
         return np.concatenate(
@@ -123,7 +125,7 @@ class Candidates(Table):
 class Polished(Table):
     """Designs after the polish.
 
-    u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative. residual: (n,), see
+    u: (n, k) points. values: (n, m) scaled objectives. violation: (n,) greatest relative violation. residual: (n,), see
     `stationarity.multipliers`. goals: for each design, owner and gradient of the active objective pieces. active: the
     gradients of its active constraints and bounds.
     """
@@ -138,7 +140,7 @@ class Polished(Table):
 
 @dataclass
 class FrontCandidates(Candidates):
-    """Candidates for the front: feasible polished designs, and those of branches without free unknowns.
+    """Candidates for the front: feasible polished designs, and those on branches without free unknowns.
 
     residual: (n,). goals, active: (n,), see `Polished`. span: (m,), scale of the objectives.
     """
@@ -155,7 +157,7 @@ class FrontCandidates(Candidates):
         return cls(bare.branch, bare.u, bare.values, bare.is_feasible, np.zeros(0), nothing, nothing, span=span)
 
     def add(self, index: int, part: Polished) -> None:
-        """Add the polished designs of a branch that are feasible and have all objectives."""
+        """Add the polished designs on a branch that are feasible and have all objectives."""
         part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
         branch, is_feasible = np.full(len(part), index), np.ones(len(part), np.bool_)
         columns = (branch, part.u, part.values * self.span, is_feasible, part.residual, part.goals, part.active)
@@ -167,13 +169,13 @@ class FrontCandidates(Candidates):
         return np.array([slopes.shape[1] > 0 for _, slopes in self.goals], dtype=np.bool_)
 
     def only_enumerated(self, span: Array) -> Self:
-        """Return the designs of enumerated branches, whose gradients need no scaling, with another span."""
+        """Return the designs on enumerated branches, whose gradients need no scaling, with another span."""
         return replace(self[~self.free], span=span)
 
     def best(self, report: ReportProgress = ignore_progress) -> IntArray:
         """Return the non-dominated rows, ascending, thinned out where they hardly differ. report: called for each row.
 
-        None of them is as good as another to within `EQUAL` everywhere and better somewhere.
+        None of them is as good as another to within `EQUAL` in all objectives and better in one.
         """
         values, several, free = self.values, len(self.span) > 1, self.free
         range_ = np.ptp(values[nondominated(values)], axis=0) if several and len(values) else self.span
@@ -201,7 +203,7 @@ class FrontCandidates(Candidates):
             if not _as_good(theirs[:, : len(chosen)], values[row], same if free[row] else equal).any():
                 theirs[:, len(chosen)] = values[row]
                 chosen.append(row)
-        # No kept design is as good as one before it; one after it may be, if that one is best only by rounding.
+        # No kept design is as good as an earlier one; a later one may be, if the earlier one is best only by rounding.
         theirs, alone = theirs[:, : len(chosen)], []
         for row in chosen:
             report(len(rows), len(rows))
@@ -211,5 +213,5 @@ class FrontCandidates(Candidates):
 
 
 def _as_good(values: Array, row: Array, tolerance: Array) -> Mask:
-    """Return which designs, values (m, n), are nowhere worse than one (m,) by more than these tolerances."""
+    """Return which designs with values (m, n) are worse than one (m,) by at most the tolerances in all objectives."""
     return np.asarray((values - row[:, None] <= tolerance[:, None]).all(axis=0))

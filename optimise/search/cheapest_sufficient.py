@@ -12,7 +12,7 @@ from ..problem.problem import Problem, Variant
 from ..problem.table_columns import least_amount_field, least_field, note_field
 from ..problem.violation import FEASIBLE, constraints_of, violated_by
 
-_SAME = 1e-9  # relative: a dimension that an option sets
+_SAME = 1e-9  # relative tolerance for a dimension that an option sets
 
 
 def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
@@ -68,10 +68,12 @@ class _Serving:
 
     def __init__(self, problem: Problem, dimensions: Array) -> None:
         self.problem, self.dimensions = problem, dimensions
-        self._known: dict[tuple[int, int], tuple[Quantity, Array]] = {}  # with the quantity, so that its id stays
+        self._known: dict[
+            tuple[int, int], tuple[Quantity, Array]
+        ] = {}  # stored with the quantity, so that its id is not reused
 
     def __call__(self, option: Variant) -> Mask:
-        """Return for which designs an option suffices."""
+        """Return the designs for which an option suffices."""
         designs = self.dimensions
         served = np.ones(len(designs), np.bool_)
         try:

@@ -1,12 +1,13 @@
-"""Checkpoints of a search, step by step: with them, an interrupted run resumes, bit for bit.
+"""Checkpoints of a search, step by step, from which an interrupted run resumes bit for bit.
 
 A search is a function of its problem and of the results of its costly steps: screening or polishing a batch, running a
 local solver from one start, breeding a population. Given these results, it repeats the same path without computing
-them, and computes from where they end. So every method can resume without code of its own, and little must be stored:
-the result of a step, not the hundreds of evaluations behind it.
+them, and continues computing where they end. So every method can resume without code of its own, and little must be
+stored: the result of a step, not the hundreds of evaluations behind it.
 
-Each step is stored with a digest of its inputs. If a search requests a step with another digest, it is another search
-or computes differently: another job, other versions, another kind of processor. It is refused, not mixed.
+Each step is stored with a digest of its inputs. A search that requests a step with another digest is another search or
+computes differently: another job, other versions, another kind of processor. This raises an error, and results are
+never mixed.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import ForeignRecords
 
 PAUSE = 1.0
-"""s between two records of a long round: what a kill loses at most, and the step under way."""
+"""s between two records of a long round: a kill loses at most this and the current step."""
 
 Numbers = Array | IntArray
 Words = IntArray
 Arrays = TypeVar("Arrays", bound=tuple[Numbers, ...])
-"""What a step gives: the same number of arrays, floats and integers in the same places, every time."""
+"""Result of a step: the same number of arrays, floats and integers in the same places, every time."""
 
 
 class Cancelled(Exception):
@@ -45,7 +46,7 @@ class Identity:
 
 @dataclass(frozen=True)
 class Record:
-    """Some steps of a search, following those of the previous record.
+    """Steps of a search that follow those of the previous record.
 
     identity: identity of the search. number: index from zero. told: number of rounds reported so far. seconds: duration
     of the search so far. words: the steps end to end, as 64-bit numbers in memory order; see `Checkpoints`.
@@ -65,14 +66,14 @@ class EvaluationCounter(Protocol):
 
 
 class Checkpoints:
-    """The steps of one search: first those of an earlier run, then those computed now, which it stores.
+    """The steps of one search: first those of an earlier run, then those computed now, which are stored.
 
     told: number of rounds reported so far. before: number reported by the earlier run. repeated: number of records of
     the earlier run replayed so far, out of `resumed`. ended: time of the first request to end the search, by
-    `time.perf_counter`; else None. polled: called at every poll of a step that is computed.
+    `time.perf_counter`; otherwise None. polled: called at every poll in a step that is computed.
 
-    In `Record.words` a step is two words of digest, its number of evaluations, and its number of arrays. For each array
-    follow its kind (0 for floats, 1 for integers), the number and sizes of its dimensions, and its numbers.
+    In `Record.words`, a step is two words of digest, its number of evaluations, and its number of arrays. For each
+    array follow its kind (0 for floats, 1 for integers), the number and sizes of its dimensions, and its numbers.
     """
 
     def __init__(
@@ -130,15 +131,15 @@ class Checkpoints:
             raise Cancelled
 
     def close(self) -> None:
-        """Stop polling and storing: no later computation belongs to a step."""
+        """Stop polling and storing, because later computations belong to no step."""
         self._cancelled = self._keep = self._next = None
 
     def step(
         self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays], counts: EvaluationCounter
     ) -> Arrays:
-        """Return the result of a step: that of the earlier run, else computed now.
+        """Return the result of a step: from the earlier run, otherwise computed now.
 
-        kind, inputs: identification of the step by all that it depends on besides the problem. counts: counter of
+        kind, inputs: identification of the step by everything it depends on besides the problem. counts: counter of
         evaluations. Raises `ForeignRecords` if the earlier run had another step here.
         """
         if self._next is None and self._keep is None:
@@ -171,7 +172,10 @@ class Checkpoints:
             self.repeated += 1
 
     def _flush(self, *, ends: bool = False) -> None:
-        """Pass on the pending steps as a record. ends: whether a round ends; then even without steps."""
+        """Pass on the pending steps as a record.
+
+        ends: whether a round ends, which makes a record even without steps.
+        """
         if self._keep is not None and (self._pending or ends) and self._identity is not None:
             words, self._pending = np.concatenate([np.zeros(0, np.int64), *self._pending]), []
             self._number += 1

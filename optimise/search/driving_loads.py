@@ -1,9 +1,9 @@
-"""Warning about loads that drive a machine that is not an engine: a sign is easily reversed.
+"""Warning about loads that drive a machine that is not an engine, because signs are easily reversed.
 
-The net work that the loads on slider and crank do on the machine over a cycle, W = integral of F dx + M d theta, is
+Over a cycle, the loads on slider and crank do the net work W = integral of F dx + M d theta on the machine. It is
 negative if the machine is driven, and zero for springs, weights and tables over position. It is positive only for
-engines. A job declares an engine by a load that `drives`, gas or a helping force, whose work does not count here, or by
-requiring a delivered work of zero or more.
+engines. A job declares an engine by a load that `drives`, such as gas or a helping force, whose work does not count
+here, or by requiring a delivered work of zero or more.
 """
 
 from __future__ import annotations
@@ -32,18 +32,18 @@ if TYPE_CHECKING:
     from ..front.front import ParetoFront
 
 _ROUNDING = 1e-9
-"""Of the RMS torque over a cycle: a mean torque below is rounding."""
+"""Relative to the RMS torque over a cycle: a smaller mean torque is rounding."""
 _NAMED = 3
-"""Loads that are named one by one."""
+"""Maximum number of loads to name one by one."""
 
 
 def driven_by_loads(problem: Problem) -> list[str]:
-    """Return the warning about loads that do positive net work on sampled designs of a problem, or none."""
+    """Return the warning about loads that do positive net work on sampled designs of a problem, if any."""
     return _load_warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
 
 
 def front_driven_by_loads(front: ParetoFront) -> list[str]:
-    """Return the warning about loads that do positive net work on designs of a front, or none."""
+    """Return the warning about loads that do positive net work on designs of a front, if any."""
     variants = front.variants or (0,) * len(front)
     rows = [
         [row for row, rows_of_variant in enumerate(variants) if rows_of_variant == variant]
@@ -57,7 +57,7 @@ def front_driven_by_loads(front: ParetoFront) -> list[str]:
 def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = None) -> Array:
     """Return the net work (n,), J per cycle, that loads do on designs (n, 3 + k).
 
-    loads: indices of the loads that count; if None, all that are not declared to drive. NaN for a design that cannot
+    loads: indices of the loads that count; by default, all that are not declared to drive. NaN for a design that cannot
     make the required motion.
     """
     if loads is None:
@@ -88,7 +88,7 @@ def _with_counted_loads(mechanism: Mechanism, counted: Collection[int]) -> Mecha
 
 
 def _may_be_driven(problem: Problem) -> bool:
-    """Whether undeclared loads may drive the machine, with no delivered work required.
+    """Whether undeclared loads may drive the machine while no delivered work is required.
 
     This check saves most problems from compiling the torque kernels.
     """

@@ -1,8 +1,8 @@
 """Exact elimination of equality requirements: the search moves only in the remaining free unknowns.
 
-Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one of them from others. A set of
-free unknowns is chosen such that the rules, applied in turn, give the rest. Requirements without a rule stay with the
-solver as equality constraints. Extra variables are free: no rule computes them.
+Unknowns are crank r, rod l and a = |offset|. Each requirement is a rule that computes one unknown from others. A set of
+free unknowns is chosen from which the rules, applied in turn, give the rest. Requirements without a rule remain
+equality constraints for the solver. Extra variables are free, because no rule computes them.
 """
 
 from __future__ import annotations
@@ -32,36 +32,36 @@ from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, ta
 from .swing_rules import swing_rules
 
 _LINEAR = "linear: "
-"""How the origin of a rule of linear equalities begins."""
+"""Prefix for the origin of a rule from linear equalities."""
 ZERO = 1e-300
-"""An offset of this size counts as zero."""
+"""An offset of this magnitude counts as zero."""
 
 
 class ClosedRule(Rule):
-    """A rule of `_FORMULAS`."""
+    """A rule from `_FORMULAS`."""
 
     def formula(self, *sources: Any) -> Any:
-        """Return the target for the sources."""
+        """Return the target computed from the sources."""
         return _FORMULAS[self.origin, self.target][1](*self.values, *sources)
 
 
 class LinearRule(Rule):
-    """One of the rules from a set of linear equalities. wanted: numbers of `linear_rules.solution`."""
+    """A rule from a set of linear equalities. wanted: numbers from `linear_rules.solution`."""
 
     def formula(self, *sources: Any) -> Any:
-        """Return the target for the sources."""
+        """Return the target computed from the sources."""
         return target_of(*self.values, *sources)
 
 
 @dataclass(frozen=True)
 class EliminationBranch:
-    """One sign of the offset with the free unknowns and the steps that compute the others.
+    """One sign of the offset, with the free unknowns and the steps that compute the others.
 
     sign: sign of the offset. free: names of the free unknowns; crank, rod and offset precede extra variables. lower,
-    upper: bounds of the free unknowns, SI. bounds: bounds of all unknowns, SI. names: names of all unknowns, in the
+    upper: bounds on the free unknowns, SI. bounds: bounds on all unknowns, SI. names: names of all unknowns, in the
     order of a design's numbers. variant: index of the combination of the problem's choices, see `Problem.part`.
-    eliminated: requirements that hold exactly unless a chosen root is spurious, which `evaluation` checks.
-    remaining: constraints left to the solver.
+    eliminated: requirements that hold exactly unless a chosen root is spurious, which `evaluation` checks. remaining:
+    constraints left to the solver.
     """
 
     sign: float
@@ -76,7 +76,7 @@ class EliminationBranch:
     variant: int = 0
 
     def dimensions(self, u: Any) -> Any:
-        """Return designs (n, 3 + v) for points (n, k) of the unit box; NaN where requirements cannot hold.
+        """Return designs (n, 3 + v) for points (n, k) in the unit box; NaN where requirements cannot hold.
 
         Columns: crank, rod, offset, m, and extra variables, SI. Complex points give complex designs.
         """
@@ -92,7 +92,7 @@ class EliminationBranch:
                 for step in self.steps:
                     unknowns[step.target] = step.formula(*(unknowns[name] for name in step.sources)) + as_many
         offset = self.sign * unknowns["offset"]
-        if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, whose derivative depends on the sign
+        if self.sign < 0.0:  # keeps its side of the kink of |offset| at zero, where the derivative depends on the sign
             offset = np.where(offset == 0.0, offset - ZERO, offset)
         designs = np.empty((len(u), len(self.names)), dtype=u.dtype)
         designs[:, 0], designs[:, 1], designs[:, 2] = unknowns["crank"], unknowns["rod"], offset
@@ -101,9 +101,10 @@ class EliminationBranch:
         return designs
 
     def coordinates(self, designs: Array) -> Array:
-        """Return the points (n, k) of the unit box with the free unknowns of designs (n, 3 + v).
+        """Return the points (n, k) in the unit box with the free unknowns of designs (n, 3 + v).
 
-        Values outside their range move to its end. A design that meets the eliminated requirements is reproduced.
+        Values outside their range move to the nearer end. A design that meets the eliminated requirements is
+        reproduced.
         """
         sizes = np.concatenate([np.abs(designs[:, :3]), designs[:, 3:]], axis=1)
         columns = [sizes[:, self.names.index(name)] for name in self.free]
@@ -121,10 +122,10 @@ class EliminationBranch:
 def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[EliminationBranch, ...]:
     """Return the branches of a problem: one for each possible sign of the offset, in every variant of its choices.
 
-    Each solution of a rule has its own branch. Branches with free unknowns come first, for the search; each of the
-    others has a single design.
-    eliminate: whether equality constraints are eliminated (fixed dimensions always are). At constant speed, a required
-    slow stroke leaves one sign. Raises `InfeasibleError` if the ranges have no offset of that sign.
+    Each solution of a rule has a separate branch. Branches with free unknowns come first, for the search; each of the
+    others has a single design. eliminate: whether to eliminate equality constraints (fixed dimensions always are). At
+    constant speed, a required slow stroke leaves one sign. Raises `InfeasibleError` if the ranges have no offset with
+    that sign.
     """
     parts = problem.parts()
     require_slow_side(problem, parts)
@@ -156,7 +157,7 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
 
 
 def signs(problem: Problem) -> list[tuple[float, Range]]:
-    """Return the signs that the offset may have, each with the range of its size."""
+    """Return the signs that the offset may have, each with the range of its magnitude."""
     lower, upper = problem.offset.lower, problem.offset.upper
     signed = []
     if upper > 0.0 or lower == upper == 0.0:
@@ -179,7 +180,7 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
         *swing_rules(problem, unsolved, sign),
     ]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
-    # Rod and offset first: a crank from the stroke is the best-conditioned direction of that relation.
+    # Rod and offset first, because a crank computed from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
     solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
     extra = [*bounds][len(DIMENSIONS) :]
@@ -193,7 +194,7 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
                     score = (len(required) - len(fulfilled), size, not fulfilled.issuperset(block.origins), roots)
                     if best is None or score < best[0]:
                         best = (score, free, steps, fulfilled)
-    assert best is not None  # all unknowns free always works
+    assert best is not None  # it always works with all unknowns free
     _, free, steps, fulfilled = best
     free = (*free, *(name for name in extra if not bounds[name].fixed))
     return EliminationBranch(
@@ -259,7 +260,7 @@ def _linear_rules(block: Block) -> Iterator[LinearRule]:
 def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
     """Return the requirements that hold exactly after these steps.
 
-    A combination's rule alone fulfils one relation between two requirements, hence neither of them. Linear equalities
+    A combination's rule alone fulfils one relation between two requirements, but neither of them. Linear equalities
     hold once all their rules are used.
     """
     single = {step.origin for step in steps if "+" not in step.origin and not isinstance(step, LinearRule)}
@@ -273,13 +274,13 @@ def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
 
 
 def _closed_rules(required: dict[str, float], *, steady: bool) -> list[Rule]:
-    """Return every rule for the required values. steady: whether the time ratio is that of the crank angles."""
+    """Return every rule for the required values. steady: whether the time ratio follows from the crank angles."""
     rules: list[Rule] = []
     for (origin, target), (sources, _) in _FORMULAS.items():
         names = origin.split("+")
         if all(name in required for name in names) and (steady or TIME_RATIO.name not in names):
             rules.append(ClosedRule(origin, target, sources, tuple(required[name] for name in names)))
-    # At a ratio of one the dead centres are opposite for any rod.
+    # At a ratio of one, the dead centres are opposite for any rod.
     level = {pair for name, pair in _PAIRS.items() if name in required and _excess_angle(required[name])[1] == 1.0}
     return [rule for rule in rules if rule.origin not in level or rule.target != "rod"]
 
@@ -291,7 +292,7 @@ def _excess_angle(ratio: float) -> tuple[float, float]:
 
 
 def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
-    """Return the crank by the cosine rule in the triangle of crank pivot and dead centres.
+    """Return the crank from the cosine rule in the triangle of crank pivot and dead centres.
 
     l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
     """
@@ -300,7 +301,7 @@ def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
 
 
 def _rod_of_pair(stroke: float, ratio: float, r: Any) -> Any:
-    """Return the rod by the same rule."""
+    """Return the rod from the same rule."""
     cosine = _excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
 
@@ -328,4 +329,4 @@ _FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
     (_PAIRS[CRANK_ANGLE_RATIO.name], "rod"): (("crank",), _rod_of_pair),
     (CRANK_ANGLE_RATIO.name, "offset"): (("crank", "rod"), _offset_of_ratio),
 }
-"""Of requirements and target: the sources, and the target by what is wanted and these."""
+"""By requirements and target: the sources, and the formula for the target from the required values and the sources."""

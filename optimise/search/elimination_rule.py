@@ -1,4 +1,4 @@
-"""One way to compute an unknown of a design from others, so that a requirement holds exactly."""
+"""A way to compute an unknown of a design from others, so that a requirement holds exactly."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Rule(ABC):
-    """One way to compute an unknown: `target` from `sources`. origin: its requirements, joined by "+".
+    """A way to compute an unknown: `target` from `sources`. origin: its requirements, joined by "+".
 
     values: values of the requirements.
     """
@@ -21,9 +21,9 @@ class Rule(ABC):
 
     @abstractmethod
     def formula(self, *known: Any) -> Any:
-        """Return the target for the sources."""
+        """Return the target computed from the sources."""
 
     @property
     def solutions(self) -> tuple[Rule, ...]:
-        """One rule for each solution of its equation: a branch each."""
+        """Return one rule for each solution of its equation; each has a separate branch."""
         return (self,)

@@ -1,4 +1,4 @@
-"""Objectives and constraints of a problem as functions of the free unknowns: fast for many, exact for few."""
+"""Objectives and constraints of a problem as functions of the free unknowns: fast for many designs, exact for few."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Evaluator:
     ) -> None:
         """Prepare the constraints that remain on the branch, cheapest first.
 
-        checkpoints: checkpoints of the calling search. Every evaluation raises `Cancelled` when that must end.
+        checkpoints: checkpoints of the calling search. Every evaluation raises `Cancelled` when the search must end.
         """
         self.checkpoints = checkpoints or Checkpoints()
         self.engine = engine or Serial()
@@ -77,20 +77,20 @@ class Evaluator:
         return quantity
 
     def _off_excluded_end(self, constraint: Constraint) -> Constraint:
-        """Return a constraint with its lower bound moved off an excluded end of the domain; at 0 deg it locks."""
+        """Return a constraint with its lower bound moved off an excluded end of the domain, where the linkage locks."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
             return constraint
         return replace(constraint, lower=domain.lower + _CLEARANCE)
 
     def step(self, kind: str, inputs: Sequence[Numbers], compute: Callable[[], Arrays]) -> Arrays:
-        """Return the result of a recorded step, see `Checkpoints.step`."""
+        """Return the result of a recorded step; see `Checkpoints.step`."""
         return self.checkpoints.step(kind, inputs, compute, self)
 
     # ---- quick: for sorting thousands of designs ------------------------------------------------------------------
 
     def screen(self, u: Array, *, band: float = 0.0) -> tuple[Array, Array, Array]:
-        """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) of points of the unit box.
+        """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) for points in the unit box.
 
         The violation is the greatest relative one, infinite where no linkage rotates fully; designs that violate a
         constraint by more than `band` have NaN objectives. Peaks are screened (see `model.signals.screening`).
@@ -104,11 +104,11 @@ class Evaluator:
         return dimensions, objectives, violation
 
     def _screened(self, dimensions: Array, band: float) -> tuple[IntArray, Array, Array]:
-        """Return the rows (r,) of designs that have objectives, these (r, m), and the violation (n,) of all."""
+        """Return the rows (r,) of designs with objectives, their objectives (r, m), and the violation (n,) of all."""
         self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)
         self.evaluations += len(dimensions)
-        # Designs already out of reach need no cycle computed.
+        # Designs already out of reach need no cycle.
         for slow in (False, True):
             constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
@@ -135,7 +135,9 @@ class Evaluator:
         )
 
     def _geometry_violation(self, dimensions: Array) -> Array:
-        """Greatest relative violation of the computed dimensions' ranges; inf if the required motion is impossible.
+        """Greatest relative violation of the computed dimensions' ranges.
+
+        Infinite if the required motion is impossible.
 
         Required motion: the linkage rotates fully, or makes the problem's swing, and friction does not lock it.
         """
@@ -143,7 +145,7 @@ class Evaluator:
         turns = running(self.mechanism, self.problem.motion, dimensions)
         violation[~turns] = np.inf
         for name in self.computed:
-            # A linear rule may give an offset of the other sign, which is of the other branch.
+            # A linear rule may give an offset of the other sign, which belongs to the other branch.
             value = dimensions[:, DIMENSIONS.index(name)] * (self.branch.sign if name == "offset" else 1.0)
             for side in _range_sides(self.branch.bounds[name]):
                 violation = np.fmax(violation, excess(value, *side))
@@ -157,7 +159,7 @@ class Evaluator:
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------
 
     def valid(self, u: Array) -> Mask:
-        """Return which points give a linkage that rotates fully, or makes the swing of the problem."""
+        """Return which points give a linkage that rotates fully, or makes the problem's swing."""
         return np.isfinite(self._geometry_violation(self.branch.dimensions(u)))
 
     def light_violation(self, u: Array) -> Array:
@@ -172,7 +174,7 @@ class Evaluator:
         return violation
 
     def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
-        """Return objective rows, empty unless requested, and constraint rows of points where `valid` holds.
+        """Return objective rows, empty unless requested, and constraint rows for points where `valid` holds.
 
         Gradients are with respect to the coordinates of the unit box.
         """
@@ -210,16 +212,19 @@ class Evaluator:
 
 
 def _to_unit_box(pieces: Pieces, jacobian: Array) -> Pieces:
-    """Return the pieces of designs with gradients by the unit-box coordinates; jacobian: (n, 3 + v, k), of these."""
+    """Return the pieces for designs with gradients by the unit-box coordinates.
+
+    Jacobian: (n, 3 + v, k), that of the designs.
+    """
     opposite = None if pieces.opposite is None else _to_unit_box(pieces.opposite, jacobian)
     heights, sizes = np.abs(pieces.values), np.abs(pieces.gradients)
-    # Most are bounded. The products of a copy in another order would round otherwise.
+    # Most are bounded. Products with a copy in another memory order would round differently.
     if heights.max(initial=0.0) < _HUGE and sizes.max(initial=0.0) < _HUGE and pieces.gradients.flags.c_contiguous:
         slopes = np.einsum("npd,ndk->npk", pieces.gradients, jacobian)
         return Pieces(pieces.values, slopes, pieces.labels, pieces.least, opposite)
-    # Rod to offset grows without bound: no numbers that overflow in a product, no slope where infinite.
+    # Rod to offset grows without bound: avoid numbers that overflow in a product, and slopes where it is infinite.
     bounded = (heights < _HUGE) & (sizes < _HUGE).all(axis=2)
-    # What is not a number stays none, whatever its sign: `_stack_rows` makes it no optimum and a violation.
+    # NaN stays NaN, whatever its sign: `_stack_rows` treats it as a violation, not an optimum.
     values = np.where(bounded | np.isnan(pieces.values), pieces.values, np.copysign(np.inf, pieces.values))
     slopes = np.einsum("npd,ndk->npk", np.where(bounded[:, :, None], pieces.gradients, 0.0), jacobian)
     return Pieces(values, slopes, pieces.labels, pieces.least, opposite)
@@ -236,7 +241,7 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
         return [low]
     top = _binding_pieces(pieces, -1.0)
     if objective.target is None:
-        # What is infinite is no optimum but out of reach; of the least of pieces infinite ones are absent.
+        # An infinite value is out of reach, not an optimum; in the least of pieces, infinite ones are absent.
         is_finite = np.isfinite(top.values)
         absent = top.least & (top.values == np.inf) & is_finite.any(axis=1, keepdims=True)
         return [Pieces(np.where(is_finite | absent, -top.values, np.inf), -top.gradients, top.labels)]
@@ -251,8 +256,8 @@ def _excess_pieces(pieces: Pieces, side: float, bound: float, scale: float = 1.0
 def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
     """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
-    A minimum of pieces stays low by its lowest piece alone, a maximum stays high by its highest: the other pieces do
-    not bind there. A quantity with kinks of both kinds has pieces for either side. Peaks come highest first, closed
+    A minimum of pieces stays low by its lowest piece alone, a maximum stays high by its highest: the other pieces are
+    inactive there. A quantity with kinks of both kinds has pieces for either side. Peaks come highest first, closed
     forms in any order.
     """
     if pieces.opposite is not None and pieces.least == (side > 0.0):

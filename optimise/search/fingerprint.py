@@ -17,7 +17,7 @@ from ..problem.problem import Problem
 from .checkpoints import Identity
 
 _COMPUTE = ("slidercrank", "numpy", "scipy", "numba", "moocore", "optuna", "cmaes")
-_LEFT_OUT = ("folders",)  # folders of a custom function: a job may be moved
+_LEFT_OUT = ("folders",)  # folders of a custom function, because a job may be moved
 
 
 @cache
@@ -35,7 +35,10 @@ def versions() -> dict[str, str]:
 
 
 def identity_of(problem: Problem) -> Identity:
-    """Return the identity of a search of this problem. Its name may change and its budget rise before it resumes."""
+    """Return the identity of a search of this problem.
+
+    Its name may change and its budget may rise before it resumes.
+    """
     settings = replace(problem.settings, evaluations=None)
     digest = hashlib.blake2b(digest_size=16)
     for part in _identifying_parts(replace(problem, settings=settings, name="")):

@@ -1,4 +1,4 @@
-"""Growth of the front while a search goes on: a volume that cannot fall."""
+"""Growth of the front during a search: a volume that cannot decrease."""
 
 from __future__ import annotations
 
@@ -9,29 +9,30 @@ from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 
 _MOST = {1: 1, 2: 5000, 3: 5000, 4: 1000, 5: 600}
-"""Designs of which the volume is told, by objectives: it takes 2 ms of these, and ten times as long of some more."""
-_OF_MANY = 200  # the same of six objectives; it takes 0.02 s
-_LEAST_SIDE = 0.1  # of the best value: the least side of the box, where the first front is a point or nearly one
-_OF_TARGET = 0.01  # the same of a target: designs that meet it differ by rounding
+"""Designs whose volume is computed, by number of objectives: it takes 2 ms for these, and ten times as long for a few
+more."""
+_OF_MANY = 200  # the same for six objectives, which takes 0.02 s
+_LEAST_SIDE = 0.1  # relative to the best value: minimum side of the box if the first front is nearly a point
+_OF_TARGET = 0.01  # the same for a target, because designs that meet it differ by rounding
 
 
 class Growth:
     """Volume that the designs found so far dominate.
 
-    It is measured from a fixed corner in boxes of fixed size, so that it only grows as more designs are found. From
-    very many designs an evenly spread subset counts, a different one each time. No design is lost again, so the
+    It is measured from a fixed corner in boxes of fixed size, so it only grows as more designs are found. If there are
+    very many designs, an evenly spread subset counts, a different one each time. No design is ever lost, so the
     greatest volume of any subset is still dominated.
 
     box: ideal and span (m,); the corner is 1.1 spans beyond the ideal. Without a box, that of the first designs counts,
-    and the volume may exceed one box, as later designs may be better than their ideal. With a box, volume beyond its
-    ideal does not count. targets: (m,), targets of the objectives, zero for none. front: (n, m), the subset counted
+    and the volume may exceed one box, because later designs may be better than their ideal. With a box, volume beyond
+    its ideal does not count. targets: (m,), targets of the objectives, zero for none. front: (n, m), the subset counted
     last, objectives as minimised.
     """
 
     def __init__(
         self, targets: Array, *, box: tuple[Array, Array] | None = None, max_designs: int | None = None
     ) -> None:
-        """Begin without designs. max_designs: number of designs that count; if None, as many as are fast."""
+        """Start without designs. max_designs: number of designs that count; by default, as many as are fast."""
         self.front: Array = np.zeros((0, len(targets)))
         self._targets = targets
         self._box = box

@@ -73,7 +73,7 @@ def _end_of_descent(evaluator: Evaluator, descent: Descent, u: Array) -> tuple[A
 
 
 def _limit_samples(problem: Problem) -> Problem:
-    """Return the problem with fewer samples, to leave evaluations to the descents; exploring takes 5 to 25 times more."""
+    """Return the problem with fewer samples to leave evaluations to descents; exploring takes 5 to 25 times more."""
     allowed = problem.settings.evaluations
     if allowed is None:
         return problem
