@@ -8,7 +8,7 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ..designs.changed_design import hold_equalities, variation_of, with_numbers
+from ..designs.changed_design import hold_equalities, nearest_holding, variation_of, with_numbers
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
 from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
@@ -67,7 +67,8 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
     angles: number of curve samples, evenly spaced; 0 for none.
 
     hold: the changed length; the others then follow, so that rules with exact values still hold; null leaves all
-    lengths as given.
+    lengths as given. nearest: if nothing holds for the changed length, take the nearest length for which the rules hold
+    instead of an error.
     """
 
     crank_mm: Length = Field(examples=[40.0])
@@ -78,6 +79,7 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
     )
     angles: int = Field(180, ge=0, le=MOST)
     hold: Literal["crank", "rod", "offset"] | None = None
+    nearest: bool = False
 
 
 class WhatIfModel(OfDesign):
@@ -147,7 +149,9 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     lengths = (request.crank_mm / 1e3, request.rod_mm / 1e3, request.offset_mm / 1e3)
     stored = stored_front.design(design)
     stored = with_numbers(stored, stored.values[:3], request.values)
-    stored = with_numbers(stored, lengths if request.hold is None else hold_equalities(stored, lengths, request.hold))
+    if request.hold is not None:
+        lengths = (nearest_holding if request.nearest else hold_equalities)(stored, lengths, request.hold)
+    stored = with_numbers(stored, lengths)
     changed = variation_of(stored, stored_front.result, stored_front.minimised)
     row, undefined = with_undefined_values(
         changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion

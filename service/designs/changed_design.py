@@ -26,6 +26,7 @@ _SAME = 1e-9  # relative to an objective's range over the front, or to a number:
 _ROUNDS = 30
 _CONVERGED = 1e-12  # of a target
 _HALVINGS = 12
+_BISECTIONS = 12  # between a length that is reached and one that is not: to a 4,000th of the way
 
 Lengths = tuple[float, float, float]
 
@@ -145,6 +146,33 @@ def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
             break
         values = values + step
     raise _refused(design, equal, moved, values[place])
+
+
+def nearest_holding(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
+    """Return lengths as `hold_equalities` does; the nearest reachable ones if the changed length cannot be held.
+
+    They lie between the design's own and the given ones. Raises `InputError` if its own cannot be held either.
+    """
+    try:
+        return hold_equalities(design, lengths, moved)
+    except InputError as error:
+        refused = error
+    place = DIMENSIONS.index(moved)
+    own = (design.values[0], design.values[1], design.values[2])
+    low, high = own[place], lengths[place]
+    try:
+        reached = hold_equalities(design, own, moved)
+    except InputError:
+        raise refused from None
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        start = [*reached]
+        start[place] = middle
+        try:
+            reached, low = hold_equalities(design, (start[0], start[1], start[2]), moved), middle
+        except InputError:
+            high = middle
+    return reached
 
 
 def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:

@@ -154,3 +154,16 @@ def test_a_length_that_no_others_can_follow_is_refused(client: httpx.Client, sol
         "rod and offset must change so that stroke exactly 280 mm still holds; for crank 200 mm"
         in refused.json()["detail"]
     )
+
+
+def test_a_length_stops_where_no_others_can_follow_if_the_nearest_is_asked_for(
+    client: httpx.Client, solved: Solved
+) -> None:
+    """A stroke is at least twice the crank, and just that without an offset: 140 mm for 280 mm."""
+    beyond = {"crank_mm": 200.0, "rod_mm": 600.0, "offset_mm": 0.0, "hold": "crank", "nearest": True}
+    design = change(client, solved, beyond).json()["design"]
+    assert design["crank_mm"] == pytest.approx(140.0, rel=2e-3)
+    assert design["crank_mm"] <= 140.0 * (1.0 + 1e-9)
+    assert design["stroke_mm"] == pytest.approx(280.0, rel=1e-11)
+    held = {**lengths(solved, 3, crank_mm=0.98), "hold": "crank"}
+    assert change(client, solved, {**held, "nearest": True}).json() == change(client, solved, held).json()

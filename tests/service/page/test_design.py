@@ -240,6 +240,29 @@ def test_the_other_lengths_follow_to_keep_what_is_asked_exactly(opened: Opened, 
     expect(stroke).to_have_text("280")
 
 
+def test_a_length_beyond_what_the_rules_allow_shows_how_far_it_reaches_and_both_ways_on(opened: Opened) -> None:
+    """A stroke of 280 mm allows no crank above 140 mm."""
+    page = opened()
+    crank = page.get_by_label("Crank", exact=True)
+    stroke = page.get_by_role("region", name="All numbers").locator("td[data-design='What if'][data-key='stroke_mm']")
+    crank.fill("150")
+    warning = page.locator(".what-if .warning")
+    expect(warning).to_contain_text(
+        re.compile(r"With stroke 280\smm, the crank reaches 1(39\.\d+|40)\smm, not 150\smm")
+    )
+    expect(stroke).to_have_text("280")
+    page.get_by_role("button", name="Stay at 1").click()
+    expect(warning).to_have_count(0)
+    assert 139.0 < float(crank.input_value()) <= 140.0
+    crank.fill("150")
+    page.get_by_role("button", name="Drop stroke 280").click()
+    expect(warning).to_have_count(0)
+    expect(crank).to_have_value("150")
+    expect(page.get_by_role("checkbox", name="The other lengths follow")).not_to_be_checked()
+    expect(page.locator(".verdict")).to_contain_text("Misses a requirement: stroke")
+    page.get_by_role("button", name="Reset").click()
+
+
 def test_what_if_shows_what_a_change_does(opened: Opened, solved: Solved, service: str) -> None:
     page = opened()
     release(page)

@@ -70,13 +70,11 @@ export function whatIf(
       ask();
     },
   });
+  const kept = equal
+    .map(({ title, lower, unit }) => `${title} ${withUnit(lower, unit)}`)
+    .join(" and ");
   const rule = equal.length
-    ? h(
-        "label",
-        { class: "holding" },
-        holding,
-        ` The other lengths follow, to keep ${equal.map(({ title, lower, unit }) => `${title} ${withUnit(lower, unit)}`).join(" and ")}`,
-      )
+    ? h("label", { class: "holding" }, holding, ` The other lengths follow, to keep ${kept}`)
     : null;
   let last = "crank"; // the length that was moved last
   let keepsLengths = start !== null; // the lengths of a link are shown as they are
@@ -151,7 +149,13 @@ export function whatIf(
     try {
       const reply = await post(
         `${path}/what-if`,
-        { ...lengths, values, angles: 180, hold: holding.checked && !keepsLengths ? last : null },
+        {
+          ...lengths,
+          values,
+          angles: 180,
+          hold: holding.checked && !keepsLengths ? last : null,
+          nearest: true,
+        },
         { signal },
       );
       if (moved() && !wrong()) {
@@ -206,8 +210,31 @@ export function whatIf(
       fill(results);
       return;
     }
-    fill(verdict, sentences(answer, { ranges, requirements }, objectives, job));
+    fill(verdict, stopped(), sentences(answer, { ranges, requirements }, objectives, job));
     fill(results, comparison(objectives, base, answer.design));
+  }
+
+  /** Return why the moved length stops before its slider, with both ways on; null where it does not. */
+  function stopped() {
+    const row = rows.find(({ key }) => key === `${last}_mm`);
+    const reached = Number(answer?.design[`${last}_mm`]);
+    if (!row || !rule || Math.abs(reached - lengths[row.key]) <= SAME * Math.abs(reached))
+      return null;
+    const [asked, nearest] = [lengths[row.key], reached].map((value) => withUnit(value, "mm", 4));
+    /** @param {string} label @param {() => void} act */
+    const way = (label, act) =>
+      h("button", { type: "button", onclick: () => [act(), ask()] }, label);
+    return h(
+      "div",
+      { class: "warning" },
+      h(
+        "p",
+        {},
+        `With ${kept}, the ${last} reaches ${nearest}, not ${asked}. Results are for ${nearest}.`,
+      ),
+      way(`Stay at ${nearest}`, () => row.show((lengths[row.key] = reached))),
+      way(`Drop ${kept}`, () => (holding.checked = false)),
+    );
   }
 
   function showLengths() {
