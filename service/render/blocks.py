@@ -1,4 +1,4 @@
-"""Sentences and tables as data. Their numbers keep their kind, so that the renderer chooses the units."""
+"""Sentences and tables as data. Their numbers keep their kind, so that the renderer selects the units."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Value:
-    """A number with its kind.
+    """Number with its kind.
 
     number: number in SI; None if undefined. digits: number of significant digits shown. decimals: digits after the
-    point instead, in metric units. sign: whether a positive number gets a plus. bare: whether the unit is omitted.
-    missing: text for None and NaN.
+    decimal point instead, in metric units. sign: whether a positive number gets a plus sign. bare: whether to omit the
+    unit. missing: text for None and NaN.
     """
 
     number: float | None
@@ -35,14 +35,14 @@ class Value:
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit of a kind, alone in a cell, for the numbers in its row."""
+    """Unit of a kind, alone in a cell, for the numbers in its row."""
 
     kind: Kind
 
 
 @dataclass(frozen=True)
 class Phrase:
-    """Text with its own units, as a search writes it, in each system of units."""
+    """Text that contains units, as written by a search, in each unit system."""
 
     metric: str
     inch: str
@@ -50,12 +50,13 @@ class Phrase:
 
 Part = str | Value | Unit | Phrase
 Text = Part | tuple[Part, ...]
-"""Text whose values have their units. In a cell, a value by itself has none: the head or the row says it."""
+"""Text with values, which show their units. A value alone in a cell shows no unit: the column heading or the row states
+it."""
 
 
 @dataclass(frozen=True)
 class Sentence:
-    """A sentence. style: a heading, plain text, or a note on what precedes it. apart: whether a space precedes it."""
+    """Sentence. style: heading, plain text, or a note on the preceding block. apart: whether space precedes it."""
 
     text: Text
     style: Literal["heading", "plain", "note"] = "plain"
@@ -64,7 +65,7 @@ class Sentence:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table. title: its head. kind: of its numbers, if the head has their unit."""
+    """Table column. title: its heading. kind: kind of its numbers, if the heading shows their unit."""
 
     title: Text = ""
     kind: Kind | None = None
@@ -73,9 +74,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """A table. rows: cells by column. ruled: whether a line is below the heads. dim: positions of columns with remarks.
+    """Table.
 
-    indented: whether it is indented below its heading. apart: whether a space precedes it, and columns are wide. bold:
+    rows: cells by column. ruled: whether a rule separates the headings. dim: positions of columns with remarks.
+
+    indented: whether it is indented below its heading. apart: whether space precedes it, and columns are wide. bold:
     positions of bold rows.
     """
 
@@ -118,7 +121,7 @@ def note(template: str, **values: Text) -> Sentence:
 
 
 def joined(texts: Sequence[Text], separator: str = ", ") -> Text:
-    """Return texts in sequence, without empty ones."""
+    """Return texts joined in sequence, without empty ones."""
     parts: list[Part] = []
     for text in texts:
         if text not in ("", ()):
@@ -128,7 +131,7 @@ def joined(texts: Sequence[Text], separator: str = ", ") -> Text:
 
 
 def column(title: Text = "", kind: Kind | None = None, *, left: bool = False) -> Column:
-    """Return a column of numbers, or of words aligned to the left."""
+    """Return a column of numbers, or of left-aligned words."""
     return Column(title, kind, right_aligned=not left)
 
 
@@ -144,11 +147,11 @@ def recorded_all(record: Mapping[str, Any], key: str, **look: Any) -> list[Value
 
 
 NamedNumber = tuple[str, Text, Text]
-"""Name of a number, the number, and a remark."""
+"""Row with the name of a number, the number, and a remark."""
 
 
 def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> NamedNumber:
-    """Return a number from a metric record with its name, the crank angle of a peak, and a remark."""
+    """Return a named number from a metric record, with the crank angle of a peak and a remark."""
     name, _ = kind_of_key(key)
     angle = f"{name}_angle_deg"
     at = words("at {angle}", angle=recorded(record, angle, decimals=2)) if record.get(angle) is not None else ""

@@ -1,4 +1,4 @@
-"""Table of the least and greatest values of curves and their positions."""
+"""Table with the minimum and maximum of curves and their positions."""
 
 from __future__ import annotations
 

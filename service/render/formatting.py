@@ -1,4 +1,4 @@
-"""Formatting of values and blocks in a system of units, the only place where numbers of answers become text."""
+"""Formatting of values and blocks in a unit system: the only place where numbers in answers become text."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from ...objectives.kinds import System, unit_text
 from .blocks import Block, Phrase, Sentence, Table, Text, Unit, Value
 from .numerals import format_number
 
-_LEAST_DIGITS = 4  # of a number in a unit of the inch system: 0.7 mm is 0.02756 in
+_LEAST_DIGITS = 4  # minimum significant digits in the inch system: 0.7 mm is 0.02756 in
 
 
 @dataclass(frozen=True)
 class PlainBlock:
-    """A sentence, or a table if there are rows, as text in one system of units.
+    """Sentence, or a table if there are rows, as text in one unit system.
 
-    heading: whether the sentence is a heading. heads: heads of the columns, empty texts for columns without one.
-    right: whether each is aligned to the right, as numbers are. rows: texts of the cells.
+    heading: whether the sentence is a heading. heads: column headings, empty for columns without one. right: whether
+    each column is right-aligned, as numbers are. rows: cell texts.
     """
 
     sentence: str = ""
@@ -29,7 +29,10 @@ class PlainBlock:
 
 
 def format_value(value: Value, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
-    """Return a value with its unit in a system. bare: without the unit. printed: in the number style of figures."""
+    """Return a value with its unit in a unit system.
+
+    bare: without the unit. printed: in the number style of figures.
+    """
     if value.number is None or math.isnan(value.number):
         return value.missing
     display_unit = value.kind.display_unit(system)
@@ -45,14 +48,14 @@ def format_value(value: Value, system: System = "metric", *, bare: bool = False,
 
 
 def digits_of(value: Value, system: System) -> tuple[int, int | None]:
-    """Return the number of significant digits of a value in a system, and the number of decimals that replaces it."""
+    """Return the significant digits of a value in a unit system, and the number of decimals if that applies instead."""
     if value.kind.display_unit(system) is value.kind.metric:
         return value.digits, value.decimals
     return max(value.digits, _LEAST_DIGITS), None
 
 
 def format_text(text: Text, system: System = "metric", *, bare: bool = False, printed: bool = False) -> str:
-    """Return a text with its values in a system. bare: whether a value that is the whole text omits its unit."""
+    """Return a text with its values in a unit system. bare: whether a value that is the whole text omits its unit."""
     if isinstance(text, str):
         return text
     if isinstance(text, Value):
@@ -65,7 +68,7 @@ def format_text(text: Text, system: System = "metric", *, bare: bool = False, pr
 
 
 def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> tuple[str, ...]:
-    """Return the heads of a table, each with the unit of its column after a separator."""
+    """Return the column headings of a table, each followed by a separator and the unit of the column."""
     titles = []
     for column in table.columns:
         unit = "" if column.kind is None else unit_text(column.kind.display_unit(system).symbol)
@@ -79,7 +82,7 @@ def cells(table: Table, system: System = "metric", *, printed: bool = False) -> 
 
 
 def plain_blocks(blocks: Sequence[Block], system: System = "metric") -> list[PlainBlock]:
-    """Return blocks as text in a system of units."""
+    """Return blocks as text in a unit system."""
     return [
         PlainBlock(format_text(block.text, system), heading=block.style == "heading")
         if isinstance(block, Sentence)

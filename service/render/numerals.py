@@ -9,7 +9,7 @@ from ..runs.result import Cell
 
 
 def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
-    """Return a number for people: given significant digits, no exponent if avoidable, a real minus sign.
+    """Return a number for people: significant digits as given, no exponent if avoidable, a real minus sign.
 
     zeros: whether to keep trailing zeros, so that numbers in a column have the same precision.
     """
@@ -22,7 +22,7 @@ def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 
 
 def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number as text for an axis from low to high; zero below a millionth of the range."""
+    """Return a number as text for an axis from low to high; values below a millionth of the range become zero."""
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
@@ -33,7 +33,7 @@ def with_unit(title: str, symbol: str, target: float | None = None) -> str:
 
 
 def rounded(cell: Cell) -> str:
-    """Return a value for people, with six digits."""
+    """Return a value for people, with six significant digits."""
     if cell is None:
         return "–"
     return cell if isinstance(cell, str) else format_number(cell, 6)
@@ -47,7 +47,7 @@ def as_stored(cell: Cell) -> str:
 
 
 def length(millimetres: float, system: System, digits: int = 4) -> str:
-    """Return a length, mm, for people in the unit of a system."""
+    """Return a length, mm, for people, in the unit of a unit system."""
     unit, factor = metric_unit_in("mm", system)
     return f"{format_number(millimetres * factor, digits)} {unit}"
 

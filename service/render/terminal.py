@@ -17,7 +17,7 @@ _STYLES = {"heading": "bold", "plain": None, "note": "dim"}
 
 
 def print_blocks(screen: Console, blocks: Sequence[Block], system: System = "metric") -> None:
-    """Write blocks in a system of units; a space follows a table and its notes."""
+    """Write blocks in a unit system; a blank line follows a table with its notes."""
     for before, block in zip((None, *blocks), blocks, strict=False):
         if block.space_before or ((isinstance(before, Table) or _is_note(before)) and not _is_note(block)):
             screen.print()
@@ -46,7 +46,9 @@ def _print_table(screen: Console, block: Table, system: System) -> None:
 
 
 def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
-    """Return an empty table. columns: heads, aligned to the right where they begin with ">". ruled: the heads.
+    """Return an empty table.
+
+    columns: headings; a leading ">" right-aligns the column. ruled: whether headings have a rule.
 
     look: further options of `rich.table.Table`.
     """
@@ -63,7 +65,7 @@ def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
 
 
 def print_table(screen: Console, table: Drawn) -> None:
-    """Write a table at its full width: a narrow terminal breaks its lines, but no number is cut."""
+    """Write a table at its full width: a narrow terminal wraps its lines, but no number is cut."""
     natural = screen.measure(table, options=screen.options.update(width=1000)).maximum
     before = screen.width
     try:

@@ -1,4 +1,4 @@
-"""Report of a design for a review: job, front, design, evidence, as HTML and PDF."""
+"""Report on a design for a review: job, front, design, evidence, as HTML and PDF."""
 
 from ...model.extras import required
 

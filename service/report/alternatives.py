@@ -1,4 +1,4 @@
-"""Bookmarked designs of a run, one of them perhaps decided for, as reports list them."""
+"""Bookmarked designs of a run, with the decision if there is one, as listed in reports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Result) -> list[Alternative]:
-    """Return the bookmarked designs of a job, each judged against its requirements and ranges."""
+    """Return the bookmarked designs of a job, each evaluated against its requirements and ranges."""
     minimised, alternatives = minimised_values(result), []
     for bookmark in bookmarks:
         design = StoredDesign(problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
@@ -31,7 +31,7 @@ def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Res
 
 
 def bookmarks_of_run(folder: Path) -> list[Bookmark]:
-    """Return the bookmarks of a run on the disk, from the store that solved it; none without such a store."""
+    """Return the bookmarks of a run on disk, from the store that solved it; none if there is no such store."""
     if not has_store(None, folder.parent):
         return []
     from ..store.remarks import bookmarks_of

@@ -1,4 +1,4 @@
-"""Section on the decision: the chosen design, the reason, and the reasons against the others."""
+"""Section on the decision: the chosen design, its reason, and the reasons against the others."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .subject import Alternative, Subject
 
 
 def decision_section(subject: Subject) -> Section | None:
-    """Return the chosen design, and the others with the reasons against them; None before a decision."""
+    """Return the chosen design, and the others with the reasons against them; None if there is no decision."""
     chosen = next((alternative for alternative in subject.alternatives if alternative.bookmark.decided), None)
     if chosen is None:
         return None

@@ -1,4 +1,4 @@
-"""Report of one design, from its summary to the versions of the software that computed it."""
+"""Report on one design, from its summary to the versions of the software that computed it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .swing_section import SwingOfSubject
 
 
 def design_report(subject: Subject, *, created: float | None = None) -> Report:
-    """Return the report of a design. created: time of the report, s since 1970; now if None."""
+    """Return the report on a design. created: time of the report, s since 1970; None for now."""
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
     swing = None if motion is None else SwingOfSubject(subject, motion)
@@ -72,7 +72,7 @@ def _summary_section(subject: Subject) -> Section:
 
 
 def _format_choice(subject: Subject, key: str) -> str:
-    """Return a choice, or an amount that follows from it, in words."""
+    """Return a choice, or a value derived from it, in words."""
     column, value = find_column(key, list(subject.row)), subject.row[key]
     custom = next((quantity for quantity in subject.problem.own if quantity.field == key), None)
     title, unit = (column.title, column.unit) if custom is None else (custom.title, custom.unit.symbol)
@@ -87,7 +87,7 @@ def _machine_lines(subject: Subject) -> list[str]:
 
 
 def _best_objectives(subject: Subject) -> list[str]:
-    """Return the objectives in which a design of the front is best."""
+    """Return the objectives in which a design on the front is best."""
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
     words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
@@ -96,7 +96,7 @@ def _best_objectives(subject: Subject) -> list[str]:
 
 
 def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
-    """Return sentences on the changes to a design of the front, and on the result."""
+    """Return sentences on the changes to a design on the front, and on their effect."""
     before = subject.result.designs[subject.number - 1]
     changes = [
         f"{name} {measured(subject.row[column.key], column.unit)} instead of "

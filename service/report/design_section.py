@@ -23,7 +23,7 @@ from ..render.numerals import as_stored, rounded
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
-_MET = 1e-6  # of a slack in its unit: constraints are met to rounding
+_MET = 1e-6  # tolerance of a slack in its unit: constraints are met within rounding
 
 
 def design_section(subject: Subject) -> Section:
@@ -47,7 +47,7 @@ def design_section(subject: Subject) -> Section:
 
 
 def numbers_section(subject: Subject) -> Section:
-    """Return every column of the design that its machine has, rounded and as stored."""
+    """Return every column that applies to the design's machine, rounded and as stored."""
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _is_active(subject, column)}
@@ -86,7 +86,7 @@ def numbers_section(subject: Subject) -> Section:
 
 
 def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
-    """Return the columns that a design's machine has, and titles of the others, such as a loss without friction.
+    """Return the columns that apply to a design's machine, and titles of the others, such as a loss without friction.
 
     Quantities that the job uses are never omitted.
     """
@@ -111,7 +111,7 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
 
 
 def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
-    """Return the dimensions with a tolerance, with the digits that it justifies, by column."""
+    """Return the dimensions that have a tolerance, by column, with the digits that it justifies."""
     texts = {}
     for key, tolerance in subject.tolerances.items():
         value = subject.row.get(key)
@@ -149,7 +149,7 @@ def _rule_blocks(subject: Subject) -> list[Block]:
 
 
 def _bounds_by_slack(subject: Subject) -> dict[str, str]:
-    """Return the bounds of each requirement of the design, including those of its choices, by slack column."""
+    """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):
         key, factor = key_in(item.slack, subject.system)
@@ -161,7 +161,7 @@ def _bounds_by_slack(subject: Subject) -> dict[str, str]:
 
 
 def _is_active(subject: Subject, column: Column) -> bool:
-    """Whether a slack is zero to rounding."""
+    """Whether a slack is zero within rounding."""
     slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
     size = max(1.0, abs(value)) if isinstance(value, float) and math.isfinite(value) else 1.0
     return isinstance(slack, float) and abs(slack) <= _MET * size
@@ -191,7 +191,7 @@ def _optimality_blocks(subject: Subject) -> list[Block]:
 
 
 def linkage_picture(subject: Subject) -> Picture:
-    """Return the drawing of the design."""
+    """Return the scale drawing of the design."""
     name, label = subject.result.name, subject.label
     return Picture(
         "The linkage, to scale",

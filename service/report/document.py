@@ -1,4 +1,4 @@
-"""A report as a document: its content before rendering to HTML or PDF."""
+"""Report as a document: its content before rendering to HTML or PDF."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Tone = Literal["plain", "note", "good", "bad"]
 
 @dataclass(frozen=True)
 class Paragraph:
-    """Text. tone: "plain"; "note" in small print; "good" or "bad" for checks."""
+    """Paragraph. tone: "plain"; "note" in small print; "good" or "bad" for checks."""
 
     text: str
     tone: Tone = "plain"
@@ -21,14 +21,14 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Facts:
-    """Names with one or more lines on each."""
+    """Names, each with one or more lines of text."""
 
     rows: Mapping[str, Sequence[str]]
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table. heads: heads of the columns. right: positions of right-aligned columns. bold: bold rows, from 0.
+    """Table. heads: column headings. right: positions of right-aligned columns. bold: positions of bold rows, from 0.
 
     wide: relative widths of the columns.
     """
@@ -44,7 +44,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure, drawn when needed.
+    """Figure, drawn when needed.
 
     raster: whether to use pixels instead of vectors, for thousands of marks. tallest: maximum height on paper, inches.
     """
@@ -60,7 +60,7 @@ Block = Paragraph | Facts | Table | Picture
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a report with its heading."""
+    """Part of a report with its heading."""
 
     title: str
     blocks: tuple[Block, ...]
@@ -68,7 +68,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """A report. made: date in words. signatures: roles of the people who sign."""
+    """Report. made: date in words. signatures: roles of the people who sign."""
 
     title: str
     subtitle: str

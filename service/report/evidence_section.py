@@ -18,11 +18,11 @@ from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 
 _MOST = 24
-"""Quantities in the figure of a page."""
+"""Number of quantities in a figure on a page."""
 
 
 def sensitivity_section(subject: Subject) -> Section:
-    """Return the change of every quantity with every dimension."""
+    """Return the change of every quantity with each dimension."""
     design = subject.design
     rows = tornado_rows(design.mechanism, design.linkage, design.part.motion)
     draw = partial(tornado_figure, rows, subject.system, width=7.4, limit=_MOST)
@@ -30,7 +30,7 @@ def sensitivity_section(subject: Subject) -> Section:
 
 
 def tolerance_section(subject: Subject) -> Section | None:
-    """Return the section on the tolerances' effect on the slider position; None for a job without tolerances."""
+    """Return the section on the effect of the tolerances on the slider position; None for a job without tolerances."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     if not np.any(limits(mechanism, linkage)):
         return None

@@ -1,4 +1,4 @@
-"""A report as one HTML file with embedded style and figures, without scripts or downloads, for screen and print."""
+"""Report as one HTML file with embedded style and figures, without scripts or downloads, for screen and print."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _table_html(table: Table) -> list[str]:
 
     parts = [f"<h3>{escape(table.title)}</h3>"] if table.title else []
     label = f' aria-label="{escape(table.title, quote=True)}"' if table.title else ' aria-label="numbers"'
-    # Content that may scroll sideways can be reached with the keyboard.
+    # Makes content that may scroll sideways accessible by keyboard.
     parts.append(f'<div class="scroll" tabindex="0" role="region"{label}>')
     parts.append('<table class="small">' if table.small else "<table>")
     heads = "".join(f'<th scope="col"{kind(place)}>{escape(head)}</th>' for place, head in enumerate(table.heads))
@@ -81,7 +81,7 @@ def _picture_html(picture: Picture, name: str) -> str:
 
 
 def _inline_svg(text: str, label: str, name: str) -> str:
-    """Return an SVG file as an element of a page, without its head and style, and with prefixed names."""
+    """Return an SVG file as an element of a page, without its header and style, and with prefixed ids."""
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>", "", text, flags=re.DOTALL)
     text = re.sub(r"<style[^>]*>.*?</style>", "", text, flags=re.DOTALL)

@@ -80,7 +80,7 @@ def _certificate(subject: Subject) -> tuple[Block, ...]:
 
 
 _MANY = 400
-"""Designs from which on figures of the front are drawn as points."""
+"""Number of designs from which figures of the front are drawn as raster images."""
 
 
 def front_section(subject: Subject) -> Section:
@@ -122,7 +122,7 @@ def _ranges(subject: Subject) -> Table:
 
 
 def _comparison_table(subject: Subject) -> Table:
-    """Return this design next to the best in each objective and the knee."""
+    """Return this design beside the best in each objective and the knee."""
     result = subject.result
     titles = {objective.quantity: objective.title for objective in result.objectives}
     labels: dict[int, list[str]] = {subject.number - 1: ["this design" if subject.changed is None else "unchanged"]}
@@ -148,7 +148,7 @@ def _comparison_table(subject: Subject) -> Table:
             *rows,
         )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)
-    lengths, label_width = 0.104, 0.15  # the heads of objectives are the longest words: "transmission"
+    lengths, label_width = 0.104, 0.15  # headings of objectives contain the longest words: "transmission"
     share = (0.95 - label_width - lengths * len(DIMENSIONS)) / (len(columns) - len(DIMENSIONS))
     return Table(
         "Marked designs",

@@ -1,4 +1,4 @@
-"""Measured curves next to the computed curves of the design."""
+"""Measured curves beside the computed curves of the design."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ADDED = "Shifts that, added to the measured curves, give the best fit; not appl
 
 
 def measured_section(subject: Subject, measured: Measured) -> Section:
-    """Return the deviation of each measured curve, the best-fitting shifts, and the figure."""
+    """Return the deviation of each measured curve, the best-fit shifts, and the figure."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
     deviations_found = numbers(mechanism, linkage, measured=measured)
     deviations, shifts = [], []
@@ -54,7 +54,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
 
 
 def _pictures_by_page(panel_figure: PanelFigure, system: System) -> list[Picture]:
-    """Return pictures with as many panels as a page shows well."""
+    """Return pictures with as many panels each as a page shows well."""
     parts = [panel_figure.panels[start : start + _PANELS] for start in range(0, len(panel_figure.panels), _PANELS)]
     return [
         Picture(

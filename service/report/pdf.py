@@ -1,4 +1,4 @@
-"""A report as tagged PDF on A4 pages, typeset by typst, with searchable text and vector figures."""
+"""Report as tagged PDF on A4 pages, typeset by typst, with searchable text and vector figures."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ typst = required("typst", "reports as PDF need")
 
 _TEMPLATE = Path(__file__).parent / "page" / "report.typ"
 _FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
-"""Those of the figures, so that pages are the same everywhere; others serve letters that these lack."""
+"""Fonts of the figures, so that pages look the same everywhere; other fonts supply missing characters."""
 _ACROSS = 6.77  # inches
-_SHARP = 220  # dots an inch of what is drawn as points
+_SHARP = 220  # dots per inch for raster images
 _UNITS = sorted({unit_text(unit.symbol) for of in DISPLAYED_KINDS for unit in (of.metric, of.inch) if unit}, key=len)[
     ::-1
 ]
 _UNIT = "|".join(map(re.escape, [*_UNITS, "%"]))
 _OF_NUMBER = re.compile(rf"(?<=\d) (?:{_UNIT})(?![\w/])|(?<=,) (?:{_UNIT})$|^(?:{_UNIT})$")
-"""A unit behind its number, at the end of a head, or alone."""
-_NO_BREAK = "\u00a0"  # a space at which no line is broken
+"""Matches a unit after a number, at the end of a heading, or alone."""
+_NO_BREAK = "\u00a0"  # non-breaking space
 
 
 def pdf_file(report: Report) -> bytes:
@@ -83,5 +83,5 @@ def _draw_picture(picture: Picture, file: Path) -> dict[str, Any]:
 
 
 def _unbreakable_text(text: str) -> str:
-    """Return a text without breaks within a unit, or between a number and its unit."""
+    """Return a text without line breaks within a unit, or between a number and its unit."""
     return _OF_NUMBER.sub(lambda found: found[0].replace(" ", _NO_BREAK), text)

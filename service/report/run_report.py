@@ -1,4 +1,4 @@
-"""Report of a design of a run on the disk."""
+"""Report on a design of a run on disk."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ from .subject import Subject
 def run_report(
     folder: Path, result: Result, number: int, *, pdf: bool, units: System, measured: str | None = None
 ) -> bytes:
-    """Return the report of a design of a run, by its number, counted from 1: HTML, or PDF.
+    """Return the report on a design of a run, by its number, counted from 1: HTML, or PDF.
 
-    measured: CSV text of measured curves to compare.
+    measured: CSV text of measured curves for comparison.
     """
     versions, certificate = _load_json(folder / "versions.json") or {}, _load_json(folder / "certificate.json")
     records: dict[str, Any] = {"versions": versions, "certificate": certificate, "system": units}
@@ -45,7 +45,7 @@ def run_report(
 
 
 def _load_json(file: Path) -> dict[str, Any] | None:
-    """Return the content of a JSON file of a run, None if there is none. Raises `RunError` for a damaged file."""
+    """Return the content of a JSON file of a run, or None if there is none. Raises `RunError` for a damaged file."""
     if not file.is_file():
         return None
     try:

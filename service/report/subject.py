@@ -1,4 +1,4 @@
-"""Subject of a report: one design of the result of a run, with all that is known about both."""
+"""Subject of a report: one design of a run's result, with all available data on both."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Alternative:
-    """A bookmarked design, perhaps the chosen one. row: metric row.
+    """Bookmarked design, perhaps the chosen one. row: metric row.
 
-    broken: columns of requirements that it misses. outside: columns of ranges that it leaves.
+    broken: columns of requirements that it misses. outside: columns whose range it leaves.
     """
 
     bookmark: Bookmark
@@ -39,7 +39,7 @@ class Alternative:
 
     @property
     def faults(self) -> list[str]:
-        """Missed requirements and ranges that it leaves, in words."""
+        """Missed requirements and exceeded ranges, in words."""
         return faults_in_words(self.row, self.broken, self.outside)
 
 
@@ -48,9 +48,9 @@ class Subject:
     """One design of a run. metric: stored result. number: number of the design, from 1. run: name of the run.
 
     versions: versions of the software that computed the front. certificate: JSON answer of `slidercrank certify`, if it
-    ran. known: front of the result, if already available. changed: the design with lengths other than in the front;
-    None for the unchanged design. system: system of units of the report. measured: measured curves to compare with
-    those of the design. alternatives: bookmarked designs of the run.
+    ran. known: front of the result, if already available. changed: the design with lengths other than on the front;
+    None for the unchanged design. system: unit system of the report. measured: measured curves to compare with those of
+    the design. alternatives: bookmarked designs of the run.
     """
 
     problem: Problem
@@ -68,28 +68,28 @@ class Subject:
 
     @cached_property
     def result(self) -> Result:
-        """The result in the units of the system."""
+        """Result in the unit system of the report."""
         return result_in(self.metric, self.system)
 
     @cached_property
     def front(self) -> ParetoFront:
-        """The front with its problem."""
+        """Front with its problem."""
         return self.loaded_front or front_of(self.problem, self.metric)
 
     @cached_property
     def design(self) -> StoredDesign:
-        """The machine and the linkage. Raises `RunError` for a design that does not belong to the problem."""
+        """Machine and linkage. Raises `RunError` for a design that does not belong to the problem."""
         return self.changed.design if self.changed else stored_design(self.problem, self.metric, self.number)
 
     @cached_property
     def tolerances(self) -> dict[str, float]:
-        """Tolerance of each dimension that has one, by its column and in its unit."""
+        """Tolerance of each dimension that has one, by column and in its unit."""
         tolerances_mm = tolerances_of(self.design.mechanism, self.design.linkage)
         keys = {name: key_in(f"{name}_mm", self.system) for name in tolerances_mm}
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def sensible(self, key: str, cell: Cell) -> str:
-        """Return a cell for people: a dimension with the decimals of its tolerance, otherwise six digits."""
+        """Return a cell for people: a dimension with the decimals of its tolerance, anything else with six digits."""
         if key not in self.tolerances or not isinstance(cell, float):
             return rounded(cell)
         return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
@@ -108,21 +108,21 @@ class Subject:
 
     @cached_property
     def bookmark(self) -> Bookmark | None:
-        """The bookmark of the design, if it has one."""
+        """Bookmark of the design, if it has one."""
         of_design = (alternative.bookmark for alternative in self.alternatives)
         design = self.design
         return next((bookmark for bookmark in of_design if bookmark.is_of(design.variant, design.values)), None)
 
     @property
     def label(self) -> str:
-        """The design by the name of its bookmark, or by its number."""
+        """Label of the design: the name of its bookmark, or its number."""
         if self.bookmark:
             return self.bookmark.name
         return f"design {self.number}" + ("" if self.changed is None else ", changed")
 
     @property
     def name(self) -> str:
-        """The design among the others."""
+        """Description of the design relative to the others."""
         if self.bookmark:
             return self.label
         return f"{self.label} of {len(self.result.designs)}" if self.changed is None else self.label

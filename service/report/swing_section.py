@@ -1,4 +1,4 @@
-"""Sections of a report on a swinging design: its numbers, extremes of its curves, origins of its errors."""
+"""Sections of a report on a swinging design: its numbers, extremes of its curves, sources of its errors."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from .subject import Subject
 
 
 class SwingOfSubject:
-    """The swing of the design of a report, computed once."""
+    """Swing of the reported design, computed once."""
 
     def __init__(self, subject: Subject, swing: Swing) -> None:
         self._subject, self._swing = subject, swing
 
     @cached_property
     def summary(self) -> SwingSummary:
-        """The numbers of the swing."""
+        """Numbers of the swing."""
         design = self._subject.design
         return summarise(design.mechanism, design.linkage, self._swing)
 
@@ -46,7 +46,7 @@ class SwingOfSubject:
         return Section("The swing", tuple(blocks))
 
     def tolerances(self) -> Section | None:
-        """Return the origins of the error on the driven side; None for a job without tolerances."""
+        """Return the error sources on the driven side; None for a job without tolerances."""
         worst, design, system = self.summary.position_error, self._subject.design, self._subject.system
         if worst is None:
             return None

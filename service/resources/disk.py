@@ -1,4 +1,4 @@
-"""Disk space: detection of a full disk in an error, and the free space of a place."""
+"""Disk space: detection of a full disk in an error, and the free space at a location."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from pathlib import Path
 from .memory import size_text
 
 LEAST = 256_000
-"""Bytes below which a disk counts as full: less than a database takes to write where a search stands."""
+"""Bytes below which a disk counts as full: less than a database needs to record the progress of a search."""
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def is_full(error: BaseException) -> bool:
-    """Whether an error reports a full disk, or an exhausted user quota."""
+    """Whether an error reports a full disk or an exhausted user quota."""
     return isinstance(error, OSError) and error.errno in _FULL
 
 
 def free(place: Path) -> int:
-    """Return the free space, bytes, at the place of a file or folder, existing or not; very large if unknown."""
+    """Return the free space, bytes, at the location of a file or folder, existing or not; very large if unknown."""
     existing = place.absolute()
     while not existing.exists() and existing != existing.parent:
         existing = existing.parent
@@ -33,12 +33,12 @@ def free(place: Path) -> int:
 
 
 def free_space_text(place: Path) -> str:
-    """Return the free space of a place in words."""
+    """Return the free space at a location in words."""
     return f"{place} has {size_text(free(place))} free"
 
 
 def full_places(error: OSError) -> str:
-    """Return the places affected by a full-disk error: the one that it names, else those without free space."""
+    """Return the locations affected by a full-disk error: the one that it names, or else those without free space."""
     if isinstance(error.filename, str | os.PathLike):
         return free_space_text(Path(error.filename))
     places = [place for place in _other_folders() if free(place) < LEAST]
@@ -46,11 +46,11 @@ def full_places(error: OSError) -> str:
 
 
 def _other_folders() -> list[Path]:
-    """Return further places that this software writes to: compiled kernels and temporary files."""
+    """Return further locations that this software writes to: compiled kernels and temporary files."""
     from ... import model
 
     cache = os.environ.get("NUMBA_CACHE_DIR") or Path(model.__path__[0]) / "__pycache__"
     folders = [Path(cache), Path(os.environ.get("TMPDIR") or "/tmp")]
-    with contextlib.suppress(OSError):  # nothing can be written in any of its folders
+    with contextlib.suppress(OSError):  # none of its folders is writable
         folders.append(Path(tempfile.gettempdir()))
     return [*dict.fromkeys(folders), Path.cwd()]

@@ -1,4 +1,4 @@
-"""Garbage collection, postponed while very many lasting objects are created."""
+"""Suspension of garbage collection while very many lasting objects are created."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """Suspend garbage collection: it takes a fifth of the time to load matplotlib or to draw a figure."""
+    """Suspend garbage collection, which takes a fifth of the time to load matplotlib or to draw a figure."""
     collecting = gc.isenabled()
     gc.disable()
     try:

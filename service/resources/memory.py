@@ -8,17 +8,18 @@ import re
 from ...model.errors import InputError
 
 TOLERATED = 0.25
-"""Share of a job's limit that earlier jobs may have left; beyond it the job goes to a fresh process, which has none."""
+"""Fraction of a job's limit that earlier jobs may occupy; beyond it the job goes to a fresh process."""
 _UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9, "TB": 10**12}
 _UNITS |= {"KIB": 2**10, "MIB": 2**20, "GIB": 2**30, "TIB": 2**40}
 _FORM = re.compile(r"\s*(\d+(?:\.\d+)?)\s*([A-Za-z]*)\s*", re.ASCII)
 
 
 class Memory:
-    """Memory used by this process and its children, distinguished by jobs.
+    """Memory used by this process and its children, accounted per job.
 
-    Memory in use at the start of a job, beyond that at the start of the first job, was left by earlier ones: caches,
-    compiled kernels, memory kept by the allocator. It does not count for the job, and shrinks once some is freed.
+    Memory in use at the start of a job, beyond that at the start of the first job, was left by earlier jobs: caches,
+    compiled kernels, memory kept by the allocator. It does not count towards the job, and shrinks when some of it is
+    freed.
     """
 
     def __init__(self) -> None:
@@ -48,7 +49,7 @@ def memory_taken() -> int:
     process = psutil.Process()
     total = int(process.memory_info().rss)
     for child in process.children(recursive=True):
-        with contextlib.suppress(psutil.Error):  # it has just ended
+        with contextlib.suppress(psutil.Error):  # the process has just ended
             total += int(child.memory_info().rss)
     return total
 

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 Cell = float | str | None
 Row = dict[str, Cell]
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # how a cell begins that spreadsheets compute (OWASP, CSV injection)
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # start of a cell that spreadsheets evaluate (OWASP, CSV injection)
 
 
 @dataclass(frozen=True, kw_only=True)
 class StoredObjective:
-    """An objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
+    """Objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
 
     quantity: str
     sense: str
@@ -47,7 +47,7 @@ class StoredObjective:
 
 @dataclass(frozen=True)
 class Exact:
-    """Designs of a front as the search left them: dimensions and slopes, SI; the fields are those of `ParetoFront`.
+    """Designs of a front as the search left them: dimensions and derivatives, SI; fields as in `ParetoFront`.
 
     dimensions: (n, 3 + v). variants: (n,), empty without choices. goals: for each design, objective index (p,)
     and gradient (p, f) of every active piece. active: gradients (a, f) of its active constraints.
@@ -80,10 +80,10 @@ class Result:
 
     run: its folder. status: "done", "cancelled" or "infeasible". designs: best in the first objective first.
     extremes: position in `designs` of the best design in each objective. knee: position of the knee; None without
-    designs. trade_offs: trade-offs at the knee, in words. warnings: warnings about what an engineer may not have meant.
-    violated: per column, the excess of each design over an allowable value, zero if it is met. exact: the designs as
-    the search left them; None for a run read from its files or from a store of an early version. discrete: how the
-    designs with discrete values were found, see `discrete_record`; None without such values.
+    designs. trade_offs: trade-offs at the knee, in words. warnings: warnings about possibly unintended input. violated:
+    per column, the excess of each design over an allowable value, zero if it is met. exact: the designs as the search
+    left them; None for a run read from its files or from a store of an early version. discrete: how designs with
+    discrete values were found, see `discrete_record`; None without such values.
     """
 
     run: str
@@ -106,13 +106,13 @@ class Result:
 
     @property
     def strokes_differ(self) -> bool:
-        """Whether one stroke of a design carries more load than the other: then the slow stroke matters."""
+        """Whether one stroke of a design carries more load than the other, so that the slow stroke matters."""
         return any(row.get("loaded_stroke", "equal") != "equal" for row in self.designs)
 
     def record(self, columns: Sequence[str] | None = None) -> dict[str, Any]:
         """Return the result for JSON: null for undefined values, "inf" and "-inf" for infinite ones.
 
-        columns: columns of the designs, all if None.
+        columns: columns of the designs; None for all.
         """
         left_out = ("exact",) if self.discrete else ("exact", "discrete")
         fields = {name: json_ready(value) for name, value in vars(self).items() if name not in left_out}
@@ -123,7 +123,7 @@ class Result:
 
 
 def stored_objectives(problem: Problem) -> list[StoredObjective]:
-    """Return the objectives of a problem as shown."""
+    """Return the objectives of a problem, in display units."""
     objectives = []
     for objective in problem.objectives:
         quantity = problem.quantity(objective.quantity)
@@ -225,7 +225,7 @@ def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
 
 
 def rows_of(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:
-    """Return the rows of a table given by columns, with Python's own numbers and strings in them."""
+    """Return the rows of a table given by columns, with plain Python numbers and strings."""
     keys = [str(key) for key in columns]
     cells = zip(*columns.values(), strict=True)
     return [dict(zip(keys, map(_cell_of, row), strict=True)) for row in cells]
@@ -238,14 +238,14 @@ def _cell_of(value: Any) -> Cell:
 
 
 def objective_record(objective: StoredObjective) -> dict[str, Any]:
-    """Return an objective as JSON has it."""
+    """Return an objective as in JSON."""
     return {name: value for name, value in vars(objective).items() if value is not None}
 
 
 def json_ready(value: Any, *, gaps: bool = False) -> Any:
     """Convert a value to JSON: None for undefined numbers, "inf" and "-inf" for infinities.
 
-    CSV files have the same words. gaps: None for infinities too, for drawings.
+    CSV files use the same words. gaps: None for infinities too, for drawings.
     """
     if isinstance(value, float):
         if math.isfinite(value):
@@ -259,7 +259,7 @@ def json_ready(value: Any, *, gaps: bool = False) -> Any:
 
 
 def read_row(row: Mapping[str, Any]) -> Row:
-    """Return a design of `json_ready` with its infinite numbers; words of choices stay words."""
+    """Return a design from `json_ready` with its infinite numbers restored; words of choices stay words."""
     return {
         key: float(cell) if cell in ("inf", "-inf") and not key.startswith("choice_") else cell
         for key, cell in row.items()
@@ -275,7 +275,7 @@ def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     """Return the rows as CSV (RFC 4180 with plain line ends): JSON keys as header, numbers at full precision.
 
     Infinity is written as inf; undefined values stay empty. spreadsheet: put an apostrophe before text that a
-    spreadsheet would take for a formula; such a cell cannot be read back unchanged.
+    spreadsheet would read as a formula; such a cell cannot be read back unchanged.
     """
     rows = list(rows)
     out = io.StringIO()
@@ -283,7 +283,7 @@ def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
         writer = csv.writer(out, lineterminator="\n")
         writer.writerow([_inert_text(key) for key in rows[0]] if spreadsheet else rows[0])
         for row in rows:
-            # The writer writes every number as repr does, None as nothing, and only NaN differs from itself.
+            # The writer writes every number as repr does, and None as nothing; only NaN differs from itself.
             cells = ["" if cell != cell else cell for cell in row.values()]
             if spreadsheet:
                 cells = [_inert_text(cell) if isinstance(cell, str) else cell for cell in cells]

@@ -1,4 +1,4 @@
-"""Writing of a run: a folder that is complete or marked unfinished, whenever the machine stops.
+"""Writing of a run: its folder is complete or marked unfinished, whenever the machine stops.
 
     runs/20260131-142501-feeder/
         job.toml        the job, byte for byte (job.json if it was JSON), and the files beside it that it names
@@ -37,28 +37,29 @@ PLACE_VARIABLE = "SLIDERCRANK_RUNS"
 
 
 def runs_place(option: Path | None) -> Path:
-    """Return the folder of runs: the option, else SLIDERCRANK_RUNS, else ./runs."""
+    """Return the folder of runs: the option, or SLIDERCRANK_RUNS, or ./runs."""
     return option or Path(os.environ.get(PLACE_VARIABLE) or DEFAULT_PLACE)
 
 
 def slug(name: str) -> str:
-    """Return a name as lower-case letters, digits and hyphens, for a folder."""
-    spelt = name.replace("ß", "ss").replace("ẞ", "SS")  # it has no decomposition
+    """Convert a name to lower-case letters, digits and hyphens, for a folder."""
+    spelt = name.replace("ß", "ss").replace("ẞ", "SS")  # ß has no decomposition
     plain = unicodedata.normalize("NFKD", spelt).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:40].rstrip("-") or "run"
 
 
 def run_name(name: str) -> str:
-    """Return the folder name for a run that begins now: the time, then the job name."""
+    """Return the folder name for a run that starts now: the time, then the job name."""
     return f"{time.strftime('%Y%m%d-%H%M%S')}-{slug(name)}"
 
 
 class RunFolder:
-    """A run being written. Every method raises `RunError` when the disk refuses.
+    """Run that is being written. Every method raises `RunError` if the disk cannot be written.
 
-    As a context manager it records the outcome of the run. Leaving without an error finishes it. An `InputError` or a
-    `MissingExtra` before there is a result removes the folder: nothing was done. Any other error leaves the run
-    unfinished, with the reason in log.txt, and adds the log's place to the error as a note. A resumed run keeps its
+    As a context manager it records the outcome of the run. Exit without an error finishes it. An `InputError` or a
+    `MissingExtra` before there is a result removes the folder, since nothing was done. Any other error leaves the run
+    unfinished, with the reason in log.txt, and adds the location of the log to the error as a note. A resumed run keeps
+    its
     files: nothing changes before `go_on`, and after an error the result of a cancelled run stays readable.
     """
 
@@ -67,9 +68,9 @@ class RunFolder:
         self.started = time.strftime("%Y-%m-%d %H:%M:%S")
         with disk(place):
             place.mkdir(mode=0o700, parents=True, exist_ok=True)
-            # Prepared out of sight, then renamed: nobody sees the folder without its mark.
+            # Prepared under a hidden name, then renamed, so that the folder never appears without its mark.
             hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
-            hidden.mkdir(mode=0o700)  # its log contains the command as typed
+            hidden.mkdir(mode=0o700)  # its log contains the command line
             try:
                 _write(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
                 self.path = _rename_hidden(hidden, place / run_name(name))
@@ -84,7 +85,7 @@ class RunFolder:
     def again(cls, path: Path) -> RunFolder:
         """Open the folder of an interrupted or cancelled run to continue it; it stays unchanged until `go_on`.
 
-        Raises `InputError` while another process is at work in it.
+        Raises `InputError` while another process uses it.
         """
         run = cls.__new__(cls)
         run.started = time.strftime("%Y-%m-%d %H:%M:%S")
@@ -96,7 +97,7 @@ class RunFolder:
         return run
 
     def go_on(self) -> None:
-        """Mark a run that was interrupted or cancelled as unfinished again."""
+        """Mark an interrupted or cancelled run as unfinished again."""
         self._is_as_before = False
         with disk(self.path):
             _write(self.path / MARK, f"Resumed {self.started}. The run continues, or was interrupted.\n")
@@ -104,7 +105,7 @@ class RunFolder:
 
     @property
     def figures(self) -> Path:
-        """Folder of the figures."""
+        """Folder with the figures."""
         return self.path / "figures"
 
     def log(self, line: str) -> None:
@@ -137,7 +138,7 @@ class RunFolder:
             _write(self.path / "front.json", json_text(result.record()))
 
     def finish(self) -> None:
-        """Make sure that everything is on the disk, then remove the mark."""
+        """Flush everything to disk, then remove the mark."""
         self.log("run finished")
         with disk(self.path):
             for folder in (self.figures, self.path):
@@ -188,7 +189,7 @@ def write_file(path: Path, content: str | bytes) -> None:
     """Write a file completely or not at all.
 
     A pipe or device receives the content directly, a link stays a link, and an existing file keeps its permissions.
-    Raises `RunError` when the disk refuses, `InputError` for a folder.
+    Raises `RunError` if the disk cannot be written, `InputError` for a folder.
     """
     if path.is_dir():
         raise InputError(f"an output must be a file; got the folder {path}; name a file in it")
@@ -201,9 +202,9 @@ def write_file(path: Path, content: str | bytes) -> None:
 
 
 def _lock(folder: Path) -> int | None:
-    """Return a handle that locks the folder against other processes while it is open; None without lock support.
+    """Return a handle that locks the folder against other processes while it is open; None if locks are not supported.
 
-    The lock ends with the process, however the process ends. Raises `InputError` if another process holds it.
+    The lock ends with the process, however it ends. Raises `InputError` if another process holds it.
     """
     if os.name == "nt":
         return None
@@ -227,7 +228,7 @@ def _rename_hidden(hidden: Path, target: Path) -> Path:
     for number in range(1, 10_000):
         path = target if number == 1 else target.with_name(f"{target.name}-{number}")
         try:
-            if not path.exists():  # the check is for Windows' sake; the rename itself refuses a folder with files
+            if not path.exists():  # needed on Windows; elsewhere the rename itself fails for a folder with files
                 hidden.rename(path)
                 return path
         except OSError:
@@ -241,7 +242,7 @@ def _bytes_of(content: str | bytes) -> bytes:
 
 
 def _write(path: Path, content: str | bytes) -> None:
-    """Write a file under another name, make sure that it is on the disk, then rename it."""
+    """Write a file under another name, flush it to disk, then rename it."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         with draft.open("wb") as file:
@@ -257,8 +258,8 @@ def _write(path: Path, content: str | bytes) -> None:
 
 
 def sync(path: Path) -> None:
-    """Make sure that a file, or a folder's list of files, is on the disk."""
-    if os.name == "nt":  # a read-only handle cannot be flushed there, and a folder not be opened
+    """Flush a file, or a folder's directory entry, to disk."""
+    if os.name == "nt":  # on Windows a read-only handle cannot be flushed, and a folder cannot be opened
         return
     handle = os.open(path, os.O_RDONLY)
     try:
@@ -269,7 +270,7 @@ def sync(path: Path) -> None:
 
 @contextlib.contextmanager
 def disk(place: Path) -> Iterator[None]:
-    """Turn a disk error into a `RunError` that names the place, and its free space if it is full."""
+    """Turn a disk error into a `RunError` that names the location, and its free space if it is full."""
     try:
         yield
     except OSError as error:

@@ -1,4 +1,4 @@
-"""Reading of runs from the disk."""
+"""Reading of runs from disk."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Result:
     """Return the result of a run. Raises `RunError` if it is unfinished, damaged, or not a run.
 
-    again: how to continue an unfinished run, in the words of the interface in use.
+    again: how to continue an unfinished run, in the words of the current interface.
     """
     try:
         if (folder / MARK).exists():
@@ -39,11 +39,11 @@ def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Resu
 
 
 def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact | None = None) -> Result:
-    """Return the result for a record of front.json, without its designs, and the rows of its designs.
+    """Return the result for a record of front.json without its designs, and the rows of its designs.
 
     exact: the same designs as the search left them, if stored.
 
-    Raises ValueError, KeyError or TypeError if they contradict each other, or something is missing.
+    Raises ValueError, KeyError or TypeError if they contradict each other or are incomplete.
     """
     objectives = tuple(StoredObjective(**item) for item in record["objectives"])
     result = Result(
@@ -78,10 +78,10 @@ def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact 
 
 
 def problem_of(folder: Path, result: Result) -> Problem:
-    """Return the problem that a run solved: its job, with the seed of the run.
+    """Return the problem that a run solved: that of its job, with the seed of the run.
 
-    Gives no warnings about the job: the result of the run has the warnings for its own designs. Raises `RunError` if
-    the run has no job, or a job that is no longer valid.
+    Does not warn about the job: the result of the run has the warnings for its own designs. Raises `RunError` if the
+    run has no job, or a job that is no longer valid.
     """
     from ...optimise.job import parse_job, read_job
 
@@ -96,5 +96,5 @@ def problem_of(folder: Path, result: Result) -> Problem:
 
 
 def job_file(folder: Path) -> Path | None:
-    """Return the job file of a run, None without one."""
+    """Return the job file of a run, or None if there is none."""
     return next((file for name in ("job.toml", "job.json") if (file := folder / name).is_file()), None)

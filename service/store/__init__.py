@@ -1,4 +1,4 @@
-"""The store of jobs: one database, SQLite or PostgreSQL, shared by all that submit, watch and solve them."""
+"""Store of jobs: one database, SQLite or PostgreSQL, shared by all processes that submit, watch and solve jobs."""
 
 from __future__ import annotations
 

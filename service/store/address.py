@@ -1,4 +1,4 @@
-"""Addresses of stores: the database of an address, and its text without secrets."""
+"""Addresses of stores: the database at an address, and its text without secrets."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ...model.file_names import path_from_text, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
 _MANGLED = re.compile(r"[^/\\]*:[^\\]+@|postgres\w*:|.*password\s*=", re.IGNORECASE | re.DOTALL)
-"""An address of a server that is none, such as one without its scheme; no file is taken to be called so."""
+"""Mangled server address, for example without its scheme; such a text is never taken as a file name."""
 HIDDEN = "***"
-"""In place of a password, and of options of an address other than the open ones: any may be a secret."""
+"""Replaces a password and any address option not known to be harmless, since it may be a secret."""
 
 
 def without_secrets(text: str) -> str:
-    """Return a command-line word without the secrets of an address, also after `--option=`."""
+    """Return a command-line word without the secrets of an address, even after `--option=`."""
     option, equals, value = text.partition("=") if text.startswith("--") else ("", "", text)
     scheme, server, _ = value.partition("://")
     if not server:
@@ -31,7 +31,7 @@ def without_secrets(text: str) -> str:
 
 
 def _parse_address(text: str) -> URL | None:
-    """Return a parsed address with "://"; None if it is unreadable or the end of its password is uncertain."""
+    """Return a parsed address with "://"; None if it is unreadable or the end of its password is ambiguous."""
     try:
         url = make_url(text)
     except (ArgumentError, ValueError):
@@ -41,21 +41,21 @@ def _parse_address(text: str) -> URL | None:
 
 
 def address_without_secrets(url: URL) -> str:
-    """Return an address without its secrets, fit to be shown."""
+    """Return an address without its secrets, for output."""
     hidden = {name: value if name in _OPEN else HIDDEN for name, value in url.query.items()}
     text = url.set(query=hidden, database=url.database and path_text(url.database)).render_as_string(hide_password=True)
     return text.replace(quote(HIDDEN), HIDDEN).replace("+psycopg://", "://", 1)
 
 
 def secrets_of(url: URL) -> list[str]:
-    """Return the secret parts of a database address, the longest first."""
+    """Return the secret parts of a database address, longest first."""
     values = [value for name, value in url.query.items() if name not in _OPEN]
     secrets = [url.password, *(secret for value in values for secret in ([value] if isinstance(value, str) else value))]
     return sorted({str(secret) for secret in secrets if secret}, key=len, reverse=True)
 
 
 def url_of(address: str | PathLike[str]) -> URL:
-    """Return the database at an address. Raises `InputError` for another kind of database."""
+    """Return the database at an address. Raises `InputError` for any other type of database."""
     text = str(address)
     if "://" not in text and not _MANGLED.match(text):
         return URL.create("sqlite", database=str(path_from_text(text)))
@@ -72,7 +72,7 @@ def url_of(address: str | PathLike[str]) -> URL:
 
 
 def file_of(address: str | PathLike[str]) -> Path | None:
-    """Return the file of a store, None for a server. Raises `InputError` for an invalid address."""
+    """Return the file of a store, or None for a server. Raises `InputError` for an invalid address."""
     url = url_of(address)
     return Path(url.database) if url.database and url.get_backend_name() == "sqlite" else None
 
@@ -80,7 +80,7 @@ def file_of(address: str | PathLike[str]) -> Path | None:
 def is_there(file: Path) -> bool:
     """Whether the file of a store exists.
 
-    Raises `StoreError` if it cannot be such a file, or was deleted or emptied and has left its write-ahead log. SQLite
+    Raises `StoreError` if it cannot be such a file, or was deleted or emptied while its write-ahead log remains. SQLite
     would delete the log too, with the latest jobs in it.
     """
     try:
@@ -106,7 +106,10 @@ def is_there(file: Path) -> bool:
 
 
 def has_content(file: Path) -> bool:
-    """Whether the file of a store exists and can be inspected. Raises `StoreError` if it is empty, or as `is_there`."""
+    """Whether the file of a store exists and can be inspected.
+
+    Raises `StoreError` for an empty file, and as `is_there` does.
+    """
     exists = is_there(file)
     if exists and not file.stat().st_size:
         raise StoreError(

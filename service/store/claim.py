@@ -1,4 +1,4 @@
-"""Claim of a worker on a job: everything written about the job goes through its claim."""
+"""Claim of a worker on a job: all writes for the job go through its claim."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 _REPORT_AFTER = 1.0  # s after which a waiting write is reported
-_PAUSE = 0.25  # s between two attempts of a write that the database refused
+_PAUSE = 0.25  # s between two attempts of a write that the database rejected
 Rest = Callable[[Connection], None]
 Patience = Callable[[float], bool]
-"""Whether a write that found no room on the disk waits for some; asked with the time that it has waited, s."""
+"""Whether a write waits for space after finding the disk full; called with the time waited so far, s."""
 
 
 def _never(_: float) -> bool:
@@ -40,22 +40,22 @@ def _never(_: float) -> bool:
 class Claim:
     """Right to write to a job until its lease ends.
 
-    Every write is one transaction. It takes effect only if the fence is still that of this claim and the lease has not
-    ended, by the monotonic clock of this process or by the database clock, which may jump. Otherwise nothing is written
-    and `LeaseLost` is raised, even if no other worker has claimed the job yet. Every write renews the lease. A write
-    that the database refuses, or whose answer is lost, is retried while the lease lasts, and takes effect once. Threads
-    may share a claim.
+    Every write is one transaction. It takes effect only if the fence is still that of this claim and the lease has
+    ended neither by the monotonic clock of this process nor by the database clock, which may jump. Otherwise nothing is
+    written and `LeaseLost` is raised, even if no other worker has claimed the job yet. Every write renews the lease. A
+    write that the database rejects, or whose answer is lost, is retried while the lease lasts, and takes effect once.
+    Threads may share a claim.
 
-    A write that finds the disk full waits for free space, while other threads renew the lease: that takes less space.
-    If even the renewal fails, nobody else can claim the job either, and this worker keeps it until someone does.
+    A write that finds the disk full waits for free space, while other threads renew the lease, which takes less space.
+    If even the renewal fails, no other worker can claim the job either, and this one keeps it until another can.
 
     has_started: whether its search has evaluated anything yet. astray: whether the lease ends at a wrong time because
     the database clock has jumped; it must be renewed. patient: whether a write waits for free space. waits: reason why
-    a write waits; empty if none does. waited: time that writes have waited for free space, s.
+    a write waits; empty if none waits. waited: time that writes have waited for free space, s.
     """
 
     def __init__(self, database: Database, job: Job, lease: float) -> None:
-        """Hold a job that was just claimed. lease: length of the lease, s."""
+        """Create the claim on a job that was just claimed. lease: duration of the lease, s."""
         self.job = job
         self.lease = lease
         self.cancel_asked = job.cancel_asked
@@ -74,7 +74,7 @@ class Claim:
 
     @property
     def age(self) -> float:
-        """Time since the lease was last renewed, in s."""
+        """Time since the lease was last renewed, s."""
         return time.monotonic() - self._renewed
 
     def records(self) -> list[Record]:
@@ -89,10 +89,10 @@ class Claim:
             self._unsent.append(record)
 
     def report(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
-        """Write the progress of the search and the records since the last report. Loading does not count as begun.
+        """Write the progress of the search and the records since the last report. Loading does not count as a start.
 
         front: some designs of the front so far, as JSON. Only the latest is stored, with the job: a front in each event
-        would make a store of many runs grow.
+        would inflate a store with many runs.
         """
         self.has_started = self.has_started or not progress.prepares
         data = json_ready(asdict(progress), gaps=True)
@@ -100,12 +100,12 @@ class Claim:
         self._write({"progress": text_of(standing)}, [("progress", data)])
 
     def renew(self) -> None:
-        """Renew the lease and check for cancellation; writes nothing else but the reason why a write waits."""
-        with self._lock:  # else the write may end its wait meanwhile
+        """Renew the lease and check for cancellation; additionally writes only the reason why a write waits."""
+        with self._lock:  # otherwise the write may end its wait meanwhile
             self._write({"reason": plain(self.waits)} if self.waits else {}, [], keep=False, patient=_never)
 
     def look(self) -> None:
-        """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has it."""
+        """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has claimed it."""
         left = (jobs.c.lease_until - now()).label("left")
         query = select(jobs.c.cancel_asked, left).where(self._mine, jobs.c.state == "running")
         with self._database.reading() as connection:
@@ -132,7 +132,7 @@ class Claim:
             self._records = 0
 
     def write_files(self, *files: Artefact) -> None:
-        """Write files of the job, replacing those of the same names."""
+        """Write files of the job, replacing those with the same names."""
         self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
 
     def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
@@ -160,16 +160,16 @@ class Claim:
             if content is not None:
                 connection.execute(insert(exact), {"job": self.job.id, "content": content})
             put_files(connection, self.job.id, files)
-            if result.status != "cancelled":  # a cancelled job can continue
+            if result.status != "cancelled":  # a cancelled job can be resumed
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
         self._end(result.status, result.message, {**texts, **left}, rest)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
-        """Give the job back after an error.
+        """Return the job to the queue after an error.
 
         again: whether another attempt may succeed; the job is then queued again after `delay` s, at most a minute,
-        unless its attempts are used up. Otherwise it is set aside as failed.
+        unless no attempts are left. Otherwise it is set aside as failed.
         """
         attempts = 0 if self._unsent else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
@@ -192,12 +192,12 @@ class Claim:
         self._leave("queued", reason, {"finished": None, "attempts": fewer, **due})
 
     def let_go(self) -> None:
-        """End the lease immediately, whatever the clock says, if no other worker has the job."""
+        """End the lease immediately, regardless of clocks, unless another worker has the job."""
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
 
     def _leave(self, state: str, reason: str, changes: dict[str, Any]) -> None:
-        """End the claim without a result. Records that do not fit on the disk are omitted: they are computed again."""
+        """End the claim without a result. Records that do not fit on the disk are omitted: they are recomputed."""
         try:
             self._end(state, reason, changes, patient=_never)
         except Full:
@@ -238,7 +238,7 @@ class Claim:
                             self._lock.wait(_PAUSE)  # other threads write meanwhile
                         else:
                             tried = True
-                            time.sleep(_PAUSE)  # they may not: this write may have taken effect
+                            time.sleep(_PAUSE)  # other threads must not write: this write may have taken effect
             finally:
                 if full:
                     self.waits = ""
@@ -260,7 +260,7 @@ class Claim:
             "records": self._records + len(rows),
         }
         if rows:
-            values["attempts"] = 0  # it progresses: earlier failures do not block it
+            values["attempts"] = 0  # the job makes progress, so earlier failures do not count
         condition = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
         if self.age > self.lease and not self.waits:
             condition = and_(condition, jobs.c.lease_until > now())
@@ -278,7 +278,7 @@ class Claim:
                 if rest is not None:
                     rest(connection)
             elif not tried or connection.scalar(select(jobs.c.writes).where(self._mine)) != self._writes + 1:
-                raise self._lost()  # else already written: only the answer to an earlier try was lost
+                raise self._lost()  # otherwise already written: only the answer to an earlier attempt was lost
         self._renewed, self.astray = started, False
         self._writes += 1
         self._records += len(rows)

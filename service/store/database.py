@@ -1,7 +1,7 @@
-"""A database opened by its address: commits survive, and failures are reported in one sentence.
+"""Database opened by its address: commits survive crashes, and failures are reported in one sentence.
 
-SQLite: write-ahead log, `synchronous=FULL`, and every writing transaction begins with `BEGIN IMMEDIATE`, so that none
-must be abandoned half-way because another one wrote meanwhile. PostgreSQL: psycopg 3, `synchronous_commit=on`.
+SQLite: write-ahead log, `synchronous=FULL`, and every write transaction starts with `BEGIN IMMEDIATE`, so that none
+must be aborted half-way because of another writer. PostgreSQL: psycopg 3, `synchronous_commit=on`.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from .address import HIDDEN, address_without_secrets, file_of, is_there, secrets
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as API threads use simultaneously
-_SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # of PostgreSQL; a transaction of SQLite has one anyway
-_IDLE = 0.1  # s after which a connection has to prove that it is alive: no server restarts sooner
+_SNAPSHOT = {"isolation_level": "REPEATABLE READ"}  # for PostgreSQL; a SQLite transaction has it anyway
+_IDLE = 0.1  # idle s after which a connection is tested: no server restarts faster
 _POSTGRESQL = {
     "synchronous_commit": "on",
     "lock_timeout": "30s",
-    # A worker that is stopped in the middle of a transaction would otherwise hold its job forever.
+    # Otherwise a worker stopped in the middle of a transaction would hold its job forever.
     "idle_in_transaction_session_timeout": "10s",
 }
 
@@ -42,23 +42,23 @@ _DISK_FULL = "53100"  # of PostgreSQL
 
 
 class Unavailable(StoreError):
-    """Temporary refusal of the database: it restarts, its disk is full, or another writer is active."""
+    """Temporary refusal by the database: it restarts, its disk is full, or another writer is active."""
 
 
 class Full(Unavailable):
-    """The disk of the database is full."""
+    """Disk of the database is full."""
 
 
 class Database:
-    """An open database. Both kinds of transaction raise `StoreError` when the database refuses or cannot be reached.
+    """An open database. Both kinds of transaction raise `StoreError` if the database refuses or cannot be reached.
 
-    last_full: time when its disk was last seen full, s on the monotonic clock.
+    last_full: time when its disk was last found full, s on the monotonic clock.
     """
 
     def __init__(self, address: str | PathLike[str]) -> None:
         """Open the database at an address: postgresql://..., sqlite:///file, or the path of a file.
 
-        Raises `InputError` for an address of another kind, `StoreError` if it cannot be opened.
+        Raises `InputError` for any other form of address, `StoreError` if it cannot be opened.
         """
         url = url_of(address)
         self.name = address_without_secrets(url)
@@ -70,8 +70,8 @@ class Database:
         if self._file is not None:
             is_there(self._file)
             with contextlib.suppress(OSError):  # if it cannot be created, opening it reports why
-                # The files beside it, of the write-ahead log, get its permissions. One that is there is left alone: to
-                # close it would end the locks that SQLite has on it for other connections of this process.
+                # The files beside it, of the write-ahead log, get its permissions. An existing file is left alone:
+                # closing it would release the locks that SQLite holds on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
             self._known, self._open = _file_identity(self._file), may_use(self._file)
             log, shared = (Path(f"{self._file}{end}") for end in ("-wal", "-shm"))
@@ -80,7 +80,7 @@ class Database:
                     f"a read-only store with a write-ahead log needs the file -shm beside it; {self.name} has "
                     f"{path_text(log)} alone; copy both to a folder where you may write, and name the copy"
                 )
-            # Where nobody writes either: SQLite would look for a log that it cannot make, or leave one behind.
+            # Where nobody can write anyway: SQLite would look for a log that it cannot create, or leave one behind.
             alone = not self._open and not log.exists()
             if alone and os.access(self._file, os.R_OK):
                 unchanging = {"mode": "ro", "immutable": "1", "uri": "true"}
@@ -120,7 +120,7 @@ class Database:
         if self._folder is None:
             return getattr(cause, "sqlstate", None) == _DISK_FULL
         code = (getattr(cause, "sqlite_errorcode", None) or 0) & 0xFF
-        lacking = (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN)  # as it says where its log has no room
+        lacking = (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN)  # the message if its log has no space
         return code == sqlite3.SQLITE_FULL or (code in lacking and free(self._folder) < LEAST)
 
     def close(self) -> None:
@@ -159,9 +159,8 @@ class Database:
                 f"the file of a store must stay in place while it is used; {self.name} was deleted, moved or replaced; "
                 "put it back, or stop what uses it and start again"
             )
-        if (
-            self._file is not None and self._open and not may_use(self._file)
-        ):  # open transactions continue, no other could begin
+        # Open transactions would continue, but no new one could begin.
+        if self._file is not None and self._open and not may_use(self._file):
             raise StoreError(
                 f"the file of a store must stay readable and writable while it is used; {self.name} is no longer; "
                 f"{remedy_of_rights(self._file)}"
@@ -173,7 +172,8 @@ class Database:
             yield
         except (ArgumentError, DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
             if self._is_full(error):
-                raise self._full(self._without_secrets(_reason(error))) from None  # its own words have the secrets
+                # Its own message contains the secrets.
+                raise self._full(self._without_secrets(_reason(error))) from None
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
@@ -187,7 +187,7 @@ class Database:
         return text
 
     def _use_write_ahead_log(self) -> None:
-        """Switch SQLite to a write-ahead log, a lasting setting of the file; several processes may try it together."""
+        """Switch SQLite to a write-ahead log, a permanent setting of the file; processes may try it together."""
         end = time.monotonic() + _PATIENCE
         while True:
             try:
@@ -207,7 +207,7 @@ class Database:
 
 
 def _file_identity(file: Path) -> tuple[int, int] | None:
-    """Return device and inode of a file, which writing preserves; None if it does not exist."""
+    """Return device and inode of a file, which do not change on writing; None if it does not exist."""
     try:
         status = file.stat()
     except OSError:
@@ -251,7 +251,7 @@ def _postgresql_engine(url: URL) -> Engine:
     arguments = {
         "options": f"{options} {in_address}".strip(),
         "connect_timeout": 10,
-        "tcp_user_timeout": 20_000,  # ms until a machine that is gone counts as gone
+        "tcp_user_timeout": 20_000,  # ms until an unreachable machine counts as gone
         "application_name": "slidercrank",
     }
     used_arguments = {name: value for name, value in arguments.items() if name == "options" or name not in url.query}
@@ -264,7 +264,7 @@ def _postgresql_engine(url: URL) -> Engine:
 
     @event.listens_for(engine, "checkout")
     def prove(connection: Any, record: Any, _proxy: Any) -> None:
-        # Not each time, as the pool itself would: that takes as long as the use of the connection.
+        # Not every time, as the pool would: that takes as long as using the connection.
         if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _is_alive(engine, connection):
             raise InvalidatePoolError  # makes the pool drop its connections and open a new one
 

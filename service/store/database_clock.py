@@ -1,10 +1,10 @@
-"""Time by the database clock, the only one that compares leases of several machines.
+"""Time on the database clock, the only one that can compare leases across machines.
 
 That clock may be set by hours in either direction, and nothing may depend on it. A worker with a job measures its lease
 on its own monotonic clock, and renews it when the database clock has jumped. A worker that looks for jobs claims none
 for a moment after a jump, so that holders come first. It also waits after the disk of the database was full, when
-leases could not be renewed. A sign of life or a due time impossibly far in the future comes from a clock that was set
-back, and delays nothing. Results depend on fences alone.
+leases could not be renewed. A heartbeat or a due time impossibly far in the future comes from a clock that was set
+back, and delays nothing. Results depend only on fences.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from sqlalchemy.sql.compiler import SQLCompiler
 from sqlalchemy.sql.functions import FunctionElement
 
 JUMP = 1.0
-"""s between this clock and a monotonic one, from one look to the next, that are no delay but a jump."""
+"""Difference in s between this clock and a monotonic one, since the last check, that means a jump and not a delay."""
 SETTLING = 2.0
-"""s after a jump or a full disk in which no job is claimed: eight times as long as holders take to see it and to renew
-their lease."""
+"""s without claims after a jump or a full disk: eight times as long as holders take to notice it and renew their
+lease."""
 
 
 class Jumps:
@@ -35,7 +35,7 @@ class Jumps:
         self._until = -math.inf
 
     def is_steady(self, database_time: float, last_full: float = -math.inf) -> bool:
-        """Return whether the last clock jump and the last full disk are both some time ago.
+        """Return whether the last clock jump and the last full disk are both long enough ago.
 
         database_time: time of the database, s. last_full: time of the last full disk on the monotonic clock, s.
         """
@@ -65,5 +65,5 @@ def _sqlite(_element: now, _compiler: SQLCompiler, **_options: Any) -> str:
 
 @compiles(now, "postgresql")
 def _postgresql(_element: now, _compiler: SQLCompiler, **_options: Any) -> str:
-    # now() of PostgreSQL stands still within a transaction, which may have waited for a lock beyond the end of a lease.
+    # now() in PostgreSQL is constant within a transaction, which may have waited for a lock beyond the end of a lease.
     return "CAST(extract(epoch FROM clock_timestamp()) AS double precision)"

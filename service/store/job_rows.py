@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 NewEvent = tuple[str, Mapping[str, Any]]
 """Kind and data of an event."""
-_TOGETHER = 100  # jobs of one query: databases refuse very long ones
+_TOGETHER = 100  # jobs per query: databases reject very long ones
 
 
 def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
@@ -40,7 +40,7 @@ def become(connection: Connection, job: Job, state: State, reason: str, **change
 
 
 def require_resumable(job: Job) -> None:
-    """Raise `InputError` for a job that cannot continue."""
+    """Raise `InputError` for a job that cannot be resumed."""
     if job.state not in RESUMABLE:
         raise InputError(f"only a cancelled or failed job can continue; job {job.id} is {job.state}; submit it anew")
 
@@ -65,7 +65,7 @@ def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
 
 
 def require_sum(expected: str, *parts: str | bytes | None) -> None:
-    """Raise ValueError if parts of a result do not match their checksum; an empty checksum is unknown."""
+    """Raise ValueError if parts of a result do not match their checksum; an empty checksum is not checked."""
     if expected and checksum(*parts) != expected:
         raise ValueError("it differs from its checksum, so its numbers may be wrong")
 
@@ -82,7 +82,7 @@ def damaged(number: int, error: Exception) -> RunError:
 
 
 def add_events(connection: Connection, job: int, last: int, new_events: Sequence[NewEvent]) -> None:
-    """Add events, the last with the number `last`, to a job whose row was updated in this transaction."""
+    """Add events to a job whose row was updated in this transaction; the last event gets the number `last`."""
     for number, (kind, data) in enumerate(new_events, last - len(new_events) + 1):
         row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
         connection.execute(insert(events).values(row))
@@ -94,7 +94,7 @@ def state_event(state: str, reason: str = "") -> NewEvent:
 
 
 def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dict[int, News]:
-    """Return the news of jobs since an event of each; deleted jobs are omitted. See `Store.news`."""
+    """Return the news of jobs since a given event of each; deleted jobs are omitted. See `Store.news`."""
     numbers = list(after)
     news: dict[int, News] = {}
     for start in range(0, len(numbers), _TOGETHER):

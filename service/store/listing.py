@@ -1,4 +1,4 @@
-"""Orders of a list of jobs, each with its pages."""
+"""Sort orders for a list of jobs, each with paging."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .records import DECISION, State
 from .schema import jobs
 
 Order = Literal["newest", "oldest", "name", "state", "decided"]
-"""Order of a list of jobs. state: those that wait and run first. decided: those with a decision first."""
+"""Order of a list of jobs. state: waiting and running jobs first. decided: jobs with a decision first."""
 
 _KEYS: dict[Order, Any] = {
     "oldest": jobs.c.id,
@@ -21,7 +21,7 @@ _KEYS: dict[Order, Any] = {
 
 
 def in_order(query: Select[Any], order: Order, before: int | None) -> Select[Any]:
-    """Return a query for jobs in an order, jobs of the same key latest first.
+    """Return a query for jobs in an order; jobs with equal keys are sorted newest first.
 
     before: number of a job; only jobs after it in this order, for paging. None for all.
     """

@@ -1,4 +1,4 @@
-"""The queue of a store: adding jobs, and choosing the next job for a worker."""
+"""Queue of a store: adding jobs, and selecting the next job for a worker."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from .schema_version import LOCK
 from .serialisation import plain, text_of
 
 MOST_DELAY = 60.0
-"""s after which a job is due again at the latest: one that is due later was queued under a clock set back since."""
-# Every write of a job is a sign of life of its worker. One in the future dates from before the clock was set back, and
-# a live worker gives another one immediately: so a lease as far in the future belongs to a dead worker.
+"""s after which a job is due again at the latest: a later due time comes from a clock that was set back since."""
+# Every write to a job is a heartbeat of its worker. A heartbeat in the future dates from before the clock was set
+# back, and a live worker soon sends another: so a lease that far in the future belongs to a dead worker.
 _FROM_LATER = exists(select(workers.c.id).where(workers.c.id == jobs.c.worker, workers.c.seen > now() + JUMP))
 ENDED_LEASE = or_(jobs.c.lease_until < now(), _FROM_LATER)
 """Whether the lease of a running job has ended."""
 LEFT = and_(jobs.c.state == "running", ENDED_LEASE)
-"""Whether a job was left by its worker."""
+"""Whether a job was abandoned by its worker."""
 _DUE = or_(jobs.c.due <= now(), jobs.c.due > now() + MOST_DELAY)
 
-# Of PostgreSQL's sessions each skips what another has locked; SQLite has one writer at a time and needs no locks.
+# Each PostgreSQL session skips rows that another has locked; SQLite has one writer at a time and needs no locks.
 _CLAIMABLE = (
     select(*JOB_COLUMNS)
     .where(or_(and_(jobs.c.state == "queued", _DUE), LEFT))
@@ -50,13 +50,13 @@ def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
 
 
 def take_turns(connection: Connection) -> None:
-    """Wait until no other PostgreSQL session submits; SQLite sessions take turns anyway."""
+    """Wait until no other PostgreSQL session is submitting; SQLite sessions take turns anyway."""
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK + 1})
 
 
 def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]) -> Job | None:
-    """Return the job submitted with a key, None if there is none. Raises `InputError` if it differs."""
+    """Return the job submitted with a key, or None. Raises `InputError` if it differs."""
     row = connection.execute(select(*JOB_COLUMNS, jobs.c.tables).where(jobs.c.key == key)).first()
     if row is None:
         return None
@@ -84,7 +84,7 @@ def add_job(
     run: str,
     **values: Any,
 ) -> int:
-    """Insert a queued job and return its number. run: name of its folder, changed if taken."""
+    """Insert a queued job and return its number. run: name of its folder, changed if already used."""
     row = {
         "name": plain(name),
         "run": _free(connection, run),
@@ -103,7 +103,7 @@ def add_job(
 
 
 def in_hand(worker: str, lease: float) -> dict[str, Any]:
-    """Return the changes, besides the state, to a job that a worker claims for `lease` s."""
+    """Return the changes, apart from the state, to a job that a worker claims for `lease` s."""
     return {
         "attempts": jobs.c.attempts + 1,
         "started": func.coalesce(jobs.c.started, now()),
@@ -115,9 +115,10 @@ def in_hand(worker: str, lease: float) -> dict[str, Any]:
 
 
 def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> bool:
-    """Whether some job may be claimed; checked before claiming, so that idle workers do not write.
+    """Whether any job may be claimed; checked before claiming, so that idle workers do not write.
 
-    jumps: jumps of the database clock. last_full: time when its disk was full, s. No job is claimed soon after either.
+    jumps: jumps of the database clock. last_full: time when its disk was full, s. No job is claimed shortly after
+    either.
     """
     clock_steady = jumps.is_steady(connection.execute(select(now())).scalar_one(), last_full)
     return clock_steady and connection.execute(_CLAIMABLE).first() is not None
@@ -130,9 +131,9 @@ def running(connection: Connection) -> int:
 
 
 def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
-    """Give the foremost job to a worker, highest priority first, then oldest first; None if there is none.
+    """Give the first job to a worker, highest priority first, then oldest first; None if there is none.
 
-    It is queued and due, or its lease has expired. Jobs with an expired lease and no attempt left are set aside:
+    The job is queued and due, or its lease has expired. Jobs with an expired lease and no attempts left are set aside:
     whatever stopped their workers would stop the next one too.
     """
     while True:
@@ -165,7 +166,7 @@ def _set_aside(connection: Connection, job: Job) -> None:
 
 
 def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
-    """Write files of a job, replacing those of the same names."""
+    """Write files of a job, replacing those with the same names."""
     for file in files:
         connection.execute(delete(artefacts).where(artefacts.c.job == job, artefacts.c.name == file.name))
         row = {"name": file.name, "media_type": file.media_type, "content": file.content}

@@ -21,20 +21,20 @@ LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 NOT_DONE = "cancelled before it was done"
 _DECISIONS = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
 DECISION = _DECISIONS.correlate(jobs).scalar_subquery()
-"""The name of the design decided for in a job."""
+"""Name of the design decided for in a job."""
 JOB_COLUMNS = (
     *(column for column in jobs.c if column.name not in ("tables", "result", "checksum")),
     DECISION.label("decision"),
 )
-"""Columns of a list of jobs: all but the long ones, and the name of the design decided for."""
+"""Columns for a list of jobs: all but the long ones, and the name of the design decided for."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limits:
-    """Limits of a job on time, evaluations and memory; None is no limit.
+    """Limits of a job on time, evaluations and memory; None means no limit.
 
     seconds, evaluations: limits of its search, which then ends with its result so far, as if cancelled. memory: limit
-    of its worker, bytes; beyond it the job fails.
+    of its worker, bytes; if exceeded, the job fails.
     """
 
     seconds: float | None = None
@@ -61,11 +61,11 @@ NO_LIMITS = Limits()
 
 
 class Queueing(TypedDict, total=False):
-    """How a job is queued.
+    """Queue settings of a job.
 
-    priority: higher ones are claimed first, 0 if not given. key: key of this submission; a key used before queues
+    priority: higher ones are claimed first, default 0. key: key of this submission; repeating an earlier key queues
     nothing and returns the earlier job. most_attempts: number of attempts without progress before it is set aside,
-    `store.MOST_ATTEMPTS` if not given.
+    default `store.MOST_ATTEMPTS`.
     """
 
     priority: int
@@ -75,15 +75,15 @@ class Queueing(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Job:
-    """State of a job. Times are seconds since 1970 on the clock of the database.
+    """State of a job. Times are in seconds since 1970 on the clock of the database.
 
-    run: name of its run folder, wherever it is exported. state: queued, running, done, infeasible (nothing can meet
-    its rules), cancelled, or failed: set aside, not tried again unless someone resumes it. reason: why it is in this
+    run: name of its run folder, wherever it is exported. state: queued, running, done, infeasible (no design meets its
+    requirements), cancelled, or failed: set aside and not retried until someone resumes it. reason: why it is in this
     state, in a sentence, or empty. attempts: attempts since its last new record. due: earliest time of a claim. worker,
     lease_until: worker and end of lease of a running job. records: number of records to continue from. events: number
-    of events. progress: fields of the latest `Progress`, or None; `front` included if the search gave one, see
+    of events. progress: fields of the latest `Progress`, or None; includes `front` if the search reported one, see
     `Claim.report`. summary: summary of its result, see `serialisation.summary_of`, or None. origin: number of the job
-    from which it was copied and changed, or None. decision: name of the design decided for, or None.
+    from which it was copied, or None. decision: name of the design decided for, or None.
     """
 
     id: int
@@ -114,7 +114,7 @@ class Job:
     @classmethod
     def from_row(cls, row: Found[*tuple[Any, ...]], *, left_out: Sequence[str] = ()) -> Job:
         """Return a job from a row with the columns `JOB_COLUMNS`; other columns are ignored."""
-        from pydantic_core import from_json  # in a quarter of the time of json's
+        from pydantic_core import from_json  # takes a quarter of the time of the `json` module
 
         values = dict(row._mapping)
         for name in ("writes", *left_out):
@@ -125,8 +125,8 @@ class Job:
         return cls(**values, limits=Limits(seconds=seconds, evaluations=evaluations, memory=memory))
 
     def record(self) -> dict[str, Any]:
-        """Return the job as JSON, the same everywhere: times in seconds since 1970, memory in bytes."""
-        # Not `asdict`: it copies what is within, which takes most of the time of a list.
+        """Return the job as JSON, the same in all interfaces: times in seconds since 1970, memory in bytes."""
+        # Not `asdict`: its copies would take most of the time of a list.
         record = {name: value for name, value in vars(self).items() if name not in ("fence", "limits")}
         seconds, evaluations, memory = self.limits.seconds, self.limits.evaluations, self.limits.memory
         record["limits"] = {"seconds": seconds, "evaluations": evaluations, "memory_bytes": memory}
@@ -135,7 +135,7 @@ class Job:
         return record
 
     def front_points(self) -> dict[str, Any]:
-        """Return columns of at most two objectives, and points of at most 64 designs of its front.
+        """Return the columns of at most two objectives, and the points of at most 64 designs of its front.
 
         Both are empty if no front is known.
         """
@@ -147,7 +147,7 @@ class Job:
 
 @dataclass(frozen=True, kw_only=True)
 class Event:
-    """Something that happened to a job. kind: "state", "progress" or "message"; data: its content as JSON."""
+    """Event in the life of a job. kind: "state", "progress" or "message"; data: its content as JSON."""
 
     job: int
     number: int
@@ -167,7 +167,7 @@ class Event:
 
 @dataclass(frozen=True, kw_only=True)
 class News:
-    """News of a job. last_number: that of its last event, which may come after `events` if these are cut."""
+    """News of a job. last_number: number of its last event, which may come after `events` if these are truncated."""
 
     state: State
     last_number: int
@@ -181,7 +181,7 @@ class News:
 
 @dataclass(frozen=True, kw_only=True)
 class Artefact:
-    """A file of a job."""
+    """File of a job."""
 
     name: str
     media_type: str
@@ -189,15 +189,15 @@ class Artefact:
 
 
 SILENT = 120.0
-"""s; a worker with the default lease is heard of every 10 s."""
+"""s; a worker with the default lease sends a heartbeat every 10 s."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Worker:
-    """A worker that solves jobs.
+    """Worker that solves jobs.
 
-    started, seen: times when it began, and when it was last heard from. silent: time since `seen`, s. busy: whether it
-    has a job.
+    started, seen: times of its start and of its last heartbeat. silent: time since `seen`, s. busy: whether it has a
+    job.
     """
 
     id: str
@@ -208,15 +208,16 @@ class Worker:
 
     @property
     def at_work(self) -> bool:
-        """Whether it was heard from recently."""
+        """Whether it sent a recent heartbeat."""
         return self.silent <= SILENT
 
 
 @dataclass(frozen=True, kw_only=True)
 class Crew:
-    """The workers of a store and what is left for them.
+    """Workers of a store and the jobs that wait for them.
 
-    workers: number of workers heard from recently. busy: those that have a job. waiting: number of jobs without one.
+    workers: number of workers with a recent heartbeat. busy: number of those with a job. waiting: number of jobs
+    without a worker.
     """
 
     workers: int
@@ -224,7 +225,7 @@ class Crew:
     waiting: int
 
     def __str__(self) -> str:
-        """The crew in a line."""
+        """Summary in one line."""
         left = f"{self.waiting} waiting"
         if not self.workers:
             return f"no worker, {left}: start one with slidercrank worker"

@@ -18,16 +18,16 @@ from .schema import bookmarks, wishes
 from .serialisation import plain
 
 MOST_BOOKMARKS = 500
-"""Most bookmarks of a job."""
-_SAME = 1e-9  # of a dimension: addresses and forms give it with fewer digits
+"""Maximum number of bookmarks per job."""
+_SAME = 1e-9  # relative tolerance of a dimension: addresses and forms give it with fewer digits
 MOST_WISHES = 50
-"""Wishes that are kept of a job; the oldest go first."""
+"""Maximum number of wishes kept per job; the oldest are dropped."""
 Wished = Mapping[str, tuple[str, float | None]]
-"""Wishes by objective: the kind, and the value of one that has a value, in the metric unit of the objective."""
+"""Wishes by objective: kind, and value if the kind has one, in the metric unit of the objective."""
 
 
 class Remarks(TypedDict, total=False):
-    """Words of people about a bookmarked design. decided: revokes the earlier decision of its job."""
+    """Remarks on a bookmarked design. decided: revokes the earlier decision of its job."""
 
     name: str
     note: str
@@ -38,9 +38,9 @@ class Remarks(TypedDict, total=False):
 
 @dataclass(frozen=True, kw_only=True)
 class Bookmark:
-    """A bookmarked design. number: number within its job, from 1. at: time of bookmarking, s since 1970.
+    """Bookmarked design. number: number within its job, from 1. at: time of bookmarking, s since 1970.
 
-    design: number of the design of the front that it is or began as; None for neither. variant: variant of the job's
+    design: number of the front design that it is or is derived from; None for neither. variant: variant of the job's
     choices. dimensions: crank, rod, offset, m, and each extra variable, SI. decided: whether it was chosen, at most one
     per job. reason: reason for or against it.
     """
@@ -58,7 +58,7 @@ class Bookmark:
     at: float
 
     def is_of(self, variant: int, dimensions: Sequence[float]) -> bool:
-        """Whether it is the bookmark of the design with these dimensions, apart from rounding."""
+        """Whether it is the bookmark of the design with these dimensions, within rounding."""
         pairs = zip(self.dimensions, dimensions, strict=True) if variant == self.variant else [(0.0, 1.0)]
         return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
 
@@ -69,7 +69,7 @@ class Bookmark:
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
-    """Return the bookmarks of a job, oldest first. Raises `NotFound` without the job."""
+    """Return the bookmarks of a job, oldest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
         the_job(connection, job)
         return _all_bookmarks(connection, job)
@@ -84,10 +84,10 @@ def keep_design(
     design: int | None = None,
     **remarks: Unpack[Remarks],
 ) -> Bookmark:
-    """Bookmark a design of a job and return it. Raises `NotFound` without the job, `InputError` beyond the limit.
+    """Bookmark a design of a job and return it. Raises `NotFound` for a missing job, `InputError` beyond the limit.
 
-    A design that is bookmarked already keeps its one bookmark, which takes over the remarks that are not empty. A new
-    bookmark without a name is "Kept 3" and so on.
+    A design has at most one bookmark: if it exists, it takes over the remarks that are not empty. A new bookmark
+    without a name is called "Kept 3" and so on.
     """
     with store.writing() as connection:
         the_job(connection, job, lock=True)
@@ -152,7 +152,10 @@ def _bookmark_from(row: Any) -> Bookmark:
 
 @dataclass(frozen=True, kw_only=True)
 class MadeWish:
-    """A recorded wish. number: number within its job. design: design that classes refer to. time: s since 1970, UTC."""
+    """Recorded wish.
+
+    number: number within its job. design: reference design of the classes. time: s since 1970, UTC.
+    """
 
     number: int
     wishes: Wished
@@ -161,7 +164,7 @@ class MadeWish:
 
 
 def wishes_of(store: Database, job: int) -> list[MadeWish]:
-    """Return the wishes made on a job, the latest first. Raises `NotFound` without the job."""
+    """Return the wishes recorded for a job, newest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
         the_job(connection, job)
         rows = connection.execute(select(wishes).where(wishes.c.job == job).order_by(wishes.c.number.desc()))
@@ -177,7 +180,7 @@ def wishes_of(store: Database, job: int) -> list[MadeWish]:
 
 
 def note_wish(store: Database, job: int, stated: Wished, design: int | None) -> None:
-    """Record a wish on the front of a job as the latest, replacing an identical earlier one."""
+    """Record a wish for the front of a job as the latest, replacing an identical earlier one."""
     text = json.dumps({name: list(wish) for name, wish in sorted(stated.items())})
     with store.writing() as connection:
         the_job(connection, job, lock=True)

@@ -1,4 +1,4 @@
-"""The tables of the store. Times are seconds since 1970 on the clock of the database; tables of a job are JSON text.
+"""Tables of the store. Times are in seconds since 1970 on the clock of the database; tables of a job are JSON text.
 
     jobs          one row per job: its content, its state, its worker and lease
     events        what happened to a job, numbered 1, 2, 3, ... without gaps: states, progress, messages
@@ -9,8 +9,8 @@
     kept          bookmarked designs of a front, with their names, notes and reasons
     workers       workers, and when each was last heard from
 
-Every change of a job, and every row that belongs to it, is written in a transaction that updates its row in `jobs`
-first. So the writers of one job take turns, and its events become visible in the order of their numbers.
+Every change to a job, and to any row that belongs to it, is written in a transaction that updates its row in `jobs`
+first. So the writers of one job take turns, and its events become visible in order of number.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ NAMES = {
     "fk": "fk_%(table_name)s_%(column_0_N_name)s",
     "pk": "pk_%(table_name)s",
 }
-"""Names of constraints, so that migrations can name them on every database."""
+"""Naming convention for constraints, so that migrations can name them on every database."""
 
 metadata = sa.MetaData(naming_convention=NAMES)
-_number = sa.BigInteger().with_variant(sa.Integer, "sqlite")  # SQLite counts up keys of this type only
+_number = sa.BigInteger().with_variant(sa.Integer, "sqlite")  # SQLite auto-increments only keys of this type
 
 
 def _of_a_job() -> sa.Column[int]:
@@ -68,13 +68,13 @@ jobs = sa.Table(
     sa.UniqueConstraint("key"),
     sa.UniqueConstraint("run"),
     sa.Index(None, "state", "priority", "id"),
-    sqlite_autoincrement=True,  # the number of a deleted job never comes back
+    sqlite_autoincrement=True,  # the number of a deleted job is never reused
 )
-"""key: of the submission, to recognise a repeated one. run: the name of the run folder. most_*: `Limits`. due: not to
-be claimed before. fence: how often it was claimed. writes: how often the holder of this claim has written. records,
-events: how many there are. progress: the latest. summary: for lists. result: `Result.record` without designs, with the
-names of their columns. origin: the job that it is a changed copy of, which may be gone. checksum: SHA-256 of result and
-summary, then that of its designs and exact ones; results of early stores have none."""
+"""key: key of the submission, to recognise a repeated one. run: name of the run folder. most_*: `Limits`. due: earliest
+time of a claim. fence: number of claims so far. writes: number of writes by the holder of the current claim. records,
+events: numbers of rows. progress: latest progress. summary: for lists. result: `Result.record` without designs, with
+the names of their columns. origin: the job that it was copied from, which may be deleted. checksum: SHA-256 of result
+and summary, followed by that of its designs and exact designs; results of early stores have none."""
 
 events = sa.Table(
     "events",

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from alembic.script import ScriptDirectory
 
 LATEST = "0007"
-"""Version of the tables that this software knows, so that a store of today is opened without Alembic."""
-LOCK = 0x51C7  # PostgreSQL's advisory lock of whoever changes the tables
+"""Table version of this software, so that an up-to-date store opens without Alembic."""
+LOCK = 0x51C7  # PostgreSQL advisory lock for changing the tables
 
 
 def upgrade(database: Database) -> None:
@@ -51,7 +51,7 @@ def upgrade(database: Database) -> None:
 
 
 def versions(database: Database) -> tuple[str | None, str | None, bool]:
-    """Return the version of the tables (None without any), that of this software, and whether it knows the former."""
+    """Return the version of the tables (or None), that of this software, and whether this software knows the former."""
     with database.reading() as connection:
         version = _stored_version(connection)
     return version, LATEST, version == LATEST or _knows_version(_alembic()[1], version)
@@ -68,7 +68,7 @@ def _alembic() -> tuple[Config, ScriptDirectory]:
 
 
 def strangers(database: Database) -> str:
-    """Return, in words, the tables of a foreign database; an empty text for a store or an empty database."""
+    """Return, in words, the tables of a foreign database; empty for a store or an empty database."""
     with database.reading() as connection:
         return _foreign_tables(connection, _alembic()[1])
 

@@ -1,4 +1,4 @@
-"""Records, designs, exact ones too, and tables of a job as bytes and text, and back, without losing a bit."""
+"""Records, designs, exact designs and job tables as bytes and text, and back, without losing a bit."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _POINTS = 64
 
 
 def packed(record: Record) -> bytes:
-    """Return a record of a search as a file in NumPy's .npz format, without pickles."""
+    """Return a search record as a file in NumPy's .npz format, without pickles."""
     import numpy as np
 
     return _saved(
@@ -38,7 +38,7 @@ def packed(record: Record) -> bytes:
 
 
 def unpacked(content: bytes) -> Record:
-    """Return the record that `packed` was given. Raises `RunError` if the content is damaged."""
+    """Return the record that was passed to `packed`. Raises `RunError` if the content is damaged."""
     import numpy as np
 
     from ...optimise.search.checkpoints import Identity, Record
@@ -58,7 +58,7 @@ def unpacked(content: bytes) -> Record:
 
 
 def packed_exact(exact: Exact) -> bytes:
-    """Return exact designs as a file like `packed`: slopes in sequence, with the shapes for each design."""
+    """Return exact designs as a file like `packed`: concatenated derivatives, with the shapes for each design."""
     import numpy as np
 
     parts_by_design = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
@@ -73,7 +73,7 @@ def packed_exact(exact: Exact) -> bytes:
 
 
 def unpacked_exact(content: bytes) -> Exact:
-    """Return the designs that `packed_exact` packed. Raises ValueError if the content is damaged."""
+    """Return the designs that were passed to `packed_exact`. Raises ValueError if the content is damaged."""
     import numpy as np
 
     try:
@@ -123,7 +123,7 @@ def checksum(*parts: str | bytes | None) -> str:
 
 
 def text_of(value: Any) -> str:
-    """Return strict, compact JSON in ASCII. Raises ValueError for a number that is not finite."""
+    """Return strict, compact JSON in ASCII. Raises ValueError for a non-finite number."""
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 
@@ -139,11 +139,11 @@ def cells_of(row: Mapping[str, Cell]) -> str:
 
 
 def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
-    """Return the designs passed to `cells_of`; undefined values as NaN, as in a table read from CSV.
+    """Return the designs passed to `cells_of`; undefined values become NaN, as in a table read from CSV.
 
-    Raises ValueError for a text that is not such an array. Made for fronts of 10,000 designs: pydantic's parser gives
-    the same numbers as json's in a quarter of the time. Cells are checked one by one only if some may be infinite or
-    undefined.
+    Raises ValueError for a text that is not such an array. Optimised for fronts of 10,000 designs: pydantic's parser
+    gives the same numbers as `json` in a quarter of the time. Cells are checked individually only if some may be
+    infinite or undefined.
     """
     from pydantic_core import from_json
 
@@ -157,9 +157,9 @@ def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return the summary of a result for lists: counts, the best of each objective, points of the front.
+    """Return the summary of a result for lists: counts, the best value of each objective, points of the front.
 
-    axes: the columns of the first two objectives, or of the only one; points: their values, of at most 64 designs.
+    axes: columns of the first two objectives, or of the only one; points: their values for at most 64 designs.
     """
     axes = [objective.column for objective in result.objectives[:2]]
     best = {

@@ -1,4 +1,4 @@
-"""The store: jobs, their events and their results, in one database that many processes share."""
+"""Store of jobs, their events and their results, in one database that many processes share."""
 
 from __future__ import annotations
 
@@ -44,16 +44,18 @@ LEASE = 30.0
 
 
 class Store(Workers):
-    """An open store. Threads may share it; processes open their own. Also a context manager, which closes it.
+    """An open store.
+
+    Threads may share it; each process opens its own. Can be used as a context manager, which closes it.
 
     Every method raises `StoreError` if the database refuses or cannot be reached, and `NotFound` for a missing job.
-    Whatever a method has written when it returns survives a crash of the machine.
+    All data that a method has written when it returns survives a crash of the machine.
     """
 
     def __init__(self, address: str | PathLike[str], *, most_queued: int = MOST_QUEUED) -> None:
         """Open the store at an address: the path of a file, sqlite:///file, or postgresql://user@host/database.
 
-        The tables are created or upgraded. most_queued: maximum number of waiting jobs.
+        Creates or upgrades the tables. most_queued: maximum number of waiting jobs.
         """
         super().__init__(address)
         self.most_queued = most_queued
@@ -79,10 +81,10 @@ class Store(Workers):
         origin: int | None = None,
         **queueing: Unpack[Queueing],
     ) -> Job:
-        """Queue a job and return it. The job itself is not read; `submission.submit` checks it first.
+        """Queue a job and return it. The job itself is not validated; `submission.submit` checks it first.
 
-        tables: tables of its job file. files: files that belong to it, such as the original job file. origin: number of
-        the job from which it was copied and changed. queueing: see `Queueing`.
+        tables: tables of its job file. files: accompanying files, such as the original job file. origin: number of the
+        job from which it was copied. queueing: see `Queueing`.
 
         Raises `QueueFull`, and `InputError` if the key belongs to another job.
         """
@@ -90,7 +92,7 @@ class Store(Workers):
         queue.require_bounds(**queueing_values)
         key, values = queueing_values["key"], {**queueing_values, "origin": origin}
         with self.writing() as connection:
-            queue.take_turns(connection)  # so that two submissions neither share a key nor overfill the queue
+            queue.take_turns(connection)  # so that two submissions can neither share a key nor overfill the queue
             earlier = queue.submitted_before(connection, key, tables) if key else None
             if earlier is None:
                 queue.require_place_in_queue(connection, self.most_queued)
@@ -100,14 +102,16 @@ class Store(Workers):
     def begin(
         self, tables: Mapping[str, Any], *, name: str, run: str, worker: str, lease: float, files: Sequence[Artefact]
     ) -> Claim:
-        """Add a job that its submitter solves itself, in `run`, and return its claim. It is never retried."""
+        """Add a job that its submitter solves itself, in `run`, and return its claim. The job is never retried."""
         with self.writing() as connection:
             queue.take_turns(connection)
             number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
             return self._claim(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
 
     def go_on(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
-        """Claim a cancelled or failed job immediately, to continue it. alone: also a running job whose worker is gone.
+        """Claim a cancelled or failed job immediately, to continue it.
+
+        alone: also allow a running job whose worker is gone.
 
         Raises `InputError` for a job in another state.
         """
@@ -123,7 +127,7 @@ class Store(Workers):
         return Claim(self, running_job, lease)
 
     def job(self, number: int) -> Job:
-        """Return a job with its state; a waiting job's reason says whether disk space or a worker is missing."""
+        """Return a job with its state; the reason of a waiting job says whether disk space or a worker is missing."""
         with self.reading() as connection:
             stored = the_job(connection, number)
         return self._waiting([stored])[0]
@@ -147,7 +151,7 @@ class Store(Workers):
             return records_of(connection, number)
 
     def find(self, run: str) -> Job | None:
-        """Return the job with a run folder name, None if there is none."""
+        """Return the job with a run folder name, or None."""
         with self.reading() as connection:
             row = connection.execute(select(*JOB_COLUMNS).where(jobs.c.run == run)).first()
         return None if row is None else Job.from_row(row)
@@ -162,7 +166,7 @@ class Store(Workers):
         limit: int = 100,
         order: Order = "newest",
     ) -> list[Job]:
-        """Return jobs in an order. states: states to include, all if empty. name: part of the name, case ignored.
+        """Return jobs in an order. states: states to include, all if empty. name: part of the name, ignoring case.
 
         before: number of a job; only jobs after it in this order, for paging. numbers: numbers to include, all if
         empty. limit: maximum number of jobs.
@@ -220,7 +224,7 @@ class Store(Workers):
             record, _ = the_record(connection, job)
             if job.summary is not None:
                 return {**record, "count": job.summary["designs"]}
-            # Only results in the first stores have none.
+            # Only results in the earliest stores have none.
             count = select(func.count()).select_from(designs).where(designs.c.job == number)
             return {**record, "count": connection.execute(count).scalar_one()}
 
@@ -246,7 +250,7 @@ class Store(Workers):
             return sorted(connection.execute(select(artefacts.c.name).where(artefacts.c.job == number)).scalars())
 
     def artefact(self, number: int, name: str) -> Artefact:
-        """Return a file of a job. Raises `NotFound` if it has none of that name."""
+        """Return a file of a job. Raises `NotFound` if there is no file with that name."""
         of_file = and_(artefacts.c.job == number, artefacts.c.name == name)
         with self.reading() as connection:
             row = connection.execute(select(artefacts.c.media_type, artefacts.c.content).where(of_file)).first()
@@ -255,9 +259,9 @@ class Store(Workers):
         return Artefact(name=name, media_type=row.media_type, content=bytes(row.content))
 
     def cancel(self, number: int) -> Job:
-        """Cancel and return a job: immediately if no worker has it, else when its worker notices.
+        """Cancel and return a job: immediately if no worker has it, otherwise when its worker notices.
 
-        A cancelled job keeps its result so far, and can continue. A job that has ended stays unchanged.
+        A cancelled job keeps its result so far, and can be resumed. An ended job does not change.
         """
         with self.writing() as connection:
             job = the_job(connection, number, lock=True)
@@ -294,10 +298,12 @@ class Store(Workers):
             connection.execute(delete(jobs).where(jobs.c.id == number))
 
     def claim(self, worker: str, *, lease: float = LEASE, most_running: int | None = None) -> Claim | None:
-        """Give the foremost waiting job to a worker for `lease` s; None if there is none now. See `queue.claim_next`.
+        """Give the first waiting job to a worker for `lease` s; None if there is none at present.
 
-        most_running: maximum number of jobs held by workers at a time; None for no limit. Raises `Full` if one waits
-        and the disk is full: its claim may fit into the files, its records do not.
+        See `queue.claim_next`.
+
+        most_running: maximum number of jobs held by workers simultaneously; None for no limit. Raises `Full` if a job
+        waits and the disk is full: its claim may fit into the files, but not its records.
         """
         if not 0.0 < lease <= 3600.0:
             raise InputError(f"a lease must last more than 0 s and at most an hour; got {lease} s")

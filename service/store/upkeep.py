@@ -1,4 +1,4 @@
-"""Upkeep of a store: its damages, clock and server, and a copy of it."""
+"""Maintenance of a store: its damage, clock and server, and a copy of it."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from .database_clock import now
 from .job_rows import require_sum
 from .schema import designs, events, exact, jobs, records
 
-_MOST = 5  # of a kind that are named
+_MOST = 5  # maximum number named of each type of damage
 _SETTINGS = ("fsync", "full_page_writes")
-"""Of PostgreSQL: without them what was committed may not outlive a crash."""
+"""PostgreSQL settings without which committed data may not survive a crash."""
 
 
 def damages(database: Database) -> list[str]:
-    """Return sentences on damage to the database itself, and on jobs with wrong counts of rows or damaged results.
+    """Return sentences on damage to the database itself, and on jobs with wrong row counts or damaged results.
 
     Raises `StoreError` if it cannot be reached.
     """
@@ -41,7 +41,7 @@ def damages(database: Database) -> list[str]:
 
 
 def clock_ahead(database: Database) -> float:
-    """Return how far the database clock is ahead of the clock of this machine, s."""
+    """Return by how much the database clock is ahead of the clock of this machine, s."""
     with database.reading() as connection:
         before = time.time()
         database_time = connection.execute(select(now())).scalar_one()
@@ -83,7 +83,7 @@ def _of_postgresql(connection: Connection) -> list[str]:
 
 
 def _jobs_with_miscounts(connection: Connection) -> list[str]:
-    """Return the jobs with missing or surplus rows; one statement, so that all counts are of one moment."""
+    """Return the jobs with missing or surplus rows; one statement, so that all counts refer to the same moment."""
 
     def count(table: FromClause) -> ColumnElement[int]:
         return select(func.count()).where(table.c.job == jobs.c.id).scalar_subquery()
@@ -111,7 +111,7 @@ def _jobs_with_miscounts(connection: Connection) -> list[str]:
 
 
 def _damaged_results(connection: Connection) -> list[str]:
-    """Return the jobs that, with their results, do not match their checksums."""
+    """Return the jobs that, together with their results, do not match their checksums."""
     summed = (jobs.c.tables, jobs.c.result, jobs.c.summary)
     query = select(jobs.c.id, jobs.c.checksum, *summed).where(jobs.c.checksum.is_not(None)).order_by(jobs.c.id)
     damage = []
@@ -145,12 +145,12 @@ def back_up(database: Database, target: Path) -> None:
         raise InputError(f"a backup must be a new file; {target} already exists; name another one, or move it away")
     draft = target.with_name(f".{target.name}.{os.getpid()}")
     try:
-        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it has all data of the store
+        os.close(os.open(draft, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))  # it contains all data of the store
         with (
             contextlib.closing(sqlite3.connect(source, timeout=_PATIENCE)) as original,
             contextlib.closing(sqlite3.connect(draft)) as copy,
         ):
-            original.backup(copy)  # in one step, so that no writer makes it restart
+            original.backup(copy)  # in one step, so that no writer can make it restart
             copy.execute("PRAGMA journal_mode=DELETE")  # so that the copy is one file
             verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if verdict != "ok":

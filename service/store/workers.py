@@ -1,4 +1,4 @@
-"""The workers of a store and when each was last heard from."""
+"""Workers of a store and the time of each one's last heartbeat."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _FORGOTTEN = 7 * 86_400.0  # s
 
 
 class Workers(Database):
-    """A database with its table of workers."""
+    """Database with its table of workers."""
 
     def greet(self, worker: str) -> None:
-        """Record a worker as present; delete those that have been silent for days."""
+        """Record a worker as present; delete those without a heartbeat for days."""
         with self.writing() as connection:
             sign_of_life = update(workers).where(workers.c.id == worker).values(seen=now())
             if not connection.execute(sign_of_life).rowcount:
@@ -36,20 +36,20 @@ class Workers(Database):
             return connection.execute(query).first() is not None
 
     def crew(self) -> Crew:
-        """Return the workers heard from recently, and the number of jobs that wait for one."""
+        """Return the number of workers with a recent heartbeat, and the number of jobs that wait for one."""
         busy = [worker.busy for worker in self.workers() if worker.at_work]
         with self.reading() as connection:
             waiting = connection.scalar(select(func.count()).where(jobs.c.state == "queued")) or 0
         return Crew(workers=len(busy), busy=sum(busy), waiting=waiting)
 
     def workers_at_work(self) -> int:
-        """Return the number of workers heard from recently, busy or not."""
+        """Return the number of workers with a recent heartbeat, busy or not."""
         return sum(worker.at_work for worker in self.workers())
 
     def workers(self) -> list[Worker]:
-        """Return all workers that have not left, the most recently heard from first.
+        """Return all workers that have not left, the most recent heartbeat first.
 
-        A worker heard from in the future, because the clock was set back since, counts as silent for as long.
+        A heartbeat in the future, from before the clock was set back, counts as equally far in the past.
         """
         silent = func.abs(now() - workers.c.seen).label("silent")
         has_job = exists().where(jobs.c.worker == workers.c.id, jobs.c.state == "running", not_(ENDED_LEASE))

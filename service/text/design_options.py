@@ -1,4 +1,4 @@
-"""Options that select some designs of a run, or choose one, and settings of the search."""
+"""Options that filter the designs of a run or select one, and search settings."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ class SettingOptions:
 
     @property
     def overrides(self) -> dict[str, Any]:
-        """The settings that are given."""
+        """Settings given on the command line."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
 @dataclass(frozen=True)
 class Selection:
-    """Options that select some designs of a run and sort them."""
+    """Options that filter and sort the designs of a run."""
 
     where: Annotated[
         list[str] | None,
@@ -50,13 +50,13 @@ class Selection:
         return self.sort is not None or self.reverse
 
     def rows(self, result: Result) -> list[int]:
-        """Return the rows of the designs, in their order."""
+        """Return the rows of the designs, in order."""
         return chosen_rows(result, self.where or [], sort=self.sort, reverse=self.reverse)
 
 
 @dataclass(frozen=True)
 class Pick:
-    """Options that name one design of a run, or choose it by its values."""
+    """Options that name one design of a run, or select it by its values."""
 
     design: DesignOfRun = None
     knee: Annotated[bool, "Choose the design nearest to the ideal, with objectives relative to their ranges."] = False
@@ -74,9 +74,9 @@ class Pick:
 
     @property
     def chooses_by_value(self) -> bool:
-        """Whether a design is chosen by its values."""
+        """Whether a design is selected by its values."""
         return self.knee or self.topsis is not None or self.lexicographic is not None
 
     def row(self, result: Result, rows: Sequence[int]) -> int | None:
-        """Return the index of the row chosen by its values, None without such an option or without rows."""
+        """Return the index of the row selected by its values, or None without such an option or without rows."""
         return chosen_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)

@@ -1,4 +1,4 @@
-"""A job in words and as data, as understood."""
+"""Job in words and as data, as the software understands it."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.loaded_stroke import expected_warnings
 
-_MOST_VALUES = 6  # values of a variable that are all shown
+_MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 
 
 def summarise(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
-    Each is a list of lines except name, search, the degrees of freedom, the floors, see `_default_floors`, and the
-    changes that settle warnings, see `changes_of`.
+    Each is a list of lines except name, search, the degrees of freedom, the minimum values, see `_default_floors`, and
+    the changes that resolve warnings, see `changes_of`.
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
@@ -88,7 +88,7 @@ def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def freedom_in_words(problem: Problem) -> str:
-    """Return the degrees of freedom left as a sentence."""
+    """Return the remaining degrees of freedom as a sentence."""
     branch = elimination_branches(problem)[0]
     left, unknowns = _degrees_of_freedom(branch), len(branch.names)
     numbers = "dimensions" if unknowns == 3 else "dimensions and other numbers"
@@ -116,7 +116,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
 def _machine_lines(problem: Problem) -> list[str]:
     """Return the machine of a problem line by line, with the ranges of its variables."""
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
-    if len(low) != len(high):  # a number that is zero at one end leaves its line out
+    if len(low) != len(high):  # a number that is zero at one end would omit its line
         return machine_in_words(problem, problem.mechanism)
     return [range_text(lowest, highest) for lowest, highest in zip(low, high, strict=True)]
 
@@ -301,7 +301,7 @@ def _varying_text(item: Varying) -> str:
 
 
 def _values_text(problem: Problem, item: Discrete) -> str:
-    """Return the values of a discrete variable: its rule, its first and last values."""
+    """Return the values of a discrete variable: its rule, and its first and last values."""
     unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
     values = [f"{unit.factor * value:.6g}" for value in item.values]
     few = values if len(values) <= _MOST_VALUES else [*values[:2], "...", values[-1]]
@@ -325,12 +325,12 @@ def _choice_lines(problem: Problem) -> list[str]:
 
 
 def _option_text(name: str, label: str, speed: float) -> str:
-    """Return an option as the job states it, a speed in rpm too. speed: crank speed, rad/s."""
+    """Return an option as the job states it, and a speed also in rpm. speed: crank speed, rad/s."""
     rpm = f"{speed * 30.0 / math.pi:.6g} rpm"
     return f"{label} ({rpm})" if name == "speed" and label != rpm else label
 
 
-_MOST_LISTED = 12  # combinations whose limits are listed individually
+_MOST_LISTED = 12  # maximum number of combinations whose limits are listed individually
 
 
 def _limit_lines(problem: Problem) -> list[str]:
@@ -372,7 +372,7 @@ def _rule_text(constraint: Constraint, problem: Problem, *, is_stated: bool = Fa
 
 
 def _default_floors(problem: Problem) -> list[dict[str, Any]]:
-    """Return the least allowed values of quantities with a default: quantity, value, unit, whether it is default."""
+    """Return the least allowed values of quantities with a default: quantity, value, unit, and is default or not."""
     floors = []
     for constraint in constraints_of(problem):
         restated = restate(problem, constraint)

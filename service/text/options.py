@@ -1,4 +1,4 @@
-"""Command-line options that several commands share, and options that are quantities: a number with its unit."""
+"""Command-line options that several commands share, and options for quantities: a number with its unit."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def drawable(folder: Path | None) -> Path | None:
-    """Raise an error before anything is computed if figures cannot be drawn."""
+    """Raise an error before any computation if figures cannot be drawn."""
     if folder is not None:
         required("matplotlib", "figures need")
     return folder
@@ -34,7 +34,7 @@ JobFile = Annotated[Path, typer.Argument(metavar="JOB")]
 File = Annotated[Path | None, typer.Option(metavar="FILE")]
 Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=drawable)]
 Output = Annotated[str | None, typer.Option(metavar="FILE")]
-"""A file, or - for standard output."""
+"""File name, or - for standard output."""
 Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]
 Length = Annotated[str | None, typer.Option(metavar="LENGTH")]
 Speed = Annotated[str | None, typer.Option(metavar="SPEED")]
@@ -72,10 +72,10 @@ AllowQuantity = Annotated[
 
 
 def for_typer(command: Callable[..., None]) -> Callable[..., None]:
-    """Return a command for typer from a function whose parameters have their help as text in `Annotated`.
+    """Return a typer command from a function whose parameters have their help as text in `Annotated`.
 
-    A parameter whose type is a dataclass of options stands for the fields of the dataclass. One with
-    `inspect.Parameter`s in `Annotated` stands for these and gets a dict. A flag is off unless it is given.
+    A parameter whose type is a dataclass of options stands for the fields of the dataclass. A parameter with several
+    `inspect.Parameter` in `Annotated` stands for these and receives a dict. Flags are off by default.
     """
     hints = get_type_hints(command, include_extras=True)
     groups: dict[str, Any] = {name: hint for name, hint in hints.items() if is_dataclass(hint)}
@@ -146,7 +146,7 @@ class Dimensions:
 
 
 def length_option(name: str, text: str | None, problem: Problem | None, word: Callable[[str], str] = _flag) -> float:
-    """Return a dimension, m: as given, else what the job fixes, else (offset, without a job) zero.
+    """Return a dimension, m: as given, or as fixed by the job, or zero (offset, without a job).
 
     word: function that returns the interface's name for it.
     """
@@ -168,7 +168,7 @@ def speed_option(text: str, word: str = "--speed") -> float:
 def require_ending(option: str, file: Path | None, *endings: str) -> None:
     """Raise an error for an output file with a wrong ending, a directory, or standard output.
 
-    endings: allowed endings of its name, with their points; a name may have none.
+    endings: allowed file endings, with their dots; a name may have none.
     """
     if file is None:
         return
@@ -180,5 +180,5 @@ def require_ending(option: str, file: Path | None, *endings: str) -> None:
 
 
 def option_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
-    """Return an option's value as in `value_of`, None without one."""
+    """Return an option's value as by `value_of`, or None if it is omitted."""
     return None if text is None else parse_value(option, text, kind, sign=sign)

@@ -40,7 +40,7 @@ def _console(stream: TextIO) -> Console:
 
 
 def print_message(message: str) -> None:
-    """Write a message to standard error; if nothing can be written there, it is lost."""
+    """Write a message to standard error; it is lost if that fails."""
     with contextlib.suppress(OSError):
         sys.stderr.write(f"{path_text(message)}\n")
 
@@ -60,7 +60,7 @@ def print_record(json: bool, record: Any, show: Callable[[Console], None]) -> No
 
 
 def show_activity(text: str) -> contextlib.AbstractContextManager[Status | None]:
-    """Return a context that shows an activity while entered; nothing if standard error is not a terminal."""
+    """Return a context that shows an activity while it is active; nothing if standard error is not a terminal."""
     screen = error_console()
     return screen.status(text) if screen.is_terminal else contextlib.nullcontext()
 

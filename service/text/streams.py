@@ -55,12 +55,12 @@ def reader_left() -> bool:
 
 
 def guard_streams() -> None:
-    """Set up standard streams that report why they fail, and show "?" for characters missing in the terminal."""
+    """Set up standard streams that report why they fail, and show "?" for characters that the terminal lacks."""
     codecs.register_error(_ESCAPES, _replacement_text)
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")  # noqa: SIM115, PTH123 - as long as this process
     if sys.stdout is None:
-        # Reading only, so that every attempt to write fails as on the closed stream itself.
+        # Read-only, so that every attempt to write fails as on the closed stream itself.
         binary: Any = os.fdopen(os.open(os.devnull, os.O_RDONLY), "wb")
         sys.stdout = Output(binary, encoding="utf-8")
     elif isinstance(sys.stdout, io.TextIOWrapper):
@@ -73,16 +73,17 @@ def guard_streams() -> None:
 def _replacement_text(error: UnicodeError) -> tuple[bytes, int]:
     """Return the replacement for characters that a stream cannot encode, and the position to continue from.
 
-    Bytes of a path that the locale could not decode are joined to characters first, so that each letter is one.
+    Bytes of a path that the locale could not decode are first combined into characters, so that each letter counts as
+    one.
     """
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end]
-    with contextlib.suppress(UnicodeEncodeError):  # a lone surrogate that does not stand for a byte
+    with contextlib.suppress(UnicodeEncodeError):  # a lone surrogate that does not represent a byte
         text = path_text(text)
     return text.encode(error.encoding, "replace"), error.end
 
 
 def give_up_output() -> None:
-    """Discard text that is still buffered: the end of the process would write it again, and fail with a message."""
+    """Discard buffered text: otherwise the exiting process would write it again, and fail with a message."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

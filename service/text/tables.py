@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..designs.judged_requirements import JudgedRule, Judgement
 
 ROWS = 15
-"""Designs shown of a front unless asked otherwise."""
+"""Default number of designs shown for a front."""
 _DIGITS = 4
 _CHOICES = 6  # named
 
@@ -54,7 +54,7 @@ def show_front(
     columns: Sequence[Column] | None = None,
     limit: int = ROWS,
 ) -> None:
-    """Write designs of a front, given by their positions, as a table; at most `limit`, evenly spread.
+    """Write designs of a front, given by position, as a table; at most `limit` of them, evenly spread.
 
     columns: dimensions, stroke and objectives if None; values shared by all designs then appear once above the table.
     """
@@ -79,9 +79,9 @@ def show_front(
 def show_design(
     screen: Console, row: Row, *, only: Sequence[str] | None = None, custom: Sequence[Quantity] = ()
 ) -> None:
-    """Write all quantities of one design, one per line, without undefined ones.
+    """Write all defined quantities of one design, one per line.
 
-    custom: custom quantities of its job, whose titles and units say more than their column keys.
+    custom: custom quantities of its job, whose titles and units are more informative than their column keys.
     """
     row, custom_by_column = without_noise(row), {quantity.field: quantity for quantity in custom}
     rows = table("", ">", "")
@@ -139,7 +139,8 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
         column = find_column(key, result.designs[0])
         wish = wishes.get(key)
         if wish is not None and (wish.unit != column.unit or not wish.quantity.isidentifier()):
-            column = replace(column, title=wish.title, unit=wish.unit)  # a formula says more than its column's key
+            # A formula is more informative than its column's key.
+            column = replace(column, title=wish.title, unit=wish.unit)
         values = [row[key] for row in result.designs]
         numbers = [value for value in values if isinstance(value, float)]
         if len(numbers) > 1 and is_constant(numbers) and key not in objectives:
@@ -176,7 +177,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
 
 
 def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
-    """Return the positions of the designs that are best in an objective, to rounding; none if all are equal."""
+    """Return the positions of the designs that are best in an objective, within rounding; none if all are equal."""
     from ...optimise.front.constant_numbers import SAME
 
     ranks = [objective.rank(row) for row in result.designs]
@@ -186,7 +187,7 @@ def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
 
 
 def _align_decimals(values: Sequence[Cell]) -> list[str]:
-    """Return numbers with the same decimals: four significant digits for the greatest."""
+    """Return numbers with the same decimals: four significant digits for the largest."""
     sizes = [abs(value) for value in values if isinstance(value, float) and math.isfinite(value)]
     top = max(sizes, default=0.0)
     decimals = max(0, min(9, _DIGITS - 1 - math.floor(math.log10(top)))) if top > 0.0 else 0
@@ -201,7 +202,7 @@ def _align_decimals(values: Sequence[Cell]) -> list[str]:
 
 
 def spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
-    """Return up to `limit` positions, in order: the marked ones and others evenly spread; all for 0."""
+    """Return up to `limit` positions, in order: the marked ones, and others evenly spread; all for 0."""
     if limit <= 0 or len(rows) <= limit:
         return list(rows)
     marked = {*result.extremes.values(), result.knee} & set(rows)

@@ -1,4 +1,4 @@
-"""A search in this process: its job is claimed in the store, and its run folder written meanwhile."""
+"""Search in this process: its job is claimed in the store, and its run folder written at the same time."""
 
 from __future__ import annotations
 
@@ -48,7 +48,10 @@ def new_run(
 def resumed_run(
     store: Store, place: Path, text: str, read: Callable[[Mapping[str, Any], Path], Problem]
 ) -> Iterator[Opened]:
-    """Enter a stopped run. text: its name or number. read: function that gives a job's problem and its run folder."""
+    """Enter a stopped run.
+
+    text: its name or number. read: function that returns a job's problem from its run folder.
+    """
     from ...optimise.solve import require_records
 
     job = stopped_job(store, text, place)
@@ -63,7 +66,7 @@ def resumed_run(
 
 @contextlib.contextmanager
 def renewing_claim(claim: Claim, *, again: str) -> Iterator[None]:
-    """While entered, renew the claim; an error ends its job. again: the command that continues the run."""
+    """Within this context, renew the claim; an error ends its job. again: command that continues the run."""
     with end_job_on_error(claim, again=again), Heartbeat(claim):
         yield
 
@@ -71,7 +74,7 @@ def renewing_claim(claim: Claim, *, again: str) -> Iterator[None]:
 def search(
     opened: Opened, engine: Engine, *, cancelled: Callable[[], bool], show: Callable[[Progress], None]
 ) -> ParetoFront:
-    """Return the front of an open run. show: listener to the progress, which store and log receive too."""
+    """Return the front of an open run. show: progress listener; store and log receive the progress too."""
     from ...optimise.solve import solve
 
     run, problem, claim = opened

@@ -58,7 +58,7 @@ class EngineOptions:
         return self
 
     def shared_by(self, workers: int) -> EngineOptions:
-        """Return the options for each of several workers on this machine: they share the processors."""
+        """Return the options for each of several workers on this machine, which share the processors."""
         return replace(self, cores=self.cores or max(1, (os.cpu_count() or 1) // workers))
 
 

@@ -1,4 +1,4 @@
-"""Heartbeat and budget of a claimed job: a thread keeps the lease and notices what the search cannot."""
+"""Heartbeat and budget of a claimed job: a thread renews the lease and notices events that the search cannot."""
 
 from __future__ import annotations
 
@@ -22,18 +22,20 @@ from ..store import NO_LIMITS, NOT_DONE, Claim, Limits
 
 _log = logging.getLogger(__name__)
 PULSE = 0.25
-"""Time between two beats, s: a cancelled job has to end within 2 s, of which its search takes up to one to hear."""
+"""Time between two heartbeats, s: a cancelled job must end within 2 s, of which its search may take one to notice."""
 EXHAUSTED = 75
-"""Exit code of a process whose job took more memory than it may; another process is to take its place."""
+"""Exit code of a process whose job exceeded its memory limit; another process is to take its place."""
 DEAF = 76
-"""Exit code of a process whose search did not end when it was told to; another process is to take its place."""
-_STOP_PATIENCE = 60.0  # s for a search to end once asked: a compiling kernel notices nothing
+"""Exit code of a process whose search did not stop on request; another process is to take its place."""
+_STOP_PATIENCE = 60.0  # s for a search to end on request: a compiling kernel cannot respond
 Stop = Callable[[], bool]
 
 
 @dataclass
 class Budget:
-    """Time and evaluations left to a search, from now on. A search ends at the next check after either is used up.
+    """Remaining time and evaluations of a search, from now on.
+
+    A search ends at the next check after either is exhausted.
 
     limits: the memory limit is ignored here. waited: time that the search has waited for disk space, s.
     """
@@ -57,7 +59,7 @@ class Budget:
         return replace(result, message=f"{result.message}; {reason}") if reason else result
 
     def reason(self) -> str:
-        """Return the reached limit in words; empty if there is none."""
+        """Return the exhausted limit in words; empty if there is none."""
         seconds, evaluations = self.limits.seconds, self.limits.evaluations
         if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
             return f"its search reached its time limit of {seconds:g} s"
@@ -68,16 +70,16 @@ class Budget:
 
 @dataclass(eq=False)
 class Heartbeat:
-    """While entered, a thread that keeps the lease of a claim and learns whether its job is to be cancelled.
+    """While this context is active, a thread renews the lease of a claim and checks whether its job is to be cancelled.
 
-    budget: budget of the job. Beyond its memory, as `memory` measures it, the job is set aside as failed and the
+    budget: budget of the job. If the job exceeds its memory, as measured by `memory`, it is set aside as failed and the
     process ends with exit code `EXHAUSTED`. Nothing else frees the memory reliably. If the search does not end within a
-    minute after another limit or a cancellation, the job ends without it and the process with exit code `DEAF`; only if
-    there is a grace, too. grace: time that a search may continue after `stop` is true, s; unlimited if None. The job is
-    then handed back and the process ends with 0. patience: time that a cancelled job waits for a search that has not
-    begun, s; unlimited if None. It then ends without the search. So does a job whose worker must stop: nothing is lost.
-    While a search loads or compiles its functions, it notices nothing. lost: reason why this worker no longer has the
-    job; empty while it has.
+    minute after another limit or a cancellation, and only if there is a grace, the job ends without it and the process
+    exits with `DEAF`. grace: time that a search may continue after `stop` is true, s; unlimited if None. The job is
+    then returned to the queue and the process exits with 0. patience: time that a cancelled job waits for a search that
+    has not started, s; unlimited if None. The job then ends without the search. So does a job whose worker must stop:
+    nothing is lost. A search that loads or compiles its functions notices nothing. lost: reason why this worker no
+    longer has the job; empty while it has.
     """
 
     claim: Claim
@@ -92,7 +94,7 @@ class Heartbeat:
     def __post_init__(self) -> None:
         self._since: dict[str, float] = {}
         self._end = threading.Event()
-        beat = contextvars.copy_context().run  # so that its logs are about the same job
+        beat = contextvars.copy_context().run  # so that its log lines name the same job
         self._thread = threading.Thread(
             target=beat, args=(self._beat,), name=f"heartbeat of job {self.claim.job.id}", daemon=True
         )
@@ -121,7 +123,7 @@ class Heartbeat:
                 if not self._end.is_set():  # at the end of a job the claim is released on purpose
                     self.lost = "its lease has expired; another worker continues from the last committed round"
             except StoreError:
-                pass  # the writes of the search find out whether it lasts
+                pass  # the writes of the search will show whether it is still valid
 
     def _waited(self, condition: str) -> float:
         """Return the time that a condition has held, s, since the first call."""
@@ -144,13 +146,13 @@ class Heartbeat:
             "limit, or ask for less"
         )
         _log.error("set aside: %s", reason)
-        with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends, and it counts as an attempt
+        with contextlib.suppress(LeaseLost, StoreError):  # otherwise its lease expires, and the attempt counts
             self.claim.fail(reason, again=False)
         leave(EXHAUSTED)
 
     def _look_at_deaf(self) -> None:
         reason = NOT_DONE if self.claim.cancel_asked else self.budget.reason()
-        if self.claim.waits:  # for room: then it cannot end
+        if self.claim.waits:  # waits for space: then it cannot end
             self._since.pop("told to end", None)
             return
         if self.grace is None or not reason:
@@ -161,7 +163,7 @@ class Heartbeat:
         try:
             self.claim.give_up(f"{reason}; its search did not stop when asked to")
         except (LeaseLost, StoreError):
-            return  # it has ended after all; or its writes find out
+            return  # it has ended after all, or its writes will show
         leave(DEAF)
 
     def _look_at_stop(self) -> None:
@@ -180,13 +182,13 @@ class Heartbeat:
 
 
 def leave(code: int) -> NoReturn:
-    """End the children with their groups, then this process, immediately, whatever its other threads do."""
+    """End the children with their process groups, then this process, immediately, regardless of its other threads."""
     end_children()
     os._exit(code)
 
 
 def end_children() -> None:
-    """Kill the children of this process, theirs, and their groups."""
+    """Kill the children of this process, their children, and their process groups."""
     import psutil
 
     waiting = psutil.Process().children()
@@ -194,7 +196,7 @@ def end_children() -> None:
         child = waiting.pop()
         with contextlib.suppress(psutil.Error, OSError):
             if is_guard(child.cmdline()):
-                continue  # it kills what its function has started, once the process that asks has ended
+                continue  # it kills what its function has started, once the requesting process has ended
             waiting += child.children()
             if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:
                 os.killpg(child.pid, signal.SIGKILL)

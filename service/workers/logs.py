@@ -1,4 +1,4 @@
-"""Logging of the service, set up in one place: text for people or JSON for machines, with job and worker."""
+"""Logging of the service, configured in one place: text for people or JSON for machines, with job and worker."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _SUBJECT: ContextVar[tuple[str | None, int | None]] = ContextVar("subject", defa
 
 
 def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
-    """Log everything in this process from INFO up to a stream, one line per record; standard error if None.
+    """Log everything in this process from INFO up to a stream, one line per record; None for standard error.
 
     json: one object per line with time (UTC, ISO 8601), level, logger, message, and worker, job and exc_info if
     present.
@@ -35,7 +35,7 @@ def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
 
 @contextlib.contextmanager
 def log_subject(*, job: int | None = None, worker: str | None = None) -> Iterator[None]:
-    """While entered, what this thread logs is about a job, a worker, or both."""
+    """Within this context, log lines of this thread name a job, a worker, or both."""
     before = _SUBJECT.get()
     token = _SUBJECT.set((worker or before[0], job or before[1]))
     try:
@@ -60,7 +60,7 @@ class _Text(logging.Formatter):
         return datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds")
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return a record as a line, and its traceback below it."""
+        """Return a record as a line, followed by its traceback."""
         worker, job = getattr(record, "worker", None), getattr(record, "job", None)
         parts = [f"worker {worker}" if worker else "", f"job {job}" if job else ""]
         subject = ", ".join(part for part in parts if part)
@@ -77,7 +77,7 @@ def _json() -> logging.Formatter:
         from pythonjsonlogger.json import JsonFormatter
 
     class Json(JsonFormatter):
-        """JSON lines without the subject if a record has none."""
+        """JSON lines, without job and worker if a record has none."""
 
         def process_log_record(self, log_data: dict[str, object]) -> dict[str, object]:
             return {key: value for key, value in log_data.items() if value is not None}

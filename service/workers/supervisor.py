@@ -17,8 +17,8 @@ from .worker_process import MARGIN, REFUSED, STALE, WorkerSettings
 
 _log = logging.getLogger(__name__)
 WORKER = (sys.executable, "-m", "slidercrank.service.workers.worker_process")
-_LOOK = 0.1  # s between two looks at the processes
-_FIRST, _LONGEST = 0.5, 30.0  # s before a process that ended soon is started again: doubled from one to the other
+_LOOK = 0.1  # s between two checks of the processes
+_FIRST, _LONGEST = 0.5, 30.0  # s until a process that ended early is restarted: doubled each time up to the maximum
 _REASONS = {
     0: "it left",
     EXHAUSTED: "its job used more memory than allowed",
@@ -26,8 +26,8 @@ _REASONS = {
     STALE: "earlier jobs left too little memory in it",
     REFUSED: "it could not start working, see above",
 }
-"""Why a process ended, by its exit code."""
-_SOON = 60.0  # s; one that ran for longer is started again as if it had never ended
+"""Why a process ended, by exit code."""
+_SOON = 60.0  # s; after a longer run, a process is restarted without delay
 
 
 @dataclass
@@ -43,15 +43,18 @@ class _Place:
 
 
 class Supervisor:
-    """While entered, keeps a number of worker processes running, watched by a thread.
+    """While this context is active, a thread keeps a number of worker processes running.
 
-    A worker that ends is replaced: immediately, if it had run for a minute or ended because of its jobs. Otherwise it
-    is replaced after half a second, doubled each time up to 30 s. On leaving, all are asked to stop; those that do not
-    within their grace are killed. A worker whose supervisor is gone, however that ended, stops in the same way.
+    A worker that ends is replaced: immediately if it had run for a minute or ended because of its jobs. Otherwise it is
+    replaced after half a second, doubled each time up to 30 s. On exit, all are asked to stop; those that do not stop
+    within their grace are killed. A worker whose supervisor has ended, for whatever reason, stops in the same way.
     """
 
     def __init__(self, settings: WorkerSettings, processes: int, *, program: Sequence[str] = WORKER) -> None:
-        """Prepare; nothing is started yet. program: worker program; it reads the settings from standard input."""
+        """Prepare the supervisor; nothing is started yet.
+
+        program: worker program; it reads the settings from standard input.
+        """
         self.settings = settings
         self._program = program
         self._places = [_Place(number) for number in range(1, processes + 1)]
@@ -67,7 +70,7 @@ class Supervisor:
         self._thread.join()
 
     def leave(self) -> None:
-        """Begin to stop the workers, without waiting for them."""
+        """Ask the workers to stop, without waiting for them."""
         self._leaving.set()
 
     def processes(self) -> list[int]:
@@ -104,7 +107,7 @@ class Supervisor:
     def _start(self, place: _Place) -> None:
         place.started = time.monotonic()
         try:
-            # In a group of its own: Ctrl-C reaches the supervisor only, which then asks its workers to stop.
+            # In a separate process group: Ctrl-C reaches only the supervisor, which then asks its workers to stop.
             process = subprocess.Popen(self._program, stdin=subprocess.PIPE, process_group=0)
         except OSError as error:
             self._plan(place, f"could not be started: {error.strerror or error}", soon=True)
@@ -112,7 +115,7 @@ class Supervisor:
         place.process = process
         _log.info("worker %d of %d started as process %d", place.number, len(self._places), process.pid)
         assert process.stdin is not None
-        with contextlib.suppress(OSError):  # it has ended already, which the next look finds out
+        with contextlib.suppress(OSError):  # it has already ended, as the next check will show
             process.stdin.write(self.settings.line())
             process.stdin.flush()
 
@@ -147,7 +150,7 @@ class Supervisor:
 def _release(process: subprocess.Popen[bytes]) -> None:
     """Close the standard input of a worker, which tells it to stop."""
     if process.stdin is not None:
-        with contextlib.suppress(OSError):  # what could not be written to one that has ended
+        with contextlib.suppress(OSError):  # buffered data that could not be written to an ended worker
             process.stdin.close()
 
 

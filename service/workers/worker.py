@@ -1,4 +1,4 @@
-"""A worker: claims jobs in a store, solves them, and writes the results."""
+"""Worker: claims jobs in a store, solves them, and writes the results."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two attempts while the database is unreachable
-_FULL = 10.0  # s until a job that found a disk full is retried
-_PARTS = 2  # loaded before a search: its functions, then the job with its records
-_PATIENCE = 1.0  # s that a cancelled job waits for a search that has not begun
+_FULL = 10.0  # s until a job that found a full disk is retried
+_PARTS = 2  # parts loaded before a search: its functions, then the job with its records
+_PATIENCE = 1.0  # s that a cancelled job waits for a search that has not started
 MOST = 64
-"""Designs of an interim front that are shown: enough for its shape, and some kB at most."""
-_DELAY = 2.0  # s before another attempt after the first error; doubled with every further one
+"""Maximum designs of an interim front: enough for its shape, and at most a few kB."""
+_DELAY = 2.0  # s before another attempt after the first error; doubled with each further error
 
 
 @dataclass(frozen=True, kw_only=True)
 class Terms:
-    """Limits and permissions that a worker gives to its jobs.
+    """Limits and permissions that a worker applies to its jobs.
 
-    limits: limits for every job, besides its own. Beyond the memory limit the process ends. It also ends beyond
-    `grace`, the time that a round has left once the worker must stop, s; see `Heartbeat`. allowed_quantities:
-    functions, "module:function", that jobs may name as quantities. engine: engine for expensive work.
+    limits: limits for every job, in addition to its own. The process ends if the memory limit is exceeded. It also ends
+    after `grace`, the time that a round may take after the worker must stop, s; see `Heartbeat`. allowed_quantities:
+    functions, "module:function", that jobs may use as custom quantities. engine: engine for expensive evaluations.
     """
 
     limits: Limits = NO_LIMITS
@@ -82,15 +82,14 @@ def work(
     most_running: int | None = None,
     terms: Terms = DEFAULT,
 ) -> int:
-    """Solve jobs in a store one after the other, and return the number of claimed ones.
+    """Solve jobs in a store one after another, and return the number of claimed ones.
 
-    lease: time that a job stays with this worker without a sign of life, s; renewed after every third of it. stop:
-    function called between rounds and while nothing waits; once true, the current job goes back into the queue and the
-    work ends. drain: end as soon as no job waits. most_running: number of running jobs at which nothing more is
-    claimed.
+    lease: time that a job stays with this worker without a heartbeat, s; renewed after every third of it. stop:
+    function called between rounds and while no job waits; once true, the current job returns to the queue and work
+    ends. drain: end as soon as no job waits. most_running: number of running jobs at which no more are claimed.
 
-    An unreachable database is retried every second; with `drain`, raises `StoreError`, unless the disk is full. Raises
-    `Stale`, only if there is a grace.
+    An unreachable database is retried every second; with `drain`, it raises `StoreError` unless the disk is full.
+    Raises `Stale`, but only if there is a grace.
     """
     memory = Memory()
     name = name or worker_name()
@@ -126,17 +125,17 @@ def work(
                 break
             else:
                 time.sleep(PULSE)
-        with contextlib.suppress(StoreError):  # where it cannot be reached, the worker is silent from now on
+        with contextlib.suppress(StoreError):  # if it cannot be reached, the worker's heartbeat simply stops
             store.part(name)
     return count
 
 
 def _is_out_of_memory(claim: Claim, memory: Memory, terms: Terms) -> bool:
-    """Whether a job is handed back, for a fresh process: earlier jobs occupy too much memory in this one."""
+    """Whether to return a job to the queue for a fresh process: earlier jobs occupy too much memory in this one."""
     allowed = claim.job.limits.stricter(terms.limits).memory
     if terms.grace is None or allowed is None or memory.left_by_earlier_jobs <= TOLERATED * allowed:
         return False
-    with contextlib.suppress(LeaseLost, StoreError):  # else its lease ends
+    with contextlib.suppress(LeaseLost, StoreError):  # otherwise its lease expires
         claim.hand_back("a new worker takes it: earlier jobs left too little memory in this one")
     return True
 
@@ -149,9 +148,9 @@ def solve_claimed(
     engine: Engine | None = None,
     memory: Memory | None = None,
 ) -> None:
-    """Solve a claimed job and end it; or give it back, with the reason, when that does not succeed.
+    """Solve a claimed job and end it; after a failure, return it to the queue with the reason.
 
-    Designs evaluated under earlier claims are not evaluated again. If the lease is lost, or the database unreachable
+    Designs evaluated under earlier claims are not evaluated again. If the lease is lost, or the database is unreachable
     until it ends, nothing is written: the next worker continues from the stored records.
     """
     budget = Budget(claim.job.limits.stricter(terms.limits), waited=lambda: claim.waited)
@@ -166,12 +165,12 @@ def solve_claimed(
                 _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
-            with contextlib.suppress(StoreError):  # else its lease ends
+            with contextlib.suppress(StoreError):  # otherwise its lease expires
                 claim.let_go()
 
 
 def _end(claim: Claim, solve: Callable[[], None]) -> None:
-    """Solve a job, and give it back with the reason when that does not succeed."""
+    """Solve a job; after a failure, return it to the queue with the reason."""
     try:
         solve()
     except Stopped:
@@ -183,7 +182,7 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
     except InputError as error:
         claim.fail(str(error), again=False)
         _log.warning("failed: %s", error)
-    except Full as error:  # the job or its worker is to end while a write waits for room
+    except Full as error:  # the job or its worker is to end while a write waits for space
         if claim.cancel_asked:
             claim.give_up()
         else:
@@ -240,7 +239,7 @@ def _solve(
     with ending_custom_functions(problem, engine):
         try:
             front = search(resume=claim.records())
-        except ForeignRecords as error:  # of an earlier release, or another kind of machine
+        except ForeignRecords as error:  # from an earlier release, or another type of machine
             claim.start_over(f"starts again: {error}")
             front = search(resume=[])
         result = result_of(front, claim.job.run)
@@ -251,10 +250,10 @@ def _solve(
 
 
 def front_progress(problem: Problem, values: Array) -> dict[str, Any]:
-    """Return at most `MOST` designs of a front, evenly spread along its first objective, as JSON has them.
+    """Return at most `MOST` designs of a front, evenly spread along its first objective, as JSON.
 
-    values: objectives (n, m), SI, as they are minimised. columns: columns of the objectives in tables of designs.
-    points: values in their units; for an objective with a target, the distance from it.
+    values: objectives (n, m), SI, all minimised. columns: columns of the objectives in tables of designs. points:
+    values in their units; for an objective with a target, the distance from it.
     """
     import numpy as np
 
@@ -279,12 +278,12 @@ def _report_loading(claim: Claim, parts: int) -> None:
 
 
 def versions_file(versions: Mapping[str, str]) -> Artefact:
-    """Return the file with the versions that computed a result."""
+    """Return the file with the software versions that computed a result."""
     return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
 def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
-    """Whether the search must end with its result so far; raises the error that ends it without one."""
+    """Whether the search must end with its result so far; raises the error that ends it without a result."""
     if heartbeat.lost:
         raise LeaseLost(f"job {claim.job.id}: {heartbeat.lost}")
     if not claim.cancel_asked and stop():

@@ -1,7 +1,7 @@
-"""A worker in a process of its own: `python -m slidercrank.service.workers.worker_process`, started by a supervisor.
+"""Worker in a separate process: `python -m slidercrank.service.workers.worker_process`, started by a supervisor.
 
 It reads its settings from standard input, one line of JSON, so that no password appears in the process list. It stops
-cleanly on SIGTERM, or when standard input ends: its supervisor has asked for it or is gone.
+cleanly on SIGTERM, or when standard input ends because its supervisor requests it or has ended.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ from .logs import Format, set_up_logs
 from .worker import Stale, Terms, work
 
 GRACE = 10.0
-"""Time that a worker has to stop, s; then its job is handed back wherever its search is."""
+"""Time for a worker to stop, s; then its job returns to the queue, whatever the state of its search."""
 MARGIN = 5.0
-"""Time beyond its grace after which a worker that has not stopped is ended, s."""
+"""Time beyond its grace after which a worker that has not stopped is killed, s."""
 NICENESS = 10
-"""Niceness of a worker, by which it yields to others of this machine: the API answers while all workers are busy."""
+"""Niceness of a worker, so that the API answers even while all workers are busy."""
 REFUSED = 2
-"""Exit code of a worker that can do nothing as it was started."""
+"""Exit code of a worker that cannot work with its settings."""
 STALE = 77
-"""Exit code of a worker in which earlier jobs have left so much memory that a fresh one takes its place."""
+"""Exit code of a worker in which earlier jobs left so much memory that a fresh one takes its place."""
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, kw_only=True)
 class WorkerSettings:
-    """Settings of a worker process. address: address of the store. Times in s; the rest as in `worker.work`."""
+    """Settings of a worker process. address: address of the store. Times in s; other fields as in `worker.work`."""
 
     address: str
     lease: float = LEASE
@@ -49,13 +49,13 @@ class WorkerSettings:
     log_format: Format = "text"
 
     def line(self) -> bytes:
-        """Return the settings as the process reads them."""
+        """Return the settings in the form that the process reads."""
         settings = TypeAdapter(WorkerSettings).dump_python(self)
-        return json.dumps(settings, default=str).encode() + b"\n"  # writes bytes of a path that no encoding has
+        return json.dumps(settings, default=str).encode() + b"\n"  # escapes path bytes that no encoding can represent
 
     @classmethod
     def read(cls, line: bytes) -> WorkerSettings:
-        """Return the settings of a line."""
+        """Return the settings from a line."""
         return TypeAdapter(WorkerSettings).validate_python(json.loads(line))
 
 
@@ -94,7 +94,7 @@ def main() -> int:
 
 
 def _open_store(settings: WorkerSettings, stop: threading.Event) -> Store | None:
-    """Return the store as soon as it can be reached; None if stopped before."""
+    """Return the store as soon as it can be reached; None if the worker must stop first."""
     away = False
     while not stop.is_set():
         try:
@@ -110,7 +110,7 @@ def _open_store(settings: WorkerSettings, stop: threading.Event) -> Store | None
 
 
 def _first_line() -> bytes:
-    """Return the first line of standard input, or nothing. Unbuffered: nothing may hold its lock at the end."""
+    """Return the first line of standard input, or nothing. Unbuffered: no thread may hold its lock at the end."""
     line = b""
     while not line.endswith(b"\n"):
         part = os.read(0, 1)
@@ -121,9 +121,9 @@ def _first_line() -> bytes:
 
 
 def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
-    """Stop when standard input ends, and exit after the grace time: the supervisor may be gone.
+    """Stop when standard input ends, and exit after the grace time: the supervisor may have ended.
 
-    This ends even what its heartbeat cannot stop, such as a database that does not answer.
+    This even ends states that its heartbeat cannot stop, such as a database that does not answer.
     """
     while os.read(0, 64):
         pass

@@ -1,4 +1,4 @@
-"""Entry point of Alembic: runs the migrations on the connection that `schema_version.upgrade` hands over."""
+"""Entry point for Alembic: runs the migrations on the connection that `schema_version.upgrade` passes to it."""
 
 from __future__ import annotations
 
