@@ -1,4 +1,4 @@
-"""From a problem to its front: eliminate, search by the chosen method, assemble the front."""
+"""From a problem to its front: eliminate, search by the selected method, assemble the front."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def solve(
 
     The same problem with the same seed gives the same designs, bit for bit.
 
-    progress: called after every round; True shows a live bar, in a notebook too. stages: called about twice a second in
-    a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of the
-    front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, `solve` returns the
+    progress: called after every round; True shows a live bar, also in a notebook. stages: called about twice a second
+    in a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of
+    the front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, `solve` returns the
     front so far with status "cancelled". keep: called with records from which a later run can resume: after every
     round, before its progress is reported, and about every second in a long one. resume: all records of an earlier run
-    of this problem, in order, any number; the run continues and returns the same front, bit for bit. engine: engine of
+    of this problem, in order, any number; the run continues and returns the same front, bit for bit. engine: engine for
     the expensive evaluations, by default this process; it does not change the front. The caller closes it.
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another search.
@@ -84,7 +84,7 @@ def require_records(problem: Problem, records: Sequence[Record]) -> None:
 
 @dataclass(frozen=True)
 class _ContinuousSolver:
-    """Solver of problems without discrete numbers; a problem with some is solved as a series of these."""
+    """Solver for problems without discrete numbers; a problem with some is solved as a series of these."""
 
     checkpoints: Checkpoints
     engine: Engine | None
@@ -95,7 +95,7 @@ class _ContinuousSolver:
     runs: list[Run] = field(default_factory=list)
 
     def start_run(self, problem: Problem) -> Run:
-        """Return a new run of a problem, with nothing computed yet."""
+        """Return a new run for a problem, with nothing computed yet."""
         has_listener = self.fronts is not None or self.listener is not None
 
         def with_front(entry: Progress) -> None:
@@ -206,7 +206,7 @@ def _best_value(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> B
 
 
 def _seed_archive(archive: Archive, evaluators: list[Evaluator], dimensions: Array) -> None:
-    """Add designs of the feasibility search to the archive, in the coordinates of their branch."""
+    """Add designs from the feasibility search to the archive, in the coordinates of their branch."""
     for index, evaluator in enumerate(evaluators):
         branch = evaluator.branch
         on_side = dimensions[np.sign(dimensions[:, 2]) != -branch.sign]

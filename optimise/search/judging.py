@@ -16,7 +16,7 @@ from ...objectives.robust.quantity import RobustQuantity
 
 
 class Judged(Protocol):
-    """A problem, or an evaluator of it."""
+    """A problem, or an evaluator of one."""
 
     @property
     def mechanism(self) -> Mechanism:
@@ -29,7 +29,7 @@ class Judged(Protocol):
 
 
 def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Array]:
-    """Return quantities (n,) of designs, peaks by screening, robust ones estimated."""
+    """Return quantities (n,) of designs; peaks are screened, robust quantities estimated."""
     quantities = [problem.quantity(name) for name in names]
     leaves = leaves_of(quantities)
     peaks = [quantity for quantity in leaves if isinstance(quantity, CyclePeak)]
@@ -54,7 +54,7 @@ def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions:
 
 
 def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
-    """Return the pieces of quantities of designs."""
+    """Return the pieces of quantities for designs."""
     return [problem.quantity(name).pieces(problem.mechanism, dimensions) for name in names]
 
 
@@ -84,7 +84,7 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
 
 
 def _opposite_pieces(part: Pieces) -> Pieces:
-    """Return a quantity from its other side, for designs without a kink there: only its active piece."""
+    """Return a quantity from its other side for designs without a kink there, with only its active piece."""
     if part.opposite is not None:
         return part.opposite
     active = (np.argmin if part.least else np.argmax)(part.values, axis=1)

@@ -20,7 +20,7 @@ from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 class Block:
     """Equalities solved for some unknowns, the targets. origins: all equalities, including redundant ones.
 
-    rows: for each target, a sum that is zero; the target's own factor is not zero, those of the other targets are.
+    rows: for each target, a sum that is zero; the target's own factor is not zero, but those of the other targets are.
     """
 
     origins: tuple[str, ...]
@@ -32,10 +32,10 @@ NOTHING = Block(())
 
 
 def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[str, Linear]:
-    """Return the equalities that are linear in crank, rod, |offset| and varying numbers, as sums that are zero.
+    """Return the equalities that are linear in crank, rod, |offset| and extra variables, as sums that are zero.
 
-    required: quantities with their values. sign: sign of the offset. Empty if no formula is among them: proportions
-    alone have their own rules.
+    required: quantities with their values. sign: sign of the offset. Empty if none of them is a formula, because
+    proportions alone have their own rules.
     """
     equations: dict[str, Linear] = {}
     for quantity, value in required.items():
@@ -52,7 +52,7 @@ def linear_equations(required: Mapping[Quantity, float], sign: float) -> dict[st
 
 
 def with_offset_size(row: Linear, sign: float) -> Linear:
-    """Return an equality in terms of |offset|, using the sign of the offset."""
+    """Return an equality in terms of |offset|, given the sign of the offset."""
     size = Linear((("offset", Fraction(1)),), Fraction(0))
     rewritten = Linear((), row.constant)
     for name, factor in row.factors:
@@ -66,7 +66,7 @@ def with_offset_size(row: Linear, sign: float) -> Linear:
 def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
     """Yield every way to solve equalities for loose unknowns; one without targets if there is none.
 
-    Equalities that contradict earlier ones are left out everywhere: the check of the problem reports them.
+    Equalities that contradict earlier ones are omitted everywhere, because the check of the problem reports them.
     """
     origins, rows, reduced = list[str](), list[Linear](), list[Linear]()
     for name, row in equations.items():
@@ -79,7 +79,7 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
             ] + [left]
             rows.append(row)
         elif left.factors or left.constant:
-            continue  # of what is not loose, or a contradiction
+            continue  # it has no loose unknown, or is a contradiction
         origins.append(name)
     if not rows:
         yield NOTHING
@@ -91,7 +91,7 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
 
 
 def solution(row: Linear, target: str) -> tuple[tuple[str, ...], tuple[float, ...]]:
-    """Return the sources of a target, and the numbers that `target_of` takes: factors, constant and divisor."""
+    """Return the sources of a target, and the numbers that `target_of` needs: factors, constant and divisor."""
     factors = dict(row.factors)
     divisor = factors.pop(target)
     numbers = [*(-factor for factor in factors.values()), -row.constant, divisor]
@@ -99,7 +99,7 @@ def solution(row: Linear, target: str) -> tuple[tuple[str, ...], tuple[float, ..
 
 
 def target_of(*numbers: Any) -> Any:
-    """Return a target from the numbers of `solution` and then its sources."""
+    """Return a target from the numbers of `solution`, followed by its sources."""
     count = (len(numbers) - 2) // 2
     *factors, constant, divisor = numbers[: count + 2]
     total: Any = 0.0

@@ -1,4 +1,4 @@
-"""Warnings before and after a search: a fast loaded stroke, and offsets that a slow stroke leaves out."""
+"""Warnings before and after a search: a fast loaded stroke, and offsets that a slow stroke excludes."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
-    """Return the warnings of a problem: fast loaded strokes within its ranges, and excluded offsets.
+    """Return the warnings for a problem: fast loaded strokes within its ranges, and excluded offsets.
 
     The first applies only if the problem requires no slow stroke, the second only if it does. certain: whether to warn
     only about strokes that are fast in every sampled design.
     """
-    if problem.motion is not None:  # forward and return differ only in their drive
+    if problem.motion is not None:  # forward and return strokes differ only in their drive
         return []
-    if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # it spares the samples
+    if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # this saves sampling
         return _offset_warnings(problem)
     fast, turning, sides = 0, 0, []
     for part, designs in samples(problem):
@@ -48,7 +48,7 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
 
 
 def front_warnings(front: ParetoFront) -> list[str]:
-    """Return the warnings of a front: fast loaded strokes of its designs, and excluded offsets."""
+    """Return the warnings for a front: fast loaded strokes of its designs, and excluded offsets."""
     if not len(front):
         return []
     free = np.array([front.part(row).slow_stroke is None for row in range(len(front))])
@@ -67,7 +67,7 @@ def front_warnings(front: ParetoFront) -> list[str]:
 
 
 def _offset_warnings(problem: Problem) -> list[str]:
-    """Return the warning about a slow stroke that leaves the smaller part of a range of offsets."""
+    """Return the warning about a slow stroke that excludes the larger part of a range of offsets."""
     for part in problem.parts():
         side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
         if side is None or not lower < 0.0 < upper:

@@ -1,9 +1,9 @@
 """Branches that are mirror images of each other: searching one of the two is enough.
 
 Mirrored about the slider's direction and run backwards, a machine with offset e becomes one with offset -e that rotates
-the same way. Accelerations and all functions of position alone are the same in both; velocities change sign. So the two
-are equal unless one of these distinguishes them: gravity across the slider line, a load or friction that depends on the
-motion, several cylinders, a speed profile, or a requested quantity.
+in the same direction. Accelerations and all functions of position alone are the same in both; velocities change sign.
+So the two are equal unless one of these distinguishes them: gravity across the slider line, a load or friction that
+depends on the motion, several cylinders, a speed profile, or a requested quantity.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from ..problem.violation import constraints_of
 from .elimination import EliminationBranch
 from .sampling import generator
 
-_TRIED = 512  # random designs, of which those that rotate fully count
+_TRIED = 512  # random designs; those that rotate fully count
 _COMPARED = 8
-_EQUAL = 1e-8  # relative: accuracy of a peak near locking
+_EQUAL = 1e-8  # relative accuracy of a peak near locking
 _STREAM = 4000  # of the seed
 
 
@@ -56,7 +56,7 @@ def drop_mirrored_branches(problem: Problem, branches: tuple[EliminationBranch, 
 def _wider_and_narrower(
     one: EliminationBranch, other: EliminationBranch
 ) -> tuple[EliminationBranch, EliminationBranch] | None:
-    """Return two branches of opposite sign, first the one whose range of |offset| includes the other's."""
+    """Return two branches of opposite sign; the first one's range of |offset| includes the other's."""
     if one.sign == other.sign:
         return None
     first, second = (one, other) if one.sign > 0.0 else (other, one)
@@ -75,7 +75,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
     if is_shaft(part.mechanism):
         return True
     if not all(load.is_conservative for load in machine.loads):
-        return True  # a difference at some crank angles only would show in some designs only
+        return True  # a difference at only some crank angles would show in only some designs
     designs = np.concatenate([_random_designs(part, branch) for branch in branches])
     if not len(designs):
         return True
@@ -106,7 +106,7 @@ def _may_differ(quantity: Quantity) -> bool:
 
 
 def _random_designs(part: Problem, branch: EliminationBranch) -> Array:
-    """Return some random, fully rotating designs (n, 3 + v) within a branch's ranges, whatever is required."""
+    """Return random, fully rotating designs (n, 3 + v) within a branch's ranges, regardless of requirements."""
     ends = [branch.bounds[name] for name in branch.names]
     lower, upper = (np.array([getattr(item, end) for item in ends]) for end in ("lower", "upper"))
     designs = lower + (upper - lower) * generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))

@@ -9,17 +9,17 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask
 
 ACTIVE = 1e-8
-"""Constraint rows nearer to zero than this, and objective pieces nearer to their greatest (scaled), are active."""
-_SAME = 0.3  # labels farther apart (rad) are not the same peak
+"""Constraint rows closer to zero than this, and scaled objective pieces closer to their greatest, are active."""
+_SAME = 0.3  # labels farther apart (rad) belong to different peaks
 
 
 @dataclass(frozen=True)
 class Rows:
     """Smooth rows of n designs in the free unknowns: `value <= 0` for constraints, "greatest of" for objectives.
 
-    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or
-    objective that a row belongs to. constant: owners with the same value for every design, for which slopes prove
-    nothing; empty if all have.
+    values: (n, r), -inf for absent rows. gradients: (n, r, k). labels: (n, r). owner: (r,), the constraint or objective
+    that a row belongs to. constant: owners with the same value for every design, whose slopes prove nothing; empty if
+    all are constant.
     """
 
     values: Array
@@ -46,7 +46,7 @@ def greatest(rows: Rows, count: int) -> Array:
 
 
 def alone(rows: Rows, row: int | slice) -> Rows:
-    """Return the rows of one design, or of some."""
+    """Return the rows of one design, or of several."""
     return Rows(rows.values[row], rows.gradients[row], rows.labels[row], rows.owner)
 
 
@@ -69,7 +69,7 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = AC
 def partners(rows: Rows, others: Rows, columns: IntArray) -> tuple[IntArray, Mask]:
     """Return the rows of other designs (..., p) that match rows (p,) of one design, and whether they exist.
 
-    Rows match by label, since peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
+    Rows match by label, because peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
     keep their order.
     """
     same = (rows.owner[columns, None] == rows.owner) & np.isfinite(others.values)[..., None, :]
@@ -92,7 +92,7 @@ def difference(rows: Rows, others: Rows, weight: Array) -> Array:
     changes = weight[columns, None] * (others.gradients[np.arange(n)[:, None], twins] - rows.gradients[columns])
     if not is_matched.all():
         changes = np.where(is_matched[..., None], changes, 0.0)
-    for place in range(len(columns)):  # in order, as sums of pairs round otherwise
+    for place in range(len(columns)):  # in this order, because pairwise sums round differently
         total = total + changes[:, place]
     return total
 

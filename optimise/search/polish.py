@@ -1,16 +1,16 @@
 """Sequential quadratic programming that moves designs onto the Pareto front.
 
-Each design solves Benson's problem from its present position: min sum_i f_i with no objective made worse and all
+Each design solves Benson's problem from its current position: min sum_i f_i with no objective made worse and all
 constraints held. The solutions are Pareto-optimal (H. P. Benson, "Existence of efficient solutions for vector
 maximization problems", JOTA 26(4), 1978). Mutual non-dominance, or a vanishing convex combination of some gradients, is
 not enough: if two objectives do not change with the size of the linkage, a smaller copy may be better in all others.
 
-`polish_programme` states the steps. Their Hessian is that of the Lagrangian, by differences of exact gradients, with
+`polish_programme` states the steps. Their Hessian is that of the Lagrangian, from differences of exact gradients, with
 the multipliers from the programme itself. It is first made convex across the active rows. A full step that curves away
 from rows that it must hold is corrected to second order before it is shortened (Nocedal and Wright, "Numerical
 Optimization", 2006, ch. 18.3): otherwise designs creep along curved constraints. A design that starts outside the
-constraints first moves onto them by the shortest step. Tied peaks enter as separate pieces: a kink is a minimax, not
-noise. Designs advance together, so that every evaluation is a batch.
+constraints first moves onto them by the shortest step. Tied peaks enter as separate pieces: a kink is a minimax
+problem, not noise. Designs advance together, so that every evaluation is a batch.
 """
 
 from __future__ import annotations
@@ -28,15 +28,17 @@ from .polish_programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots,
 
 ITERATIONS = 100
 CONVERGED = 1e-9
-"""Residual of Benson's problem at which a design is done."""
-_TIGHT = 1e-11  # the same as ACTIVE while a design may still move
-_NOISE = 1e-15  # of the objectives: rounding of the merit
-_STALLED = 1e-13  # gain (objectives scaled by their range) of two steps in a row that ends a design's polish
-_DIFFERENCE = 1e-6  # of the unit box, for differences of gradients
-_CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, objectives and box scaled to one
-_INDEPENDENT = 1e-6  # of unit vectors: a smaller part is not an independent, or a common, direction
-_HEAVIEST = 1e8  # largest penalty of a violation
-_PASSES = 5  # at a step where only the sum counts: a small gain along a kink does not justify leaving it
+"""Residual of Benson's problem at which a design has converged."""
+_TIGHT = 1e-11  # replaces ACTIVE while a design may still move
+_NOISE = 1e-15  # relative to the objectives: rounding error of the merit
+_STALLED = (
+    1e-13  # gain (relative to the objectives' ranges) of two consecutive steps below which a design's polish ends
+)
+_DIFFERENCE = 1e-6  # in the unit box, for differences of gradients
+_CURVATURE = 1e-6  # least eigenvalue of the step's Hessian, with objectives and box scaled to one
+_INDEPENDENT = 1e-6  # relative to unit vectors: a smaller part is not an independent, or a common, direction
+_HEAVIEST = 1e8  # largest penalty for a violation
+_PASSES = 5  # passes at a step where only the sum counts: a small gain along a kink does not justify leaving it
 _SHORTEST = 1e-13  # radius at which a design's polish ends
 _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 
@@ -65,7 +67,7 @@ def polish(
 ) -> Polished:
     """Return designs improved to stationarity from `start` (n, k) in the unit box.
 
-    scale: range of each objective over the front. chosen: objectives to improve (all by default). iterations: greatest
+    scale: range of each objective over the front. chosen: objectives to improve (all by default). iterations: maximum
     number of steps; None only moves designs that violate constraints onto them by the shortest step. hold: False lets
     an objective become worse if the sum improves. best_in: (n,), the objective in which each design is best, and
     remains best. A design that has been feasible once is feasible in the end.
@@ -96,7 +98,7 @@ class _Batch:
         self.weight = np.full(n, VIOLATION)
         self.loss = np.full((n, len(scale)), LOSS)
         self.roots = np.tile(np.eye(k), (n, 1, 1))
-        """Of the Hessians, see `polish_programme.roots`."""
+        """Roots of the Hessians; see `polish_programme.roots`."""
         self._begin()
         self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
 
@@ -128,7 +130,7 @@ class _Batch:
             return False
         fresh = rows[self.moved[rows]]
         if len(fresh):
-            # The multipliers that the Hessian needs hardly depend on the Hessian: those of the last one suffice.
+            # The multipliers that the Hessian needs hardly depend on it, so those from the previous programme suffice.
             drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
             self.roots[fresh] = roots(self._hessians(fresh, drafts))
         steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
@@ -140,7 +142,7 @@ class _Batch:
         return True
 
     def result(self) -> Polished:
-        """Return the designs at their present positions."""
+        """Return the designs at their current positions."""
         n, m = len(self.u), len(self.scale)
         lost = np.flatnonzero(~self._feasible() & np.isfinite(self.safe).all(axis=1))
         if len(lost):
@@ -192,7 +194,7 @@ class _Batch:
         if self.weight[row] > light and _violation_after(limits, step.move) > max(
             0.5 * _violation_after(limits, first.move), ROUNDING
         ):
-            # No step within the radius removes the violation: weight would only stiffen the next steps.
+            # No step within the radius removes the violation, so more weight would only stiffen the next steps.
             self.weight[row] = light
             return first
         return step
@@ -214,7 +216,8 @@ class _Batch:
         n, k = u.shape
         hessians = np.zeros((n, k, k))
         steps = np.where(u < 0.5, _DIFFERENCE, -_DIFFERENCE)
-        still = np.tile(u, (k, 1))  # all coordinates in one batch: with few designs, overhead dominates a batch
+        # All coordinates form one batch, because overhead dominates when there are few designs.
+        still = np.tile(u, (k, 1))
         moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
         goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
@@ -246,7 +249,8 @@ class _Batch:
             trial = np.where(valid[:, None], trial, self.u[at])
             goals, limits = self._evaluate(trial)
             after = greatest(goals, m)[:, columns]
-            with np.errstate(invalid="ignore"):  # infinite before and after (rod / offset at 0): no merit, not accepted
+            # Infinite before and after (rod / offset at 0), the merit is undefined and the step is not accepted.
+            with np.errstate(invalid="ignore"):
                 loss = _clear_rounding(after - limits_to_hold[at]) - _clear_rounding(before[at] - limits_to_hold[at])
                 worse = _clear_rounding(limits.values.max(axis=1, initial=0.0)) - violation[at]
                 penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
@@ -270,13 +274,16 @@ class _Batch:
             if not len(pending):
                 break
         lost = rows[pending]
-        # Short steps no longer help: rounding, or an unseen kink; the residual will tell.
+        # Short steps no longer help, because of rounding or an unseen kink; the residual shows which.
         size = np.abs(steps[pending]).max(axis=1, initial=0.0)
         self.radius[lost] = 0.25 * np.minimum(self.radius[lost], size)
         self.open[lost] &= self.radius[lost] > _SHORTEST
 
     def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
-        """Return the step that also holds rows from which the first one curves away; rows: those at its end."""
+        """Return the step that also holds rows from which the first one curves away.
+
+        rows: the rows at the first step's end.
+        """
         goals, limits = [
             replace(present, values=bent(present, trial_rows, step))
             for present, trial_rows in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
@@ -294,7 +301,7 @@ def convex(hessian: Array, normals: Array) -> Array:
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
         held_directions = directions[: len(sizes)][sizes > _INDEPENDENT]
         flat = values < _CURVATURE
-        # Directions on which no held row depends stay flat: weight would only stiffen the others.
+        # Directions on which no held row depends stay flat, because weight would only stiffen the others.
         dull = int((np.abs(held_directions @ vectors[:, flat]).max(axis=0, initial=0.0) <= _INDEPENDENT).sum())
         if dull < flat.sum():
             for weight in (1.0, 10.0, 100.0):

@@ -1,15 +1,16 @@
 """The quadratic programme of one polishing step, solved as a least-distance problem.
 
-With scaled objective pieces p of gradient g, constraint rows c <= 0 of gradient a, a step solves
+With scaled objective pieces p of gradient g, and constraint rows c <= 0 of gradient a, a step solves
 
     min  sum_i (t_i + t_i^2 / 2) + sum_i (K v_i + K^2 v_i^2 / 2) + (C w + C^2 w^2 / 2) + d' B d / 2   over d, t, v, w
     subject to  p + g d <= F_i + t_i  (each piece p of objective i),   t_i <= v_i,   0 <= v_i,
                 c + a d <= w,   0 <= w,   0 <= u + d <= 1,   |d| <= radius,
 
-where F_i is the objective's present value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
+where F_i is the objective's current value (the greatest of its pieces) and B is positive definite. A loss t_i <= v_i
 has a margin for rounding, so that an imperceptible gain does not count as a loss. v and w are exact penalties: where an
-objective and a constraint oppose each other exactly, rounding would leave a hard-bounded programme without a solution.
-Without objectives the step is the shortest one that fulfils the constraints. Where only the sum counts, v is left out.
+objective and a constraint oppose each other exactly, rounding would leave a programme with hard bounds without a
+solution. Without objectives, the step is the shortest one that meets the constraints. If only the sum counts, v is
+omitted.
 """
 
 from __future__ import annotations
@@ -26,21 +27,21 @@ from ..front.nonnegative import nonnegative_least_squares
 from .pieces import Rows
 
 LOSS = 1e3
-"""K: what an objective's loss weighs against another's gain, ranges scaled to one."""
+"""K: weight of an objective's loss against another's gain, with ranges scaled to one."""
 FIRM = 1e6
-"""K of an objective that a design is the best in: where its slope vanishes, no weight holds it to more than 1 / K^2."""
+"""K for the objective in which a design is best: where its slope vanishes, no weight holds it to more than 1 / K^2."""
 VIOLATION = 1e2
-"""C: the same for a constraint's relative violation, to begin with; it must exceed the multipliers of the limits."""
+"""C: initial weight of a constraint's relative violation; it must exceed the multipliers of the limits."""
 ROUNDING = 1e-12
-"""Losses and violations below it are rounding."""
-_STEP_RANGE = 1.0  # pieces farther below the greatest cannot become it within a step
+"""Smaller losses and violations are rounding."""
+_STEP_RANGE = 1.0  # pieces farther below the greatest cannot become the greatest within a step
 
 
 @dataclass(frozen=True)
 class Step:
-    """A step d (k,), the multipliers of goal (p,) and limit rows (q,), and the binding gradients (r, k).
+    """A step d (k,), the multipliers of goal rows (p,) and limit rows (q,), and the active gradients (r, k).
 
-    normals: gradients of the limits, bounds, held objectives and ties (differences) whose multipliers are positive.
+    normals: gradients of the limits, bounds, held objectives and ties (differences) with positive multipliers.
     """
 
     move: Array
@@ -67,9 +68,9 @@ def solve_step(u: Array, goals: Rows, limits: Rows, root: Array, *, radius: floa
 
     root: transposed inverse of L with B = L L', see `roots`. violation: C.
 
-    With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1) the programme reads: min |x|^2 / 2 subject to G x >= h, and
-    its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974,
-    ch. 23.4).
+    With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1), the programme becomes min |x|^2 / 2 subject to G x >= h, and
+    its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974, ch.
+    23.4).
     """
     chosen, tops, loss, hold = aim
     k, count = len(u), len(chosen)
@@ -150,7 +151,7 @@ def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> 
     if rest[-1] == 0.0:
         return np.zeros(k), np.zeros(len(rows))
     x, is_binding = -rest[:-1] / rest[-1], dual > 0.0
-    # Between opposing pieces large multipliers cancel: the active rows place the step more exactly.
+    # Between opposing pieces, large multipliers cancel, so the active rows determine the step more exactly.
     holding = g[is_binding]
     x = x + np.linalg.lstsq(holding, h[is_binding] - holding @ x, rcond=1e-12)[0]
     return (scale @ x)[:k], dual / lengths / -rest[-1]

@@ -56,7 +56,7 @@ def polish(
 ) -> Polished:
     """Return the result of `polish.polish`, on the engine where worthwhile; no record is stored.
 
-    Every design is polished independently, so that workers can share many of them.
+    Every design is polished independently, so that workers can share them.
     """
     if not isinstance(evaluator, Evaluator) or isinstance(evaluator.engine, Serial):
         return polish_here(evaluator, start, scale, chosen=chosen, iterations=iterations, best_in=best_in)
@@ -81,7 +81,7 @@ def _polish_rows(evaluator: Evaluator, options: _PolishOptions, start: Array) ->
 def _recorded_polish(
     evaluator: Evaluator, kind: str, inputs: tuple[Numbers, ...], compute: Callable[[], Polished]
 ) -> Polished:
-    """Return the result of a step; a record has ragged rows end to end, with their lengths."""
+    """Return the result of a step; a record stores ragged rows end to end, with their lengths."""
 
     def arrays() -> tuple[Array, Array, Array, Array, Lengths, Array, Array, Lengths, Array]:
         result = compute()

@@ -17,20 +17,21 @@ from .evaluation import Evaluator
 from .sampling import first_samples
 
 _SAMPLES = 32
-"""Designs of a branch, besides those of extreme numbers and stroke."""
+"""Number of designs per branch, besides those with extreme numbers and stroke."""
 _TRIED = 4096
-"""Points of all branches from which these are taken: what needs no cycle computed costs a microsecond a point."""
+"""Number of points over all branches from which these are taken: checks that need no cycle cost a microsecond per
+point."""
 _BRANCHES = 20
-"""Branches: of very many choices the first ones."""
+"""Maximum number of branches; with very many choices, the first ones."""
 _NARROW = 0.1
-"""Width of a range, relative to its greater end, that points rarely hit: its middle is required instead."""
+"""Relative width of a range that points rarely hit; its middle is required instead."""
 
 
 def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
     """Yield designs (n, 3 + k) that make the required motion, with the problem for their choices.
 
-    They meet the requirements on lengths, stroke and all else that needs no cycle computed. If no point does, those
-    with the least violation count.
+    They meet the requirements on lengths, stroke and everything else that needs no cycle. If no point does, those with
+    the least violation count.
     """
     branches = elimination_branches(problem)[:_BRANCHES]
     count = max(_SAMPLES, _TRIED // len(branches))
@@ -63,7 +64,7 @@ def _has_feasible(tried: tuple[Array, Array]) -> bool:
 
 
 def _middle_of_narrow_range(constraint: Constraint) -> Constraint:
-    """Return the middle of a narrow range as what is required."""
+    """Return the middle of a narrow range as a required value."""
     lower, upper = constraint.lower, constraint.upper
     if lower is None or upper is None or upper - lower > _NARROW * max(abs(lower), abs(upper)):
         return constraint
@@ -71,7 +72,7 @@ def _middle_of_narrow_range(constraint: Constraint) -> Constraint:
 
 
 def _representative_rows(part: Problem, designs: Array) -> Array:
-    """Return the first designs and those of extreme numbers and stroke."""
+    """Return the first designs and those with extreme numbers and stroke."""
     if not len(designs):
         return designs
     stroke = STROKE.evaluate(part.mechanism, designs).values

@@ -10,16 +10,16 @@ from ..front.neighbours import neighbours
 from .sobol import sobol
 
 BOUNDARY_SHARE = 0.3
-"""Chance that a coordinate of a sample is snapped to one of its bounds: optima sit on faces and edges."""
+"""Probability that a sample's coordinate is snapped to one of its bounds, because optima lie on faces and edges."""
 
 LEAST_DISTANCE = 0.1
-"""Distance in the unit box of starts that are to lead to different optima."""
+"""Distance in the unit box between starts that should lead to different optima."""
 
 
 def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> IntArray:
-    """Return rows of at most `count` points (n, k): least finite merit (n,) first, `LEAST_DISTANCE` apart.
+    """Return rows of at most `count` points (n, k), `LEAST_DISTANCE` apart: least finite merit (n,) first.
 
-    Points of different branches count as apart.
+    Points on different branches count as distant.
     """
     rows = np.argsort(merits, kind="stable")
     rows = rows[np.isfinite(merits[rows])]
@@ -33,14 +33,14 @@ def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> 
 
 
 def generator(seed: int, *stream: int) -> np.random.Generator:
-    """Return the random generator of one stream of a seed; streams are independent and never shared."""
+    """Return the random generator for one stream of a seed; streams are independent and never shared."""
     return np.random.default_rng(np.random.SeedSequence([seed, *stream]))
 
 
 def first_samples(
     count: int, dimension: int, seed: int, stream: int, *, boundary_share: float = BOUNDARY_SHARE
 ) -> Array:
-    """Return about `count` points of the unit box (n, k), a part of them on faces, edges and corners."""
+    """Return about `count` points in the unit box (n, k), some of them on faces, edges and corners."""
     if dimension == 0:
         return np.zeros((1, 0))
     random = generator(seed, stream, 0)
@@ -51,9 +51,9 @@ def first_samples(
 
 
 def sample_near(parents: Array, values: Array, count: int, width: float, random: np.random.Generator) -> Array:
-    """Return `count` points near parents (n, k), more near those whose neighbours on the front are far.
+    """Return `count` points near parents (n, k), more of them near parents with distant neighbours on the front.
 
-    values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound mostly
+    values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound usually
     stays there.
     """
     ideal, span = scaling(values)
@@ -66,7 +66,7 @@ def sample_near(parents: Array, values: Array, count: int, width: float, random:
         sparse = np.ones(len(parents))
     chosen = draw_rows(sparse / sparse.sum(), count, random)
     base = parents[chosen]
-    # Heavy tails: most children stay near, some jump.
+    # Heavy tails: most children stay close, some jump.
     step = width * random.standard_normal(base.shape) * random.standard_exponential((count, 1))
     on_bound = (base == 0.0) | (base == 1.0)
     stays = on_bound & (random.random(base.shape) < 0.7)
@@ -74,11 +74,12 @@ def sample_near(parents: Array, values: Array, count: int, width: float, random:
 
 
 def draw_rows(chances: Array, count: int, random: np.random.Generator) -> IntArray:
-    """Return `count` rows drawn with chances (n,), as `Generator.choice` draws them, in a third of its time."""
+    """Return `count` rows drawn with probabilities (n,), as `Generator.choice` draws them, in a third of its time."""
     upto = chances.cumsum()
     upto /= upto[-1]
     drawn = random.random(count)
     order = np.argsort(drawn)
     rows = np.empty(count, np.int64)
-    rows[order] = upto.searchsorted(drawn[order], side="right")  # in order: each search begins where the last one ended
+    # In order, each search begins where the last one ended.
+    rows[order] = upto.searchsorted(drawn[order], side="right")
     return rows

@@ -25,26 +25,26 @@ from .sampling import first_samples, generator, sample_near
 from .violation import least_violation
 
 FIRST = 16384
-"""Designs of the first round, everywhere."""
+"""Number of designs in the first round, everywhere."""
 SAMPLES = 4096
-"""Designs of each later round."""
+"""Number of designs in each later round."""
 WIDTHS = (0.1, 0.05, 0.02, 0.01)
-"""Spread of the zoom rounds, in the unit box."""
+"""Spread of the zoom rounds in the unit box."""
 BANDS = (0.0, 0.01, 0.04, 0.16)
-"""Relative violation that samples may have, in turn, until enough are found; the polish removes it. The first is left
-out where equalities remain: no sample meets them."""
+"""Relative violation that samples may have, raised until enough are found; the polish removes it. The first is omitted
+if equalities remain, because no sample meets them."""
 ENOUGH = 32
-"""Samples that are enough to zoom on."""
+"""Number of samples that is enough to zoom."""
 LEAST = 1024
-"""Designs of a round on each of many branches."""
-_ROUND = 100  # branches without free unknowns
-_CROWD = 2000  # parents of a round
-_RANKED, _LEAST_RANKED = 256, 64  # samples whose best start a descent, over all branches and at least in each
-_STARTS = 8  # the same of those that do
-_BEST = 1000  # designs kept of a single objective
-_FRONT_SAMPLE = 400  # designs of a front so far, and of that of a round in the history
+"""Minimum number of designs per round on each of many branches."""
+_ROUND = 100  # branches without free unknowns per batch
+_CROWD = 2000  # parents per round
+_RANKED, _LEAST_RANKED = 256, 64  # samples whose best ones start a descent, over all branches and at least on each
+_STARTS = 8  # descents, over all branches
+_BEST = 1000  # designs to keep for a single objective
+_FRONT_SAMPLE = 400  # designs to keep from the front so far, and from each round's front in the history
 REPORT_INTERVAL = 0.5
-"""Least time between two progress reports of a long stage, s."""
+"""Minimum time between two progress reports in a long stage, s."""
 
 Callback = Callable[[Progress], None]
 
@@ -53,14 +53,14 @@ Callback = Callable[[Progress], None]
 class Archive(Candidates):
     """Non-dominated designs found so far; a feasible design is displaced only by another feasible one.
 
-    band: relative violation of constraints allowed to infeasible designs. feasible: number of feasible designs seen.
+    band: relative violation allowed for infeasible designs. feasible: number of feasible designs seen.
     """
 
     band: float = field(default=0.0, kw_only=True)
     feasible: int = field(default=0, kw_only=True)
 
     def screen(self, index: int, evaluator: Evaluator, u: Array) -> int:
-        """Evaluate points (n, k) of a branch, add those that are feasible within the band, return their number."""
+        """Evaluate points (n, k) of a branch, add those that are feasible within the band, and return their number."""
         return self.screen_all([(index, evaluator, u)])
 
     def screen_all(self, points: Iterable[tuple[int, Evaluator, Array]]) -> int:
@@ -78,7 +78,8 @@ class Archive(Candidates):
     def add_points(self, index: int, u: Array, values: Array, is_feasible: Mask | None = None) -> None:
         """Add points (n, k) of a branch with their objectives (n, m) as minimised.
 
-        is_feasible: (n,), which points meet every constraint, all by default; the others are near enough to move there.
+        is_feasible: (n,), which points meet every constraint, by default all; the others are close enough to move
+        there.
         """
         self.add(
             Candidates(
@@ -108,7 +109,7 @@ def _rows_to_keep(candidates: Candidates) -> IntArray:
 
 
 def _best_rows(values: Array) -> IntArray:
-    """Return the rows to keep: the non-dominated ones, or the best many for a single objective, best first."""
+    """Return the rows to keep: the non-dominated ones or, for a single objective, the `_BEST` best ones, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
 
@@ -125,10 +126,10 @@ class Run:
     """State of a running search: its rounds, the front at the end of each, and the result so far.
 
     checkpoints: checkpoints of its steps, shared with its evaluators. enumerated: evaluators of the branches without
-    free unknowns. archive: designs found on the other branches. candidates: the designs of the enumerated branches, and
-    the polished ones of the archive. fronts: objectives of feasible designs in each round, at most some hundreds.
+    free unknowns. archive: designs found on the other branches. candidates: designs on the enumerated branches, and
+    polished ones from the archive. fronts: objectives of feasible designs in each round, at most a few hundred.
     progress: called after every round. stages: called in long stages between two rounds. Without either, a round's
-    hypervolume is reported as 0, not computed. previous: an earlier run for the same answer, continued by this one.
+    hypervolume is reported as 0, not computed. previous: an earlier run for the same answer, which this one continues.
     """
 
     problem: Problem
@@ -159,7 +160,7 @@ class Run:
         """Record the end of a round; evaluators: the evaluators of the archive's designs.
 
         A cancelled search builds its front from the last archive with designs. Rounds reported before an interruption
-        are not reported again, only that they are repeated.
+        are not reported again; only their replay is.
         """
         self.archive = archive if len(archive) else self.archive
         feasible_values = archive.values if archive.is_feasible.all() else archive.values[archive.is_feasible]
@@ -177,14 +178,17 @@ class Run:
         )
         self.round_reports.append(entry)
         self.checkpoints.polled = None
-        self.fronts.append(_spread_sample(feasible).copy())  # not a view, which would keep all of them
+        self.fronts.append(_spread_sample(feasible).copy())  # a copy, because a view would keep all of them in memory
         if self.checkpoints.end_round():
             self._report(entry, self.progress)
         else:
             self.report_stage(stage, 0, 1)
 
     def latest(self) -> Array:
-        """Return the objectives (n, m) of the front after the last round, SI, as minimised; at most some hundreds."""
+        """Return the objectives (n, m) of the front after the last round, SI, as minimised.
+
+        At most a few hundred designs.
+        """
         if self.archive.is_feasible.all() and not len(self.candidates):
             return _spread_sample(self.archive.values)
         values = np.concatenate([self.archive.values, self.candidates.values])
@@ -218,10 +222,9 @@ class Run:
     def history(
         self, ideal: Array, span: Array, max_designs: int | None = None, poll: Callable[[], None] = lambda: None
     ) -> tuple[Progress, ...]:
-        """Return the rounds with hypervolumes in one scaling, which are comparable and never decrease.
+        """Return the rounds with hypervolumes in one scaling, so that they are comparable and never decrease.
 
-        max_designs: number of designs of each round that count; the others would add little. poll: called for each
-        round.
+        max_designs: number of designs per round that count; the others would add little. poll: called for each round.
         """
         growth = Growth(self._targets, box=(ideal, span), max_designs=max_designs)
         rounds: list[Progress] = []
@@ -263,7 +266,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
     run.begin_round("sampling")
     for attempt, band in enumerate(bands):
         archive.band = band
-        # A small feasible region needs more points before the search gives it up.
+        # A small feasible region needs more points before the search gives up.
         count = samples_per_branch(samples * 4**attempt, evaluators)
         hits = archive.screen_all(
             (index, evaluator, first_samples(count, evaluator.dimension, problem.settings.seed, index))
@@ -298,7 +301,7 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
 def _samples_around(
     parents: Candidates, index: int, dimension: int, samples: int, width: float, random: np.random.Generator
 ) -> Array:
-    """Return points around the parents of a branch, in proportion to their number among all parents."""
+    """Return points around the parents on a branch, in proportion to its fraction of all parents."""
     on_branch = parents.branch == index
     count = max(1, int(samples * on_branch.mean()))
     return sample_near(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
@@ -307,8 +310,8 @@ def _samples_around(
 def is_beyond_sampling(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
     """Whether descent from the best samples stays outside the band of the last samples.
 
-    Sixteen times as many samples in that band would cost more and prove less, as their best are not local optima. False
-    for robust quantities: samples estimate them at a fraction of a descent's cost.
+    Sixteen times as many samples in that band would cost more and prove less, because their best are not local optima.
+    False for robust quantities, because samples estimate them at a fraction of a descent's cost.
     """
     robust = any(isinstance(quantity, RobustQuantity) for quantity in problem.own)
     if robust or problem.without_gradient():

@@ -1,4 +1,4 @@
-"""Scrambled Sobol points, equal to those of `scipy.stats.qmc`, without its import, which takes as long as a search.
+"""Scrambled Sobol points, equal to those of `scipy.stats.qmc` but without its import, which takes as long as a search.
 
 I. M. Sobol, USSR Comput. Math. Math. Phys. 7(4), 1967; primitive polynomials and first direction numbers of S. Joe and
 F. Y. Kuo, SIAM J. Sci. Comput. 30(5), 2008; scrambled by a random lower triangular matrix and a digital shift,
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...model.arrays import Array
 
 _BITS = 30
-# Inner coefficients of the polynomial as a number, and the first direction numbers; of each dimension.
+# For each dimension: inner coefficients of the polynomial as a number, and the first direction numbers.
 _FIRST: tuple[tuple[int, tuple[int, ...]], ...] = (
     (0, (1,) * _BITS),
     (0, (1,)),
@@ -29,7 +29,7 @@ _FIRST: tuple[tuple[int, tuple[int, ...]], ...] = (
 
 
 def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
-    """Return 2^power points of the unit box (n, k). random: spawns the generator that scrambles them."""
+    """Return 2^power points in the unit box (n, k). random: spawns the generator that scrambles them."""
     if dimension > len(_FIRST):
         from scipy.stats import qmc
 
@@ -39,13 +39,13 @@ def sobol(power: int, dimension: int, random: np.random.Generator) -> Array:
     shift = random.integers(2, size=(dimension, _BITS), dtype=np.uint32) @ (np.uint32(1) << places)
     lower = np.tril(random.integers(2, size=(dimension, _BITS, _BITS), dtype=np.uint32), -1)
     lower += np.eye(_BITS, dtype=np.uint32)
-    digits = _direction_numbers(dimension)[:, :, None] >> places[::-1] & 1  # the most significant first
+    digits = _direction_numbers(dimension)[:, :, None] >> places[::-1] & 1  # most significant digit first
     mixed = np.einsum("dpk,djk->djp", lower, digits) & 1
     numbers = (mixed << places[::-1]).sum(axis=2, dtype=np.uint32)
     count = np.arange(1, 2**power)
     points = np.empty((2**power, dimension), dtype=np.uint32)
     points[0] = shift
-    points[1:] = numbers.T[np.log2(count & -count).astype(np.int64)]  # the digit that Gray's code changes
+    points[1:] = numbers.T[np.log2(count & -count).astype(np.int64)]  # the digit that changes in Gray code
     return np.asarray(np.bitwise_xor.accumulate(points) * 2.0**-_BITS)
 
 

@@ -1,8 +1,8 @@
 """Lengths that give a swing its exact travel, or its exact crank angle, in closed form.
 
-A pin at a rod's length from two places lies on their perpendicular bisector. For the travel S between two crank angles:
+A pin at a rod's length from two points lies on their perpendicular bisector. For the travel S between two crank angles,
 the slider pin at the start is as far from the crank pin there as from the crank pin at the end moved back by S. For the
-angle between two slider positions: the crank pin at the start is as far from the slider pin there as from the slider
+angle between two slider positions, the crank pin at the start is as far from the slider pin there as from the slider
 pin at the end turned back by the angle.
 """
 
@@ -29,12 +29,12 @@ class SwingRule(Rule):
     root: int = 0
 
     def formula(self, *known: Any) -> Any:
-        """Return the target for the sources."""
+        """Return the target computed from the sources."""
         return self.solve(self.root, *self.values, *known)
 
     @property
     def solutions(self) -> tuple[Rule, ...]:
-        """The rule for each of its roots."""
+        """Return the rule for each of its roots."""
         return tuple(replace(self, root=root) for root in range(self.roots))
 
 
@@ -93,7 +93,7 @@ def _offset_of_travel(
 
 
 def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
-    """Return a point and the direction of the bisector of the slider pin at start and turned-back end."""
+    """Return a point and the direction of the bisector between the slider pin's start and its turned-back end."""
     first, last = ends
     turn = _root_signs(root)[0] * angle
     cosine, sine = np.cos(turn), np.sin(turn)

@@ -1,4 +1,4 @@
-"""Designs nearest to meeting all requirements: minimisation of the greatest violation."""
+"""Designs closest to meeting all requirements: minimisation of the greatest violation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .pieces import Rows
 from .recorded_polish import polished
 from .sampling import distant_rows
 
-_BATCH = 256  # points examined between two checks whether the best are among them
+_BATCH = 256  # points to examine between two checks whether the best are among them
 
 
 class _Violations:
@@ -31,9 +31,9 @@ class _Violations:
 
 
 def least_violation(evaluator: Evaluator, u: Array, *, ranked: int, starts: int) -> Polished:
-    """Return designs of locally least violation, their only value, from points (n, k); none if none rotates fully.
+    """Return designs with locally least violation, their only value, from points (n, k); none if none rotates fully.
 
-    ranked: number of points of the branch examined, evenly spread. starts: number of descents, from the best points.
+    ranked: number of points of the branch to examine, evenly spread. starts: number of descents, from the best points.
     """
     u = u[evaluator.valid(u)]
     u = u[:: max(1, len(u) // ranked)]

@@ -3,21 +3,22 @@
     minimise  |F| + |M| / arm,   |.| the peak or the root mean square over the cycle,
 
 over the counterweight's moment c (within `most`) and the balance mass on the rod. F and M are affine in them
-(`shaking_rows`), so that |F(theta)| <= tau is a second-order cone at every crank angle and the root mean square the
-norm of an affine vector. Peaks are over the continuum of angles. The programme is first solved with a few; then the
+(`shaking_rows`), so |F(theta)| <= tau is a second-order cone at every crank angle, and the root mean square is the norm
+of an affine vector. Peaks are over the continuum of angles. The programme is first solved with a few angles; then the
 exact peaks of its solution (`model.signals.peaks`, no grid) are added, until none is higher than those included.
 
 The balance mass on the rod may be any body within a distance R of the crank pin. Mass m, first moment b and inertia I
-belong to such a body exactly if
+belong to such a body if and only if
 
     |b|^2 <= m I   (Cauchy and Schwarz)   and   I <= R^2 m,
 
-again a convex cone. Its mass acts like a counterweight towards the crank pin, which c can cancel. Of all solutions with
-the same forces, the result is the one with the least added mass.
+again a convex cone. Its mass acts like a counterweight towards the crank pin, which c can cancel. Among all solutions
+with the same forces, the result is the one with the least added mass.
 
-Known limits: without slider mass, or with a rod balance that puts the centre of rod and slider onto the crank pin, the
+Known limits: without slider mass, or with a rod balance that puts the centre of rod and slider at the crank pin, the
 force vanishes (R. S. Berkof and G. G. Lowen, "A new method for completely force balancing simple linkages", J.
-Engineering for Industry 91, 1969); for a long rod without offset c is the rotating mass and half the reciprocating one.
+Engineering for Industry 91, 1969); for a long rod without offset, c is the rotating mass and half the reciprocating
+one.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ from .input_words import Measure
 from .shaking_rows import mean_rows, moving_moment, rows, with_masses
 
 ROUNDS = 60
-_START = 24  # crank angles a turn that the first round has
-_EXCESS = 1e-10  # of the shaking before, by which a peak may exceed those that the programme has
+_START = 24  # crank angles per turn in the first round
+_EXCESS = 1e-10  # relative to the original shaking: excess of a peak over those in the programme that is allowed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,9 +97,9 @@ class Balance:
 
     moment, angle: moment of the counterweight, kg m, and its angle from the crank's direction, rad. radius: radius of
     the counterweight in `balanced`, m; mass: mass at that radius, kg. rod: rod balance; None unless requested.
-    original: mechanism before; balanced: the one after. objective: the minimised value, N. bound: its lower bound from
-    the cone programme, accurate to about 1e-9 of the shaking before. saving: decrease per kg m by which `most` is
-    raised. rounds: rounds of the exchange. converged: False if it ended with peaks still rising.
+    original: mechanism before; balanced: mechanism after. objective: the minimised value, N. bound: its lower bound
+    from the cone programme, accurate to about 1e-9 of the original shaking. saving: decrease per kg m by which `most`
+    is raised. rounds: rounds of the exchange. converged: False if it ended with peaks still rising.
     """
 
     moment: float
@@ -122,7 +123,7 @@ class Balance:
         return self.moment / self.radius
 
     def hodograph(self, crank_angle: Array) -> tuple[ShakingCurves, ShakingCurves]:
-        """Return the shaking before and after at crank angles (n,), rad: force_y over force_x is the hodograph."""
+        """Return the shaking before and after at crank angles (n,), rad; force_y over force_x is the hodograph."""
         before, after = (shaking_curves(each, self.linkage, crank_angle) for each in (self.original, self.balanced))
         return before, after
 
@@ -137,12 +138,12 @@ def balance(
     greatest_moment: float | None = None,
     rod: RodSpace | None = None,
 ) -> Balance:
-    """Return the counterweight, replacing the mechanism's own, and the rod balance for least shaking of one linkage.
+    """Return the counterweight, which replaces the mechanism's own, and the rod balance for least shaking of a linkage.
 
-    arm: lever arm, m; the shaking moment counts as moment / arm, and is ignored if None. It needs a rod balance: no
-    counterweight changes it. radius: radius of the counterweight, m; if None, that of the mechanism's counterweight, or
-    the crank. greatest_moment: greatest moment of the counterweight, kg m. rod: space for a rod balance; None for none.
-    Raises `InputError` for a crank that is at rest or accelerates, and if no moving part has a mass.
+    arm: lever arm, m; the shaking moment counts as moment / arm, and is ignored if None. It needs a rod balance,
+    because no counterweight changes it. radius: radius of the counterweight, m; by default, that of the mechanism's
+    counterweight, or the crank. greatest_moment: greatest moment of the counterweight, kg m. rod: space for a rod
+    balance; None for none. Raises `InputError` if the crank is at rest or accelerates, or if no moving part has a mass.
     """
     require_word("measure", measure, Measure)
     require_plain(mechanism, "the balance of a counterweight")
@@ -182,7 +183,7 @@ class _Programme:
         moment = moving_moment(self.mechanism, self.linkage)
         mass, arm_radius = moment / float(self.linkage.crank), 1.0 if self.rod is None else self.rod.radius
         self.unit = np.array([moment, moment, mass, mass * arm_radius, mass * arm_radius, mass * arm_radius**2])
-        self.force = moment * self.mechanism.speed**2  # of order of the forces, N
+        self.force = moment * self.mechanism.speed**2  # of the same order as the forces, N
         self.count = 2 if self.rod is None else 6
 
     def solve(self, radius: float) -> Balance:
@@ -215,7 +216,7 @@ class _Programme:
         )
 
     def _cone(self, angles: Array) -> tuple[Array, float, float]:
-        """Return x (6,), the least objective, N, for peaks at these angles only, and the price of `most`, N/(kg m)."""
+        """Return x (6,), the least objective, N, for peaks at only these angles, and the price of `most`, N/(kg m)."""
         cp = required("cvxpy", "balancing a counterweight needs")
         z = cp.Variable(self.count)
         goals, rules = [], []
@@ -239,7 +240,7 @@ class _Programme:
             rules += [cp.quad_over_lin(z[3:5], z[2]) <= z[5], z[5] <= z[2], z[2] <= self.rod.mass / self.unit[2]]
         problem = cp.Problem(cp.Minimize(sum(goals)), rules)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # what an inaccurate answer is worth shows in its peaks
+            warnings.simplefilter("ignore", UserWarning)  # the peaks show the effect of an inaccurate answer
             problem.solve(solver=cp.CLARABEL, tol_gap_abs=1e-11, tol_gap_rel=1e-11, tol_feas=1e-11)
         if z.value is None:
             raise InputError(f"the cone solver found no balance ({problem.status}); masses must be of comparable size")
@@ -250,7 +251,7 @@ class _Programme:
         return self._lightest(self._clip(x)), float(problem.value * self.force), float(price)
 
     def _clip(self, x: Array) -> Array:
-        """Return x within its bounds, from where the solver's rounding left it."""
+        """Return x moved within its bounds, which the solver's rounding may have left."""
         if self.greatest_moment is not None:
             x[:2] *= min(1.0, self.greatest_moment / max(math.hypot(x[0], x[1]), 1e-300))
         if self.rod is not None:
@@ -261,7 +262,7 @@ class _Programme:
         return x
 
     def _lightest(self, x: Array) -> Array:
-        """Return the answer with the same forces, and moment if it counts, that adds the least mass to the rod."""
+        """Return the answer with equal forces, and an equal moment if it counts, that adds least mass to the rod."""
         if self.rod is None:
             return x
         first, arm_radius = math.hypot(x[3], x[4]), self.rod.radius
@@ -271,7 +272,7 @@ class _Programme:
         return light if self.greatest_moment is None or math.hypot(light[0], light[1]) <= self.greatest_moment else x
 
     def _rising(self, x: Array, angles: Array, after: Mechanism) -> Array:
-        """Return the crank angles of exact peaks that exceed all those at the angles that the programme has."""
+        """Return the crank angles of exact peaks that exceed all those at the programme's angles."""
         force, moment = (table @ np.array([1.0, *x]) for table in rows(self.mechanism, self.linkage, angles))
         fresh = []
         for kind, size, unit in (
@@ -284,7 +285,7 @@ class _Programme:
 
 
 def shaking_of(mechanism: Mechanism, linkage: Linkage) -> Shaking:
-    """Return peaks and root mean squares of shaking force and moment of one linkage."""
+    """Return peaks and root mean squares of a linkage's shaking force and moment."""
     numbers: list[float] = []
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):
         peaks, angles = first_peaks(mechanism, kind, _design_row(linkage))

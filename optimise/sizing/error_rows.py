@@ -16,12 +16,12 @@ from ...model.tolerance.sources import counted_angles, limits, source_influences
 from ..problem.costs import NAMES, Costs
 from .input_words import Kind
 
-_START = 32  # crank angles a turn in `start`
+_START = 32  # crank angles per turn in `start`
 _TURN = 2.0 * np.pi
 
 
 class ErrorRows:
-    """Rows of (error / limit)^p of one linkage, linear in x_i = t_i^p / scale_i, of order one.
+    """Rows of (error / limit)^p for one linkage, linear in x_i = t_i^p / scale_i, of order one.
 
     p: 1 for the worst case, 2 for the root-sum-square. t_i: the n tolerances that have a cost, m and rad. start: crank
     angles spread over the counted part of the cycle, rad.
@@ -40,20 +40,20 @@ class ErrorRows:
         self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.by_name.values()]) ** self.power)
 
     def rows(self, angles: Array) -> tuple[Array, Array]:
-        """Return the coefficients (m, n) of x and what is left for them (m,) at crank angles (m,), rad."""
+        """Return the coefficients (m, n) of x and the remaining limit (m,) at crank angles (m,), rad."""
         parts = (np.abs(source_influences(self.mechanism, self.linkage, angles)) / self.limit) ** self.power
         return parts[self._chosen].T * self.scale, 1.0 - self._given**self.power @ parts
 
     def scaled(self, tolerances: Array) -> Array:
-        """Return x of tolerances (n,), m and rad."""
+        """Return x for tolerances (n,), m and rad."""
         return np.asarray(tolerances**self.power / self.scale)
 
     def tolerances(self, x: Array) -> Array:
-        """Return the tolerances (n,), m and rad, of x."""
+        """Return the tolerances (n,), m and rad, for x."""
         return np.asarray((x * self.scale) ** (1.0 / self.power))
 
     def machine(self, x: Array) -> Mechanism:
-        """Return the mechanism with the tolerances of x."""
+        """Return the mechanism with the tolerances for x."""
         machine_tolerances: dict[str, Any] = {
             name: Tolerance(absolute=float(value)) for name, value in zip(self.names, self.tolerances(x), strict=True)
         }

@@ -1,4 +1,4 @@
-"""Limit states of sections, each a posynomial of width w (in the plane of motion) and depth d.
+"""Limit states of sections, each a posynomial in width w (in the plane of motion) and depth d.
 
 With pin centre distance L, density rho, and the joints' loads of `section_loads` (N axial, V moment at the root, F on
 pins), the own mass of a bar of width w adds at most
@@ -9,10 +9,11 @@ pins), the own mass of a bar of width w adds at most
             M'  = rho d (g s1 + alpha s2),   s1 = w L^2 / 2 + pi w^2 L / 8 + w^3 / 12,
             s2 = w L^3 / 3 + pi w^2 L^2 / 8 + w^3 L / 6 + pi w^4 / 128,
 
-the rod's kappa between its pins and the half-discs of its round ends beyond them, the crank from its far end to the
-pivot; s1 and s2 are the first and second moment of its area about the pivot. Axial force and moment peak at different
-crank angles, and the half-discs' share at yet others: adding the peaks is on the safe side. With C = (compression + N')
-and u = n C / P, P = pi^2 E d w^3 / (12 K^2 L^2), a moment grows in a compressed bar by at most
+counting kappa between the rod's pins, the half-discs of its round ends beyond them, and the crank from its far end to
+the pivot; s1 and s2 are the first and second moment of its area about the pivot. Axial force and moment peak at
+different crank angles, and the half-discs' parts at yet others, so adding the peaks is conservative. With C =
+(compression + N') and u = n C / P, P = pi^2 E d w^3 / (12 K^2 L^2), a moment in a compressed bar increases by at most
+the factor
 
     sec(pi sqrt(u) / 2) <= 1 + (4 / pi) u z,   z >= 1 / (1 - u)   written as   1 / z + u <= 1
 
@@ -36,8 +37,8 @@ of that bar, K = 2). Each of these is at most one:
 
 Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
 most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. Other
-weakening of the finished bar belongs in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the eyes beyond
-their net section, pin bending, friction, bending out of the plane.
+reductions in strength of the finished bar belong in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the
+eyes beyond their net section, pin bending, friction, out-of-plane bending.
 """
 
 from __future__ import annotations
@@ -53,14 +54,14 @@ from ..problem.section_limits import SectionLimits
 from .section_loads import JointLoads, Range, Whip
 
 AMPLIFICATION = "amplification"
-"""The state that defines z; no limit of its own."""
+"""The state that defines z; it is not a limit."""
 _SWELL = 4.0 / math.pi
-_NOTHING = 1e-12  # of the greatest load: no load, with room for a logarithm
+_NOTHING = 1e-12  # relative to the greatest load: counts as no load, but has a logarithm
 _TINY = 1e-30
 
 
 Above = Callable[[Any], Any]
-"""Puts a variable in the place of an expression, no less than it: keeps the expressions of a programme short."""
+"""Replaces an expression by a variable that is at least as large, which keeps a programme's expressions short."""
 
 
 def same(expression: Any) -> Any:
@@ -70,10 +71,10 @@ def same(expression: Any) -> Any:
 
 @dataclass(frozen=True)
 class BarLoads:
-    """Loads on one bar; numbers, or posynomials of the sections. N, N m, and Pa^-1 N for fatigue.
+    """Loads on one bar, as numbers or posynomials in the sections. N, N m, and Pa^-1 N for fatigue.
 
-    axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass included.
-    pins: force and diameter by name. bent_eye: the name of the pin whose eye has the moment, "" for none.
+    axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass is
+    included. pins: force and diameter by name. bent_eye: name of the pin whose eye carries the moment, "" for none.
     """
 
     axial: Any
@@ -85,7 +86,7 @@ class BarLoads:
     bent_eye: str = ""
 
     def map_loads(self, above: Above) -> BarLoads:
-        """Return the same with `above` applied to each that own mass adds to."""
+        """Return the same loads with `above` applied to each that own mass increases."""
         return replace(
             self, **{name: above(load) for name, load in vars(self).items() if name not in ("pins", "bent_eye")}
         )
@@ -103,14 +104,14 @@ def limit_states(
 ) -> dict[str, Any]:
     """Return the utilisation of each limit state (1 is the limit), by name.
 
-    buckling_length: in the plane, m. z: amplification. cvxpy expressions give posynomials. Numbers, with z None,
-    give numbers: z is then at its least, infinite where the bar buckles, and of an eye the stress in its net section
-    counts, of which a posynomial has the limit alone.
+    buckling_length: in the plane, m. z: amplification. cvxpy expressions give posynomials. Numbers, with z None, give
+    numbers: z is then at its minimum, infinite if the bar buckles, and for an eye the stress in its net section counts,
+    for which a posynomial gives only the limit.
     """
     exact = z is None
 
     def eye(stress: Any, hole: Any) -> Any:
-        """Return the utilisation of an eye by the stress without its hole and the share that the hole takes."""
+        """Return the utilisation of an eye by the stress without its hole, and the fraction that the hole removes."""
         return stress / (1.0 - hole) if exact and hole < 1.0 else stress + hole
 
     static = limits.static_safety / material.yield_strength
@@ -152,7 +153,7 @@ def limit_states(
 def rod_loads(
     w: Any, d: Any, length: float, joints: dict[str, Any], whip: Whip, material: Material, limits: SectionLimits
 ) -> BarLoads:
-    """Return the loads on the rod, its own mass included."""
+    """Return the loads on the rod, including its own mass."""
     rho, fatigue = material.density, 1.0 / material.endurance
     axial = rho * d * (_positive(whip.spinning * length**2 / 8.0) * w + _positive(math.pi / 8.0 * whip.axial) * w**2)
     moment = (
@@ -186,7 +187,7 @@ def crank_loads(
     material: Material,
     limits: SectionLimits,
 ) -> BarLoads:
-    """Return the loads on the crank at the pivot, its own mass included."""
+    """Return the loads on the crank at the pivot, including its own mass."""
     rho, fatigue, pull = material.density, 1.0 / material.endurance, math.hypot(*mechanism.gravity)
     first = length**2 / 2.0 * w + math.pi * length / 8.0 * w**2 + w**3 / 12.0
     second = length**3 / 3.0 * w + math.pi * length**2 / 8.0 * w**2 + length / 6.0 * w**3 + math.pi / 128.0 * w**4
@@ -207,7 +208,7 @@ def crank_loads(
 
 
 def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -> dict[str, float]:
-    """Return the joints' loads as terms of the limit states, all positive: N, N m, and those over Pa."""
+    """Return the joints' loads as terms of the limit states, all positive: N, N m, and those divided by Pa."""
     mean = material.ultimate_strength if limits.criterion == "goodman" else material.yield_strength
 
     def fatigue(load: Range) -> float:
@@ -232,5 +233,5 @@ def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -
 
 
 def _positive(value: float) -> float:
-    """Return a coefficient that a posynomial can have: none is zero."""
+    """Return a coefficient that a posynomial may have: above zero."""
     return max(value, _TINY)

@@ -1,9 +1,9 @@
 """Loads on crank and rod over the cycle, from the joints and from their own mass. Frictionless pins, rigid links.
 
 Joint forces come from the inverse dynamics of the whole machine with these sections, so they increase with the
-sections. The moment in the rod is that of its own mass only (inertia whip and weight): pins without friction carry
-none. For end accelerations a, b across the rod (less gravity) the load per length of a uniform bar, mass m' per length,
-is linear, and the moment of the bar on two supports at the share x of its length L
+sections. The rod's moment comes from its own mass alone (inertia whip and weight), because pins without friction carry
+none. For end accelerations a, b across the rod (less gravity), the load per length of a uniform bar with mass m' per
+length is linear, and the moment of the bar on two supports at the fraction x of its length L is
 
     M(x) = -m' L^2 / 6 (a x (1 - x)(2 - x) + b x (1 - x)(1 + x))
 
@@ -24,14 +24,14 @@ from ...model.machine.two_turns import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 
-_ANGLES = 2880  # samples a turn: a peak of the n-th harmonic is low by (n pi / 2880)^2 / 2 = 6e-7 n^2
-_STATIONS = 257  # along the rod: the moment between two is higher by 8e-6 of it
+_ANGLES = 2880  # samples per turn: a peak of the n-th harmonic is low by (n pi / 2880)^2 / 2 = 6e-7 n^2
+_STATIONS = 257  # stations along the rod: the moment between two is higher by 8e-6 of it
 _ASIDE = 1e-9  # rad, to both sides of a jump
 
 
 @dataclass(frozen=True)
 class Range:
-    """The range of a quantity over the cycle, SI: its least and greatest value."""
+    """Range of a quantity over the cycle, SI: its least and greatest value."""
 
     least: float
     greatest: float
@@ -43,7 +43,7 @@ class Range:
 
     @property
     def mean(self) -> float:
-        """The middle of the range, by its size."""
+        """Magnitude of the middle of the range."""
         return 0.5 * abs(self.greatest + self.least)
 
     @property
@@ -54,10 +54,10 @@ class Range:
 
 @dataclass(frozen=True)
 class JointLoads:
-    """Loads of the joints on the links, N and N m, tension positive.
+    """Loads from the joints on the links, N and N m, tension positive.
 
-    rod, crank: axial force. bending: moment of the crank pin's force at the pivot, in the crank. crank_pivot,
-    crank_pin, slider_pin: greatest forces of the pins.
+    rod, crank: axial force. bending: moment at the pivot from the crank pin's force, in the crank. crank_pivot,
+    crank_pin, slider_pin: greatest forces on the pins.
     """
 
     rod: Range
@@ -70,10 +70,10 @@ class JointLoads:
 
 @dataclass(frozen=True)
 class Whip:
-    """Greatest accelerations of the rod over the cycle, less gravity, as its own mass experiences them.
+    """Greatest accelerations of the rod over the cycle, less gravity, as they act on its own mass.
 
-    moment: |M| / m' between the pins, m^3/s^2. across, along: of the pin centres, m/s^2. turning: angular, rad/s^2.
-    spinning: square of the angular speed, 1/s^2.
+    moment: |M| / m' between the pins, m^3/s^2. across, along: accelerations of the pin centres, m/s^2. turning: angular
+    acceleration, rad/s^2. spinning: square of the angular speed, 1/s^2.
     """
 
     moment: float
@@ -84,14 +84,14 @@ class Whip:
 
 
 def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
-    """Return the joints' loads on crank and rod; pin forces to machine precision, the others sampled."""
+    """Return the joints' loads on crank and rod; pin forces are exact to machine precision, the others sampled."""
     cuts = breakpoints(mechanism, linkage)
     even = np.arange(_ANGLES * cycle_turns(mechanism)) * (2.0 * np.pi / _ANGLES)
     angles = np.concatenate([even, cuts - _ASIDE, cuts + _ASIDE])
     curves = cycle(mechanism, linkage, angles)
     motion = linkage.at(angles)
-    pin = np.stack([curves.crank_pin_x, curves.crank_pin_y])  # of the crank on the rod
-    end = np.stack([curves.slider_pin_x, curves.slider_pin_y])  # of the rod on the slider
+    pin = np.stack([curves.crank_pin_x, curves.crank_pin_y])  # force of the crank on the rod
+    end = np.stack([curves.slider_pin_x, curves.slider_pin_y])  # force of the rod on the slider
     rod = np.stack([np.cos(motion.rod_angle), np.sin(motion.rod_angle)])
     crank = np.stack([np.cos(angles), np.sin(angles)])
     across = np.stack([-crank[1], crank[0]])

@@ -1,12 +1,12 @@
 """Widths and depths of crank and rod for least mass, by geometric programming coupled to the dynamics.
 
-Mass and limit states (`limit_states`) are posynomials of the four section sizes once the joints' loads are known; the
-loads in turn grow with the masses. Each iteration computes the loads of the present sections from the dynamics of the
-whole machine, with their slopes by differences, puts in their place the monomials that agree in value and slope,
-F (w/w0)^a (d/d0)^b ..., and solves the geometric programme. At the fixed point its optimum is one of the coupled
-problem too, not only of the problem with the loads frozen (S. Boyd, S.-J. Kim, L. Vandenberghe and A. Hassibi, "A
-tutorial on geometric programming", Optimization and Engineering 8, 2007, sec. 9). Each programme is convex after the
-change of variables and solved to its global optimum; the coupled problem is not, its optimum is local in general.
+Mass and limit states (`limit_states`) are posynomials in the four section sizes once the joints' loads are known; the
+loads in turn grow with the masses. Each iteration computes the loads of the current sections from the dynamics of the
+whole machine, with their slopes by differences, replaces the loads by monomials with the same value and slope, F
+(w/w0)^a (d/d0)^b ..., and solves the geometric programme. At the fixed point, its optimum is also one of the coupled
+problem, not only of the problem with frozen loads (S. Boyd, S.-J. Kim, L. Vandenberghe and A. Hassibi, "A tutorial on
+geometric programming", Optimization and Engineering 8, 2007, sec. 9). Each programme is convex after the change of
+variables and solved to its global optimum; the coupled problem is not convex, and its optimum is in general local.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_
 from .section_loads import Whip, joint_loads, whip_of
 
 _ITERATIONS = 60
-_CONVERGED = 1e-8  # relative change of the sections that ends the iteration
-_RADIUS = 1.0  # of the logarithms of the sections, in one iteration
+_CONVERGED = 1e-8  # relative change of the sections at which the iteration ends
+_RADIUS = 1.0  # limit on the change of the sections' logarithms in one iteration
 _ANYWHERE = 50.0
-_OVER = 1e-6  # overload that is negligible
-_ROUNDS, _ROUNDING = 20, 1e-9  # of widening eyes; remaining overload
-_STEP = 1e-4  # relative, for central differences of the loads: error 1e-8 of them
+_OVER = 1e-6  # negligible overload
+_ROUNDS, _ROUNDING = 20, 1e-9  # rounds of widening eyes; remaining overload
+_STEP = 1e-4  # relative step for central differences of the loads, with a relative error of 1e-8
 _EXACT = 1e-11  # of the solver
 _SLACK = 200.0  # percent of mass that one percent of overload counts as; far above any sensitivity
 
@@ -47,10 +47,10 @@ _SLACK = 200.0  # percent of mass that one percent of overload counts as; far ab
 class Sections:
     """Sections of least mass.
 
-    crank, rod: as bars of the material. mass: of both, kg. utilisation: of each limit state, at most one, by names like
-    "rod: fatigue". sensitivity: percent of mass that one percent more of that limit saves, to first order, the dynamics
-    included; zero where a limit is not active. iterations: geometric programmes solved. change: the last relative
-    change of the sections.
+    crank, rod: bars of the material. mass: mass of both, kg. utilisation: utilisation of each limit state, at most one,
+    by names like "rod: fatigue". sensitivity: percent of mass saved per percent increase of that limit, to first order,
+    including the dynamics; zero where a limit is not active. iterations: geometric programmes solved. change: the last
+    relative change of the sections.
     """
 
     crank: Bar
@@ -71,8 +71,8 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     """Return the sections of crank and rod with the least mass that carry a machine's loads.
 
     They replace crank and rod of the mechanism. Raises `InfeasibleError`, naming the limit that fails, if no section
-    within the ranges carries the loads; also for arrays of linkages, and for friction, which would bend the bars at
-    their pins.
+    within the ranges carries the loads; also raises it for arrays of linkages, and for friction, which would bend the
+    bars at their pins.
     """
     require_frictionless(mechanism.friction, "section sizing")
     require_plain(replace(mechanism, arrangement=None), "section sizing")
@@ -83,7 +83,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     radius, before = _ANYWHERE, math.inf
     for iteration in range(_ITERATIONS):
         count = iteration + 1
-        # The first programme only finds the order of magnitude: slopes at the least sections lead nowhere.
+        # The first programme only finds the order of magnitude, because slopes at the least sections are misleading.
         loads = np.array(list(task.terms(sizes).values()))
         powers = task.powers(sizes) if iteration else np.zeros((len(loads), 4))
         new, sensitivity = programme.solve(sizes, loads, powers, radius)
@@ -94,11 +94,11 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
         if iteration == 0:
             radius = _RADIUS
         elif change > 0.7 * before:
-            radius = 0.5 * min(radius, change)  # two crank angles take turns as the worst
+            radius = 0.5 * min(radius, change)  # two crank angles alternate as the worst
         before = change if iteration else math.inf
     sizes = task.widened(sizes)
     states = {name: state for name, state in task.states(sizes).items() if not name.endswith(AMPLIFICATION)}
-    # Where a bar buckles its stress is infinite; what says by how much is the buckling.
+    # If a bar buckles, its stress is infinite; the buckling limit shows the extent.
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
     if states[worst] > 1.0 + _OVER:
         raise InfeasibleError(
@@ -155,7 +155,7 @@ class _Task:
     def widened(self, sizes: Array) -> Array:
         """Return sizes whose eyes carry their loads to rounding.
 
-        The solver is exact to a share of the width, which is much of a net section of some micrometres.
+        The solver's error is relative to the width, which is large compared with a net section of a few micrometres.
         """
         holes = {
             "pivot": self.limits.crank_pivot,
@@ -191,7 +191,7 @@ class _Task:
         return found
 
     def mass(self, x: list[Any]) -> Any:
-        """Return the mass of both bars of widths and depths, see `links.Bar`."""
+        """Return the mass of both bars from their widths and depths, see `links.Bar`."""
         (w, d, v, e), crank, rod = x, float(self.linkage.crank), float(self.linkage.rod)
         of_crank = crank * d * w + 0.25 * math.pi * d * w**2
         of_rod = rod * e * v + 0.25 * math.pi * e * v**2
@@ -199,9 +199,9 @@ class _Task:
 
 
 class _Programme:
-    """Geometric programme of one machine, stated once and solved again with other loads: least mass within the limits.
+    """Geometric programme of one machine for least mass within the limits, built once and solved for different loads.
 
-    Loads are monomials of the sizes: F x1^a1 x2^a2 x3^a3 x4^a4.
+    Loads are monomials in the sizes: F x1^a1 x2^a2 x3^a3 x4^a4.
     """
 
     def __init__(self, task: _Task, loads: list[str]) -> None:
@@ -214,7 +214,7 @@ class _Programme:
         bounds: list[Any] = []
 
         def upper_bound_variable(expression: Any) -> Any:
-            """Return a variable no less than an expression: at the optimum equal where it counts."""
+            """Return a variable no less than an expression, and equal to it at the optimum where it matters."""
             bound = cp.Variable(pos=True)
             bounds.append(expression <= bound)
             return bound
@@ -235,17 +235,18 @@ class _Programme:
         )
 
     def solve(self, sizes: Array, loads: Array, powers: Array, radius: float) -> tuple[Array, dict[str, float]]:
-        """Return sizes of least mass within a radius of these, and by how many percent one percent less strict saves.
+        """Return sizes of least mass within a radius of these, and the percent saved per percent of relaxed limit.
 
-        sizes: (4,), logarithms, where the loads (n,) have the slopes powers (n, 4).
+        sizes: (4,), logarithms, at which the loads (n,) have the slopes `powers` (n, 4).
         """
         cp = required("cvxpy", "sizing sections needs")
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)
-        # The objective's value, which nothing asks for, may overflow where the loads are far beyond the ranges.
+        # The objective's value is not used, and may overflow if the loads are far beyond the ranges.
         with warnings.catch_warnings(), np.errstate(over="ignore"):
-            warnings.simplefilter("ignore", UserWarning)  # "may be inaccurate": the iteration goes on until it settles
+            # It warns that the answer "may be inaccurate", but the iteration continues until it settles.
+            warnings.simplefilter("ignore", UserWarning)
             self.programme.solve(gp=True, solver=cp.CLARABEL, tol_gap_abs=_EXACT, tol_gap_rel=_EXACT, tol_feas=_EXACT)
         if self.programme.status not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
             raise InputError(

@@ -1,7 +1,7 @@
 """Shaking force and moment as affine functions of the masses that balance them, with exact peaks and means.
 
-At constant crank speed w (`model.dynamics.inertia`, alpha = 0), with C the first moment of everything fixed to the
-crank, in its axes, R(theta) the turn into the frame, and for the rod m its mass, S its first moment and I its inertia
+At constant crank speed w (`model.dynamics.inertia`, alpha = 0), C is the first moment of everything fixed to the crank,
+in its axes, R(theta) the rotation into the frame, and for the rod m is its mass, S its first moment and I its inertia
 about the crank pin:
 
     force  = w^2 R(theta) C + m r w^2 (cos theta, sin theta) - S_tt - m_slider a_B
@@ -10,9 +10,9 @@ about the crank pin:
 Both are linear in C, m, S and I, and so affine in the contributions of a counterweight (c = mass times vector to its
 centre) and a mass added to the rod (m, b, I about the crank pin). The moment about the pivot depends neither on c,
 whose force passes through the pivot, nor on m: only b and I change it. m acts like a counterweight of moment m r
-towards the crank pin. Not affine: mass and inertia as functions of a moment (m = |c| / radius, I = |c| radius). The
-counterweight's matter with an acceleration of the crank only, so that its mass follows afterwards for any radius; those
-on the rod are variables of their own (`balancing`).
+towards the crank pin. Mass and inertia are not affine as functions of a moment (m = |c| / radius, I = |c| radius).
+Those of the counterweight matter only if the crank accelerates, so its mass follows afterwards for any radius; those on
+the rod are separate variables (`counterweight`).
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from ...model.machine.mechanism import Mechanism
 NAMES = ("c along", "c across", "m", "b along", "b across", "I")
 """Columns: the counterweight's moment along and across the crank, kg m. For the mass added to the rod: mass, kg, first
 moment along and across the rod, kg m, and inertia, kg m^2, about the crank pin."""
-_NODES = 192  # of the means, as in `model.signals.averages`
+_NODES = 192  # nodes for the means, as in `model.signals.averages`
 
 
 def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:
@@ -75,7 +75,7 @@ def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
 
 
 def with_masses(mechanism: Mechanism, linkage: Linkage, x: Array, radius: float) -> Mechanism:
-    """Return the mechanism with its counterweight replaced by one at a radius, m, and a mass on the rod.
+    """Return the mechanism with its counterweight replaced by one at a radius, m, and with a mass on the rod.
 
     x: (6,), as in `NAMES`; the rod then becomes a `RigidLink` of that length.
     """
@@ -106,7 +106,7 @@ def _link_moments(link: Link, length: float) -> Array:
 
 
 def moving_moment(mechanism: Mechanism, linkage: Linkage) -> float:
-    """Return the first moment, kg m, of crank, rod and slider, the last two at the crank pin."""
+    """Return the first moment, kg m, of crank, rod and slider, with the last two at the crank pin."""
     crank = _link_moments(mechanism.crank, float(linkage.crank))
     mass = _link_moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass
     return float(math.hypot(crank[1], crank[2]) + mass * float(linkage.crank))

@@ -1,9 +1,9 @@
-"""Tolerances of least manufacturing cost that keep the position error within a limit.
+"""Tolerances with the least manufacturing cost that keep the position error within a limit.
 
     minimise  sum_i c_i(t_i)   with   error(theta; t) <= limit at every crank angle of the working stroke,
                                       least_i <= t_i <= greatest_i,
 
-c_i(t) = a_i + b_i / t^k_i (`costs`), with the first-order influences s_i(theta) of `model.signals.position_error`. Put
+c_i(t) = a_i + b_i / t^k_i (`costs`), with the first-order influences s_i(theta) of `model.signals.position_error`. Let
 y_i = t_i^p with p = 1 for the worst case and p = 2 for the root-sum-square. Both limits are then linear,
 
     sum_i |s_i(theta)|^p y_i <= limit^p - F(theta),
@@ -46,11 +46,11 @@ from .input_words import Kind
 
 ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried
-_EXCESS = 1e-10  # relative, that the last round may leave
-_SOLVED = 1e-11  # of the optimality conditions, relative ...
-_MET = 1e-6  # ... and for a point that counts as optimal although they could not be solved
-_AT_BOUND = 1e-6  # relative, in the cone solver's answer
-_CARRIES = 1e-6  # share of the multipliers that makes an angle active
+_EXCESS = 1e-10  # relative excess that the last round may leave
+_SOLVED = 1e-11  # relative residual of the optimality conditions ...
+_MET = 1e-6  # ... and that of a point that counts as optimal although they could not be solved
+_AT_BOUND = 1e-6  # relative tolerance in the cone solver's answer
+_CARRIES = 1e-6  # fraction of the multipliers that makes an angle active
 _TURN = 2.0 * math.pi
 
 
@@ -58,8 +58,8 @@ _TURN = 2.0 * math.pi
 class Part:
     """One chosen tolerance.
 
-    tolerance: tolerance, m, or rad for the crank angle. cost: cost of holding it. bound: end of its range at which it
-    is, if any. saving: decrease of the total cost per m (rad) by which that end is loosened; zero within the range.
+    tolerance: tolerance, m, or rad for the crank angle. cost: cost of holding it. bound: end of its range on which it
+    lies, if any. saving: decrease of the total cost per m (rad) by which that end is loosened; zero within the range.
     """
 
     name: str
@@ -105,8 +105,8 @@ def allocate(
 ) -> Allocation:
     """Return the least-cost tolerances that keep the first-order position error of one linkage within a limit, m.
 
-    kind: how errors add up. window: part of the cycle in which the error counts; that of the mechanism if None.
-    mechanism: its clearances and its tolerances without a cost use part of the limit; its speed gives the sense of
+    kind: how errors add up. window: part of the cycle in which the error counts; by default that of the mechanism.
+    mechanism: its clearances and its tolerances without a cost use part of the limit; its speed gives the direction of
     rotation. Raises `InfeasibleError` if even the smallest tolerances exceed the limit.
     """
     require_word("kind", kind, Kind)
@@ -155,7 +155,7 @@ class _Programme:
             rough = self._grouped(x, angles, carried, at[values > 1.0 - _NEAR])
             point = self._exact(rough) if values.max() <= 1.0 + _NEAR else None
             if point is not None or values.max() <= 1.0 + _EXCESS or count == ROUNDS:
-                # Without an exact point the case is degenerate: as exact as the cone solver, which the residual says.
+                # Without an exact point, the case is degenerate: as exact as the cone solver, which the residual shows.
                 return self._allocation(point or rough, count)
             angles = np.concatenate([angles, at[values > 1.0]])
         raise AssertionError("the last round returns")
@@ -185,7 +185,7 @@ class _Programme:
         return np.clip(x.value, self.least, self.greatest), size * np.maximum(within.dual_value, 0.0)
 
     def _grouped(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
-        """Return the multipliers of sampled angles gathered at the peaks nearest to them."""
+        """Return the multipliers of sampled angles, collected at the nearest peaks."""
         multipliers = np.zeros(len(at))
         if len(at):
             np.add.at(multipliers, _nearest_angles(angles, at), carried)
@@ -268,6 +268,6 @@ class _Programme:
 
 
 def _nearest_angles(angles: Array, among: Array) -> NDArray[np.intp]:
-    """Return which of some crank angles is nearest to each angle, rad."""
+    """Return the crank angle nearest to each angle, rad, as an index."""
     distance: Array = np.abs(np.mod(angles[:, None] - among + math.pi, _TURN) - math.pi)
     return np.asarray(distance.argmin(axis=1))
