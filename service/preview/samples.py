@@ -115,7 +115,11 @@ def screened(problem: Problem) -> Screening:
                 if time.monotonic() > end:
                     break
     return Screening(
-        *map(np.concatenate, (designs, objectives, violations, uniform)), elimination_branches(parts[0])[0].eliminated
+        np.concatenate(designs),
+        np.concatenate(objectives),
+        np.concatenate(violations),
+        np.concatenate(uniform),
+        elimination_branches(parts[0])[0].eliminated,
     )
 
 
