@@ -54,11 +54,10 @@ def _file(
     return download(content, media_type, name, policy=policy)
 
 
-def _drawing(request: RequestedDesign, crank_angle_deg: float | None) -> Drawing:
+def _drawing(request: RequestedDesign, crank_angle_deg: float | None, system: System = "metric") -> Drawing:
     angle = None if crank_angle_deg is None else math.radians(crank_angle_deg)
-    return design_drawing(
-        request.design, name=request.stored_front.result.name, design=request.words, crank_angle=angle
-    )
+    name = request.stored_front.result.name
+    return design_drawing(request.design, name=name, design=request.words, crank_angle=angle, system=system)
 
 
 @router.get("/linkage.dxf", **file_responses("image/vnd.dxf"))
@@ -68,30 +67,35 @@ def draw_dxf(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) ->
 
 
 @router.get("/linkage.svg", **file_responses("image/svg+xml"))
-def draw_linkage(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
-    """Return the same drawing as SVG."""
-    return _file(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg)))
+def draw_linkage(
+    request: RequestedDesignDep, crank_angle_deg: CrankAngle = None, units: UnitsParameter = "metric"
+) -> Response:
+    """Return the same drawing as SVG, with its dimensions in a unit system."""
+    return _file(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg, units)))
 
 
 @router.get("/motion.html", **file_responses("text/html"))
-def show_motion(request: RequestedDesignDep) -> Response:
+def show_motion(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return an animation of the linkage as one HTML file with its own script; it fetches nothing."""
     from ..motion.player_page import player_page
 
     design = request.design
     named = {"name": request.stored_front.result.name, "design": request.words}
-    content = player_page(design.mechanism, design.linkage, swing=design.part.motion, **named)
+    content = player_page(design.mechanism, design.linkage, swing=design.part.motion, system=units, **named)
     return _file(request, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_responses("image/gif"))
-def animate_linkage(request: RequestedDesignDep) -> Response:
+def animate_linkage(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return an animated GIF of the linkage: one crank revolution, or a swing back and forth."""
     from ..motion.animated_gif import animated_gif
 
     design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}
     swing = design.part.motion
-    content = request.cached_file("gif", lambda: animated_gif(design.mechanism, design.linkage, swing=swing, **named))
+    content = request.cached_file(
+        f"gif {units}",
+        lambda: animated_gif(design.mechanism, design.linkage, swing=swing, system=units, **named),
+    )
     return _file(request, "gif", "image/gif", content, label="-motion")
 
 

@@ -15,6 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
+from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.swing_curves import curves_at_even_times
 from ..drawings.linkage_shapes import fixed_shapes, look_of, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
@@ -33,14 +34,23 @@ _WHITE = 246  # grey level up to 255; the fill of the slider is just below
 
 
 def animated_gif(
-    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    name: str,
+    design: str = "",
+    swing: Swing | None = None,
+    system: System = "metric",
 ) -> bytes:
     """Return an animated GIF of one linkage, which rotates at even speed or swings by its motion law.
 
     name: name of the run. design: design label, such as "design 3". swing: swing of the crank instead of full rotation.
-    Raises `AssemblyError` for a linkage that does not rotate fully, or the errors of `require_swing`.
+    system: unit system of the numbers shown. Raises `AssemblyError` for a linkage that does not rotate fully, or the
+    errors of `require_swing`.
     """
-    scene = _turn_scene(mechanism, linkage) if swing is None else _swing_scene(mechanism, linkage, swing)
+    scene = (
+        _turn_scene(mechanism, linkage, system) if swing is None else _swing_scene(mechanism, linkage, swing, system)
+    )
     frames = _draw_frames(scene, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
@@ -59,7 +69,7 @@ class _Scene:
     dashed: str
 
 
-def _turn_scene(mechanism: Mechanism, linkage: Linkage) -> _Scene:
+def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scene:
     look, turns = look_of(mechanism, linkage), cycle_turns(mechanism)
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
     angles = turn * 2.0 * math.pi * np.arange(turns * FRAMES) / FRAMES
@@ -68,15 +78,16 @@ def _turn_scene(mechanism: Mechanism, linkage: Linkage) -> _Scene:
     for step, angle in enumerate(angles.tolist()):
         pin, slider = pin_positions(linkage, angle)
         degrees = round(math.degrees(angle)) % (360 * turns)
-        pressures = ", ".join(f"{1e-5 * pressure[step]:.3g}" for pressure in gas)
-        reading = f"crank angle {degrees}°, slider at {slider[0]:.5g} mm"
-        frames.append((moving_shapes(pin, slider, look), f"{reading}, {pressures} bar" if gas else reading))
+        bar, per_bar = metric_unit_in("bar", system)
+        pressures = ", ".join(f"{1e-5 * per_bar * pressure[step]:.3g}" for pressure in gas)
+        reading = f"crank angle {degrees}°, slider at {_length(slider[0], system)}"
+        frames.append((moving_shapes(pin, slider, look), f"{reading}, {pressures} {bar}" if gas else reading))
     return _Scene(
         look.extent, look.size, fixed_shapes(linkage, look, bearing_below=True), frames, "dead centres dashed"
     )
 
 
-def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene:
+def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System) -> _Scene:
     drawn = swing_look(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, FRAMES)
     frames = []
@@ -86,9 +97,14 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> _Scene
         for angle in of_way.crank_angle.tolist()
     ):
         slider = pin_positions(drawn.linkage, angle)[1]
-        reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {slider[0]:.5g} mm"
+        reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length(slider[0], system)}"
         frames.append((swing_moving(drawn, angle), reading))
     return _Scene(drawn.extent, drawn.look.size, swing_scenery(drawn), frames, "ends of the swing dashed")
+
+
+def _length(mm: float, system: System) -> str:
+    unit, factor = metric_unit_in("mm", system)
+    return f"{factor * mm:.5g} {unit}"
 
 
 def _draw_frames(scene: _Scene, title: str) -> list[Picture]:

@@ -24,14 +24,14 @@ def design_file(kind: str, stored: StoredDesign, angle: float | None, units: Sys
     if kind == "motion":
         from .player_page import player_page
 
-        return player_page(stored.mechanism, stored.linkage, swing=stored.part.motion, **named)
+        return player_page(stored.mechanism, stored.linkage, swing=stored.part.motion, system=units, **named)
     if kind == "gif":
         from .animated_gif import animated_gif
 
-        return animated_gif(stored.mechanism, stored.linkage, swing=stored.part.motion, **named)
+        return animated_gif(stored.mechanism, stored.linkage, swing=stored.part.motion, system=units, **named)
     from ..drawings.design_drawing import design_drawing
 
-    system: System = units if kind == "svg" else "metric"  # DXF is always in mm
+    system: System = units if kind == "svg" else "metric"  # a DXF declares mm, and CAD converts it
     drawing = design_drawing(stored, name=named["name"], design=named["design"], crank_angle=angle, system=system)
     if kind == "svg":
         from ..drawings.svg import svg_file

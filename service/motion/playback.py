@@ -17,6 +17,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
+from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
 from ..designs.design_curves import CurveColumn, cycle_table
 from ..drawings import layers as on
@@ -89,10 +90,10 @@ _SWING = PlayerText(
 _LEFT_OUT = ("crank_angle", "load")
 
 
-def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
+def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metric") -> Playback:
     """Return the motion of a fully rotating linkage. Raises `AssemblyError` for a linkage that does not rotate fully.
 
-    A 720 deg cycle includes both revolutions.
+    A 720 deg cycle includes both revolutions. system: unit system of the summary.
     """
     turns = cycle_turns(mechanism)
     curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
@@ -103,7 +104,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage) -> Playback:
     rpm = mechanism.speed * 30.0 / math.pi
     turning = f"{abs(rpm):.6g} rpm, {'clockwise' if rpm < 0.0 else 'counter-clockwise'}" if rpm else "no crank speed"
     return Playback(
-        summary=f"{lengths_in_words(linkage, digits=6, stroke=True)}; {turning}",
+        summary=f"{lengths_in_words(linkage, system, digits=6, stroke=True)}; {turning}",
         record={
             **place_record(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,
@@ -166,8 +167,8 @@ def moving_link_shapes(look: Look) -> dict[str, list[Shape]]:
     }
 
 
-def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Playback:
-    """Return the motion of a swinging linkage. Raises the errors of `require_swing`."""
+def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Playback:
+    """Return the motion of a swinging linkage. system: unit system of the summary. Raises as `require_swing`."""
     drawn = swing_look(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, ANGLES)
     angles = np.concatenate([way.crank_angle for way in ways])
@@ -194,7 +195,7 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Play
     start, end = (math.degrees(angle) for angle in (drawn.swing.start, drawn.swing.end))
     how = "slowly" if timed is None else f"{drawn.swing.law} law, {timed:g} s per stroke"
     return Playback(
-        summary=f"{lengths_in_words(drawn.linkage, digits=6)}; from {start:.6g} to {end:.6g} deg, "
+        summary=f"{lengths_in_words(drawn.linkage, system, digits=6)}; from {start:.6g} to {end:.6g} deg, "
         f"the {drawn.swing.driver} driven, {how}",
         record={
             **place_record(drawn.look, at.slider_position, at.rod_angle),

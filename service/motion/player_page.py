@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from string import Template
@@ -11,7 +12,7 @@ from string import Template
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import System, metric_unit_in, unit_text
 from ...optimise.front.constant_numbers import is_constant
 from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
@@ -25,16 +26,27 @@ _STILL = (on.AXES, on.PATHS, on.INNER, on.OUTER, on.START, on.END, on.FRAME, on.
 
 
 def player_page(
-    mechanism: Mechanism, linkage: Linkage, *, name: str, design: str = "", swing: Swing | None = None
+    mechanism: Mechanism,
+    linkage: Linkage,
+    *,
+    name: str,
+    design: str = "",
+    swing: Swing | None = None,
+    system: System = "metric",
 ) -> bytes:
     """Return one linkage as an HTML file that plays its motion.
 
     The script turns the crank and looks up everything else in curves stored in the file. Their points are one degree
     apart or, for a swinging linkage, at evenly spaced times of its motion back and forth. name: name of the run.
-    design: design label, such as "design 3". swing: swing of the crank instead of full rotation. Raises `AssemblyError`
-    for a linkage that does not rotate fully, or the errors of `require_swing`.
+    design: design label, such as "design 3". swing: swing of the crank instead of full rotation. system: unit system of
+    the numbers shown. Raises `AssemblyError` for a linkage that does not rotate fully, or the errors of
+    `require_swing`.
     """
-    play = turn_playback(mechanism, linkage) if swing is None else swing_playback(mechanism, linkage, swing)
+    if swing is None:
+        play = turn_playback(mechanism, linkage, system)
+    else:
+        play = swing_playback(mechanism, linkage, swing, system)
+    play = replace(play, columns=[_column_in(column, system) for column in play.columns])
     title = f"{name}, {design}" if design else name
     readout = (
         f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
@@ -58,6 +70,12 @@ def player_page(
         note=play.words.note,
     )
     return page.encode()
+
+
+def _column_in(column: CurveColumn, system: System) -> CurveColumn:
+    """Return a curve with its values in a unit system. Its key stays: the script finds it by that."""
+    unit, factor = metric_unit_in(column.unit, system)
+    return replace(column, unit=unit, values=[factor * value for value in column.values])
 
 
 def _script_data(play: Playback) -> str:

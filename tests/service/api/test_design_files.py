@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -116,6 +117,26 @@ def test_a_report_is_in_the_units_that_are_asked_for(solved: Solved, client: htt
             assert float(text) == pytest.approx(value, rel=1e-12), key
     assert "mm" not in re.sub(r"<[^>]*>", " ", page.partition("Summary")[2].partition("</section>")[0]).split()
     refused(client.get(f"{solved.path}/designs/3/report.html", params={"units": "feet"}), 422)
+
+
+def test_drawings_and_motion_are_in_the_units_that_are_asked_for(solved: Solved, client: httpx.Client) -> None:
+    files = ("linkage.svg", "motion.html", "motion.gif")
+    metric, inch = (
+        {file: client.get(f"{solved.path}/designs/3/{file}", params={"units": units}) for file in files}
+        for units in ("metric", "inch")
+    )
+    assert metric["linkage.svg"].text == client.get(f"{solved.path}/designs/3/linkage.svg").text
+    crank = client.get(f"{solved.path}/designs/3").json()["design"]["crank_mm"]
+    for file in ("linkage.svg", "motion.html"):
+        found = re.search(r"crank ([\d.]+) in, rod", inch[file].text)
+        assert found is not None, file
+        assert float(found[1]) == pytest.approx(crank / 25.4, rel=1e-5), file
+        assert "millimetres" not in inch[file].text, file
+    data = (page["motion.html"].text.partition('id="data">')[2].partition("<")[0] for page in (metric, inch))
+    before, after = (json.loads(text)["curves"]["slider_position_mm"] for text in data)
+    assert after == pytest.approx([value / 25.4 for value in before], rel=1e-6)
+    assert len(inch["motion.gif"].content) > 1000
+    assert inch["motion.gif"].content != metric["motion.gif"].content
 
 
 def test_a_report_is_kept_and_drawn_once(solved: Solved, client: httpx.Client, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -488,7 +488,16 @@ def test_units_are_the_readers(opened: Opened) -> None:
     links = exports(page)
     asked = {str(link.get_attribute("href")).rpartition("/")[2] for link in links.all()}
     assert {name for name in asked if name.endswith("?units=inch")} == {
-        f"{name}?units=inch" for name in ("report.html", "report.pdf", "design_3.png", "design_3.svg")
+        f"{name}?units=inch"
+        for name in (
+            "linkage.svg",
+            "motion.html",
+            "motion.gif",
+            "report.html",
+            "report.pdf",
+            "design_3.png",
+            "design_3.svg",
+        )
     }
 
 

@@ -8,7 +8,7 @@ import { printComplete } from "../lib/deferred.js";
 import { apiSystem } from "../lib/numbers.js";
 
 const FILES = [
-  ["linkage.dxf", "DXF", "The linkage at true scale, for CAD"],
+  ["linkage.dxf", "DXF", "The linkage at true scale for CAD, always in mm"],
   ["linkage.svg", "SVG", "The linkage at true scale, as a picture"],
   ["motion.html", "Motion", "The motion in one HTML file"],
   ["motion.gif", "GIF", "The motion as an animation"],
@@ -16,7 +16,7 @@ const FILES = [
   ["report.pdf", "PDF", "The report to print"],
 ];
 
-const WITH_UNITS = /^(report|design_)/; // drawings are in millimetres
+const WITHOUT_UNITS = /\.dxf$/; // the file says that it is in millimetres, from which CAD converts
 
 /**
  * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
@@ -51,9 +51,7 @@ export function exportMenu(job, number) {
   /** @param {Page.Numbers | null} lengths */
   const show = (lengths) => {
     for (const { path, node } of links) {
-      const units = WITH_UNITS.test(path.slice(path.lastIndexOf("/") + 1))
-        ? { units: apiSystem() }
-        : {};
+      const units = WITHOUT_UNITS.test(path) ? {} : { units: apiSystem() };
       node.href = address(path, { ...lengths, ...units });
     }
   };
