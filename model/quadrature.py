@@ -1,7 +1,8 @@
 """Gauss-Legendre quadrature over the crank angle or over time, on panels that are halved until curves are resolved.
 
-A panel is resolved once the last coefficients of its polynomial have died out, by a measure that the curve's owner has.
-Owners weight the nodes: by one for means over the crank angle, by the time per angle for means over time.
+A panel is resolved once the last coefficients of its polynomial have died out, by a criterion that the owner of the
+curve defines. Owners weight the nodes: equally for means over the crank angle, by the time per angle for means over
+time.
 """
 
 from __future__ import annotations
@@ -19,24 +20,24 @@ from .arrays import Array, Mask
 DEGREE = 15
 """Degree of the polynomial through the nodes of a panel."""
 DEEPEST = 24
-"""Halvings of a panel."""
+"""Maximum halvings of a panel."""
 MOST_HALVINGS = 20_000
-"""Panels that halving adds for one design at most: beyond that, only rounding of the curves remains."""
+"""Maximum number of panels that halving adds for one design; beyond that, only rounding of the curves remains."""
 ANGLE_ROUNDING = 1e-13
-"""Shift of a curve, rad, by rounding of angles and positions: halving does not reduce its effect."""
+"""Shift of a curve, rad, due to rounding of angles and positions; halving does not reduce its effect."""
 _TAIL = 3  # Legendre coefficients that show whether a panel is resolved
 
 
 @lru_cache(maxsize=8)
 def gauss(count: int) -> tuple[Array, Array]:
-    """Return Gauss's nodes on [0, 1] and their weights, whose sum is 1."""
+    """Return the Gauss nodes on [0, 1] and their weights, whose sum is 1."""
     nodes, weights = legendre.leggauss(count)
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
 @lru_cache(maxsize=8)
 def graded_gauss(panels: int, grades: int) -> tuple[Array, Array]:
-    """Return nodes on [0, 1], 20 in each panel and denser towards both ends, and their weights."""
+    """Return nodes on [0, 1], 20 in each panel and denser towards both ends, with their weights."""
     nodes, weights = legendre.leggauss(20)
     edges, half = np.linspace(0.0, 1.0, panels + 1), 0.5 / panels
     u, w = (edges[:-1, None] + half + half * nodes).ravel(), np.tile(half * weights, panels)
@@ -48,7 +49,7 @@ def graded_gauss(panels: int, grades: int) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=8)
 def legendre_fit(count: int) -> Array:
-    """Return the matrix (count, count) from values at Gauss's nodes to the coefficients of their Legendre series."""
+    """Return the matrix (count, count) from values at the Gauss nodes to the coefficients of their Legendre series."""
     nodes, weights = legendre.leggauss(count)
     return np.asarray((np.arange(count) + 0.5)[:, None] * (weights[:, None] * legendre.legvander(nodes, count - 1)).T)
 
@@ -66,12 +67,12 @@ TAIL = np.ascontiguousarray(FIT[-_TAIL:])
 
 
 def resolved_tail(values: Array) -> Array:
-    """Return the greatest size of the last coefficients (...,) of curves at the nodes of panels (..., 16)."""
+    """Return the maximum magnitude of the last coefficients (...,) of curves at the nodes of panels (..., 16)."""
     return np.asarray(np.abs(values @ TAIL.T).max(axis=-1, initial=0.0))
 
 
 Samples = tuple[Mask, list[NDArray[Any]]]
-"""Panels (p,) that are not resolved, and arrays (p, ...) to be collected from those that are."""
+"""Panels (p,) that are not resolved, and arrays (p, ...) to be collected from resolved panels."""
 
 
 def resolve(
@@ -84,8 +85,8 @@ def resolve(
 ) -> list[NDArray[Any]]:
     """Return low, width, labels and samples of panels (p,), halved until they are resolved.
 
-    sample: function of low, width and labels. labels: arrays (p, ...) that both halves inherit. deepest: halvings of a
-    panel. limit: greatest number of panels.
+    sample: function of low, width and labels. labels: arrays (p, ...) that both halves inherit. deepest: maximum
+    halvings of a panel. limit: maximum number of panels.
     """
     resolved: list[list[NDArray[Any]]] = []
     total = 0

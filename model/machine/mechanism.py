@@ -36,7 +36,7 @@ class Tolerance:
         require_numbers(self, "absolute", "fraction", phrase="the {} part of a tolerance", least=0.0)
 
     def limit(self, length: float) -> float:
-        """Return the greatest deviation of a length, m, from its nominal value, m."""
+        """Return the maximum deviation of a length, m, from its nominal value, m."""
         return self.absolute + self.fraction * abs(length)
 
 
@@ -44,7 +44,7 @@ class Tolerance:
 class Window:
     """The part of the cycle over which the position error counts.
 
-    during: counted stroke. start, end: fractions of the stroke, outward from the inner dead centre, 0 to 1.
+    during: stroke that counts. start, end: fractions of the stroke, outward from the inner dead centre, 0 to 1.
     """
 
     during: During = "cycle"
@@ -62,7 +62,7 @@ class Window:
 
 @dataclass(frozen=True, kw_only=True)
 class Clearances:
-    """Radial clearances of the joints, m: half the difference of the diameters of bearing and pin.
+    """Radial clearances of the joints, m: half the difference between the diameters of bearing and pin.
 
     crank_pivot, crank_pin, slider_pin: clearances of the three pins. guide: play of the slider to either side of its
     line (its tilt within the guide is not considered). `position_error` describes their effect on the slider position.
@@ -80,7 +80,7 @@ class Clearances:
 
 @dataclass(frozen=True, kw_only=True)
 class Tolerances:
-    """Tolerances of the dimensions and of the crank angle, clearances, and where the position error counts."""
+    """Tolerances of dimensions and crank angle, clearances, and the range in which the position error counts."""
 
     crank: Tolerance = Tolerance()
     rod: Tolerance = Tolerance()
@@ -95,7 +95,7 @@ class Tolerances:
 
     @property
     def are_stated(self) -> bool:
-        """Whether there is any tolerance or clearance: without one, a position error is not defined."""
+        """Whether there is any tolerance or clearance; otherwise a position error is undefined."""
         sizes = (self.crank, self.rod, self.offset, self.crank_angle)
         return any(size.absolute or size.fraction for size in sizes) or self.clearances != Clearances()
 
@@ -111,20 +111,20 @@ _KINDS = {
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanism:
-    """A slider-crank without crank, rod and offset.
+    """A slider-crank without its crank, rod and offset lengths.
 
-    `problem({...}).mechanism` gives the mechanism of a job's tables.
+    `problem({...}).mechanism` gives the mechanism for the tables of a job.
 
     speed: crank speed, rad/s, positive counter-clockwise. acceleration: crank acceleration, rad/s^2, the same at every
     crank angle. crank, rod: `Bar` or `RigidLink`. slider_mass: kg. gravity: components along x and y, m/s^2. drive:
     motor and flywheel, for analyses of a free motion; the speed then only gives the direction. speed_profile: speed
     over the crank angle; a motion under a motor has its own. arrangement: identical cylinders on one crankshaft;
     `signals.shaft_statistics` says which signals add up and which belong to one cylinder. clearance: a loose joint, for
-    `clearance.run.simulate`; all other analyses take every joint as ideal. strength: material and pins, used only to
-    judge the strength of bars. start: start of a swing, where designs choose it; used only for that. slider: distances
-    from a dead centre, used only by quantities of the slider there. varying: numbers that differ from design to design.
-    Such a machine is evaluated for designs (n, 3 + k): crank, rod, offset and the value of each. Analyses of one
-    machine take `at(values)` or `nominal`.
+    `clearance.run.simulate`; all other analyses treat every joint as ideal. strength: material and pins, used only to
+    judge the strength of bars. start: start of a swing if designs choose it; used only for that. slider: distances from
+    a dead centre, used only by slider quantities defined there. varying: numbers that differ from design to design.
+    Such a machine is evaluated for designs (n, 3 + k): crank, rod, offset and the value of each variable. Analyses of
+    one machine use `at(values)` or `nominal`.
     """
 
     speed: float = 0.0
@@ -188,28 +188,28 @@ class Mechanism:
     def direction(self) -> float:
         """Sense of rotation: +1 counter-clockwise, -1 clockwise; +1 at rest, as for loads that change with the stroke.
 
-        A varying speed has one sign, which counts whatever nominal speed is stated.
+        A varying speed has one sign, which counts whatever the nominal speed is.
         """
         return -1.0 if self.fullest.speed < 0.0 else 1.0
 
     @cached_property
     def fullest(self) -> Mechanism:
-        """The machine with all varying numbers at their bounds of greatest size: it has all features of any design."""
+        """The machine with each variable at its bound of larger magnitude: it has all features of any design."""
         return self.with_values([item.fullest for item in self.varying]) if self.varying else self
 
     @property
     def ends(self) -> tuple[Mechanism, Mechanism]:
-        """The machines with the lower and with the upper bounds of all varying numbers."""
+        """The machines with all variables at their lower and at their upper bounds."""
         lower, upper = ([getattr(item, end) for item in self.varying] for end in ("lower", "upper"))
         return self.with_values(lower), self.with_values(upper)
 
     @property
     def load_texts(self) -> list[str]:
-        """Each load in a sentence, with the ranges of its varying numbers."""
+        """Each load in a sentence, with the ranges of its variables."""
         low, high = self.ends
         return [range_text(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)]
 
     def with_values(self, values: Sequence[float]) -> Mechanism:
-        """Return the machine with these values, SI, of its varying numbers (k,)."""
+        """Return the machine with these values, SI, for its variables (k,)."""
         machine: Mechanism = with_values(self.nominal, self.varying, values)
         return machine

@@ -1,7 +1,7 @@
-"""Cylinders of a crankshaft as separate machines, and whether a machine is treated as a shaft.
+"""Cylinders on a crankshaft as separate machines, and whether a machine is treated as a shaft.
 
-A machine is treated as a shaft if several cylinders add up, or if its speed follows a profile. For any other machine
-the formulas of a single crank at constant speed apply.
+A machine is treated as a shaft if several cylinders are added up, or if its speed follows a profile. For any other
+machine, the formulas of a single crank at constant speed apply.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ from .memoise import memoise_by_machine
 
 
 class Member(NamedTuple):
-    """A cylinder as a separate machine. lead: lead of its crank angle over the shaft's, rad. bank: rad. place: m."""
+    """A cylinder as a separate machine.
+
+    lead: lead of its crank angle over the shaft angle, rad. bank: rad. place: position along the shaft, m.
+    """
 
     mechanism: Mechanism
     lead: float
@@ -37,7 +40,7 @@ def cylinder_count(mechanism: Mechanism) -> int:
 
 @memoise_by_machine
 def single_cylinder(mechanism: Mechanism) -> Mechanism:
-    """Return one cylinder of a machine alone, at bank angle zero and its constant mean speed."""
+    """Return one cylinder of a machine by itself, at zero bank angle and constant mean speed."""
     return replace(mechanism, arrangement=None, speed_profile=None) if is_shaft(mechanism) else mechanism
 
 
@@ -45,7 +48,7 @@ def single_cylinder(mechanism: Mechanism) -> Mechanism:
 def members(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of a machine, each as a separate machine. Raises `InputError` without an arrangement.
 
-    Gravity is rotated into the axes of each bank; gravity that varies from design to design keeps its values.
+    Gravity is rotated into the axes of each bank; varying gravity keeps its values.
     """
     arrangement = mechanism.arrangement
     if arrangement is None:
@@ -65,7 +68,7 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
 
 
 def require_plain(mechanism: Mechanism, subject: str) -> None:
-    """Raise an error for several cylinders or a speed profile if an analysis covers neither; subject: the analysis."""
+    """Raise an error for several cylinders or a speed profile if an analysis covers neither. subject: the analysis."""
     require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
         raise InputError(
@@ -75,7 +78,7 @@ def require_plain(mechanism: Mechanism, subject: str) -> None:
 
 
 def cylinders_of(mechanism: Mechanism) -> tuple[Member, ...]:
-    """Return the cylinders of any machine: the only one of a machine without an arrangement."""
+    """Return the cylinders of any machine: a machine without an arrangement has only one."""
     return (
         members(mechanism)
         if mechanism.arrangement is not None

@@ -1,4 +1,4 @@
-"""Cached results for a machine, and for designs of it, kept while the same ones are requested."""
+"""Results cached for a machine, and for its designs, while the same ones are requested."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def memoise_by_machine(
 ) -> Callable[Concatenate[Mechanism, Parameters], Result]:
     """Cache a function's result for the latest machine: a search requests it thousands of times.
 
-    Its other arguments must be hashable, and its results must not be changed.
+    Other arguments must be hashable, and results must not be modified.
     """
     last: tuple[Mechanism | None, dict[object, Result]] = (None, {})
 
@@ -45,9 +45,9 @@ def memoise_by_machine(
 def memoise_by_batch(
     function: Callable[Concatenate[Mechanism, Array, Parameters], Result],
 ) -> Callable[Concatenate[Mechanism, Array, Parameters], Result]:
-    """Cache the results of a function for the last few batches of designs (n, 3 + k).
+    """Cache a function's results for the last few batches of designs (n, 3 + k).
 
-    Several quantities need the same results. Its other arguments must be hashable, and its results must not be changed.
+    Several quantities need the same results. Other arguments must be hashable, and results must not be modified.
     Results for larger batches are not cached.
     """
     batches: OrderedDict[object, tuple[Mechanism, dict[object, Result]]] = OrderedDict()
@@ -61,7 +61,7 @@ def memoise_by_batch(
             return function(mechanism, designs, *arguments, **named)
         batch, key = (id(mechanism), designs.shape, designs.tobytes()), (arguments, *named.items())
         with lock:
-            # Hold the machine, so that no other machine gets its id.
+            # Keep a reference to the machine, so that no other machine gets its id.
             _, results = batches.setdefault(batch, (mechanism, {}))
             batches.move_to_end(batch)
             while len(batches) > _BATCHES:

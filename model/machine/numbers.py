@@ -1,9 +1,9 @@
-"""Raw numbers that the designs of a machine set, and their derivation from a design.
+"""Raw numbers that the designs of a machine set, and how they follow from a design.
 
-A design of a machine with k varying numbers has 3 + k: crank, rod, offset and the value of each. Kernels overwrite raw
-numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by radius and angle,
-but its raw numbers are components. Kernels differentiate by the raw numbers; `Numbers.chain` converts that to
-derivatives by the design's own numbers. With k = 0 this is the identity and costs nothing.
+A design of a machine with k variables has 3 + k numbers: crank, rod, offset and the value of each variable. Kernels
+overwrite raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by
+radius and angle, but its raw numbers are components. Kernels differentiate by the raw numbers; `Numbers.chain` converts
+these to derivatives by the design's own numbers. With k = 0 this is the identity and costs nothing.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ for _index, _name in enumerate(("crank_pivot", "crank_pin", "slider_pin", "guide
         _SLOTS[f"friction.{_name}.radius"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index, "m")
         _SLOTS[f"friction.{_name}.coefficient"] = (Raw.CRANK_PIVOT_RADIUS + 2 * _index + 1, "")
 PINS = {"crank_pivot": 10**8, "crank_pin": 10**8 + 1, "slider_pin": 10**8 + 2}
-"""Slots of the pins' diameters: after all slots that kernels use, so that no kernel differentiates by them."""
+"""Slots for the pin diameters, after all slots that kernels use, so that no kernel differentiates by them."""
 _SLOTS |= {f"strength.{name}": (slot, "m") for name, slot in PINS.items()}
 START = {"crank": 10**8 + 3, "slider": 10**8 + 4}
-"""Slots of the start of a swing, which reads its own, by the link for which its ends are stated."""
+"""Slots for the start of a swing, by the link for which its ends are stated; only the swing reads them."""
 _SLOTS |= {"start.angle": (START["crank"], "rad"), "start.place": (START["slider"], "m")}
 _DRIVE = {
     "flywheel": "kg m^2",
@@ -76,13 +76,13 @@ _DRIVE = {
     "recovery": "",
 }
 DRIVE = {name: 10**8 + 5 + place for place, name in enumerate(_DRIVE)}
-"""Slots of the drive train, which no kernel needs either."""
+"""Slots for the drive train, which no kernel needs, either."""
 _SLOTS |= {f"drive.{name}": (slot, _DRIVE[name]) for name, slot in DRIVE.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
 def unit_of(path: str) -> str:
-    """Return the SI unit of a number of the machine. Raises `InputError` for one that designs cannot set."""
+    """Return the SI unit of a number in a machine. Raises `InputError` for a number that designs cannot set."""
     return _POLAR[path] if path in _POLAR else _slot_of(path)[1]
 
 
@@ -99,10 +99,10 @@ def _slot_of(path: str) -> tuple[int, str]:
 
 @dataclass(frozen=True)
 class Numbers:
-    """Raw numbers of n designs.
+    """Raw numbers for n designs.
 
     columns: indices (c,) of the raw numbers; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their
-    derivatives by the design's numbers; None where that is the identity.
+    derivatives by the design's numbers; None if these are the identity.
     """
 
     columns: IntArray
@@ -121,9 +121,9 @@ _THREE = np.arange(3)
 
 @memoise_by_batch
 def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
-    """Return the raw numbers that designs (n, 3 + k) of a machine with k varying numbers set.
+    """Return the raw numbers that designs (n, 3 + k) of a machine with k variables set.
 
-    limit: count of raw numbers; a signal independent of loads has fewer. gradients: whether to return slopes.
+    limit: number of raw numbers; a signal independent of loads has fewer. gradients: whether to return slopes.
     """
     require_width(mechanism, designs)
     if not mechanism.varying:
@@ -146,7 +146,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
 
 
 def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
-    """Return one raw number (n,) of designs (n, 3 + k) and its derivatives (n, 3 + k).
+    """Return one raw number (n,) for designs (n, 3 + k) and its derivatives (n, 3 + k).
 
     `otherwise`: value if designs do not set it.
     """
@@ -160,10 +160,10 @@ def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: flo
 def formula_of_numbers(
     mechanism: Mechanism, designs: Array, formula: Callable[[Callable[[int], Any]], Any], *, gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return a formula of designs (n, 3 + k), (n,), and its derivatives (n, 3 + k) by complex steps.
+    """Return a formula's values (n,) for designs (n, 3 + k), and its derivatives (n, 3 + k) by complex steps.
 
-    formula: smooth formula, for real or complex numbers. Its argument is a function that returns the raw number of a
-    slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
+    formula: smooth formula that accepts real or complex numbers. Its argument is a function that returns the raw number
+    at a slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
     """
     numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
@@ -186,7 +186,7 @@ def formula_of_numbers(
 
 
 def nominal_number(mechanism: Mechanism, slot: int) -> float:
-    """Return the raw number of a slot (`Raw`, `PINS`, `DRIVE`) that designs do not set."""
+    """Return the raw number at a slot (`Raw`, `PINS`, `DRIVE`) that designs do not set."""
     for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE)):
         for name, place in slots.items():
             if place == slot:
@@ -211,19 +211,19 @@ def require_width(mechanism: Mechanism, designs: Array) -> None:
 
 @cache
 def _rates_of_raw(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
-    """Return the derivatives (3 + k,) of each raw number that designs set; None where they are not constant."""
+    """Return the derivatives (3 + k,) of each raw number that designs set; None if they are not constant."""
     rates = {column: {column: 1.0} for column in range(3)}
     for column, item in enumerate(varying):
         for path, factor in item.sets:
             if path in _POLAR:
                 return None
-            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # rounded as by a complex step
+            rates[_slot_of(path)[0]] = {3 + column: factor * STEP / STEP}  # rounded as a complex step would
     count = 3 + len(varying)
     return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 
 
 def raw_numbers(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
-    """Return the raw numbers that designs set, each (n,); complex designs give complex ones."""
+    """Return the raw numbers that designs set, each (n,); complex if the designs are complex."""
     by_slot: dict[int, Any] = {column: designs[:, column] for column in range(3)}
     polar: dict[str, Any] = {}
     for column, item in enumerate(mechanism.varying):

@@ -39,13 +39,13 @@ Raw = IntEnum(
     start=0,
 )
 LOAD_SLOTS = 13
-"""Raw numbers of each load: factor in the outward stroke, factor in the inward stroke, and its own numbers."""
+"""Raw numbers per load: factor in the outward stroke, factor in the inward stroke, and its own numbers."""
 
 _DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "outer dead centre": 2}
 
 
 class Loads(NamedTuple):
-    """The loads' fixed structure.
+    """Fixed structure of the loads.
 
     kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
     stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table begins.
@@ -64,7 +64,7 @@ class Loads(NamedTuple):
 def raw_vector(mechanism: Mechanism) -> Array:
     """Return the raw numbers of a mechanism; the three dimensions are zero, to be overwritten.
 
-    Raises `InputError` for a mechanism with varying numbers: only a design determines their values.
+    Raises `InputError` for a mechanism with variables, whose values only a design determines.
     """
     if mechanism.varying:
         names = ", ".join(item.name for item in mechanism.varying)
@@ -109,7 +109,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
 
 @memoise_by_machine
 def fullest_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
-    """Return the raw numbers, read-only, and the loads of a machine with all features of any of its designs."""
+    """Return the raw numbers, read-only, and the loads of a machine that has all features of any of its designs."""
     raw = raw_vector(mechanism.fullest)
     raw.flags.writeable = False
     return raw, load_structure(mechanism)
@@ -162,7 +162,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
 
 @memoise_by_machine
 def inertial_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
-    """Return raw numbers and loads with only added masses acting: loads without effect create no breakpoints."""
+    """Return raw numbers and loads in which only added masses act: loads without effect create no breakpoints."""
     raw, _ = fullest_inputs(mechanism)
     if not any(load.inertial for load in mechanism.loads):
         return raw[: int(Raw.END)], load_structure(Mechanism())

@@ -15,8 +15,8 @@ DeadCentre = Literal["outer", "inner"]
 class SliderDistances:
     """Distances of the slider from a dead centre, m.
 
-    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: from the
-    slider pin at its outer dead centre, outward, to the centre of the guide, which the frame holds.
+    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: outward
+    distance from the slider pin at its outer dead centre to the centre of the guide, which is fixed to the frame.
     """
 
     dead_centre: DeadCentre = "outer"
@@ -31,7 +31,7 @@ class SliderDistances:
 
     @property
     def text(self) -> str:
-        """The stated distances, as text after the slider's mass; empty without any."""
+        """The stated distances, as text after the slider's mass; empty if there are none."""
         distances = {
             f"meets its work {{}} before the {self.dead_centre} dead centre": self.touch,
             f"dwells within {{}} of the {self.dead_centre} dead centre": self.dwell,

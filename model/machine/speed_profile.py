@@ -1,7 +1,7 @@
-"""A crank speed with the period of a turn: the mechanism's speed times a smooth function of the crank angle.
+"""A crank speed that repeats every turn: the mechanism's speed times a smooth function of the crank angle.
 
-The speed of the mechanism is the mean over the crank angle. With w = speed p(theta) the crank's angular acceleration is
-w dw/d(theta) = speed^2 p p'.
+The speed of the mechanism is the mean over the crank angle. With w = speed p(theta), the crank's angular acceleration
+is w dw/d(theta) = speed^2 p p'.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from .elapsed_time import ElapsedTime
 _RPM = 30.0 / math.pi
 _TURN = 2.0 * math.pi
 _MOST = 100  # harmonics
-_LEAST = 4  # points of a table
+_LEAST = 4  # minimum number of points in a table
 _SAMPLES = 64  # fraction of the highest harmonic's period
 _CLOSED = 1e-9  # rad
 
 
 @dataclass(frozen=True, kw_only=True)
 class Harmonics:
-    """A speed by harmonics: p = 1 + sum over k = 1, 2, ... of a_k cos(k theta) + b_k sin(k theta).
+    """A speed given by harmonics: p = 1 + sum over k = 1, 2, ... of a_k cos(k theta) + b_k sin(k theta).
 
     cosines, sines: a_k and b_k, fractions of the mean.
     """
@@ -83,7 +83,7 @@ class Harmonics:
 
     @property
     def over_time(self) -> float:
-        """Mean speed over time divided by that over the crank angle."""
+        """Mean speed over time divided by the mean over the crank angle."""
         return _TURN / self.elapsed_time.full_turn
 
     @property
@@ -95,14 +95,14 @@ class Harmonics:
 
     @property
     def text(self) -> str:
-        """The profile in a few words."""
+        """A short description of the profile."""
         count = len(self.pairs)
         return f"{count} {'harmonic' if count == 1 else 'harmonics'} of the crank angle"
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpeedTable:
-    """p as the periodic cubic spline through speeds at crank angles, over its mean.
+    """p as the periodic cubic spline through speeds at crank angles, divided by its mean.
 
     angles: increasing, rad, spanning less than a turn. speeds: of one sign, in any unit.
     """
@@ -131,7 +131,7 @@ class SpeedTable:
                     "a speed over the crank angle must not be zero or change its sign, because the crank could not "
                     f"pass; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
                 )
-        turns = self._spline.derivative().roots()  # gives NaN for a stretch of constant speed
+        turns = self._spline.derivative().roots()  # gives NaN for an interval of constant speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
         _require_positive(ends, self.ratio(ends))
 
@@ -189,17 +189,17 @@ class SpeedTable:
 
     @property
     def over_time(self) -> float:
-        """Mean speed over time divided by that over the crank angle."""
+        """Mean speed over time divided by the mean over the crank angle."""
         return _TURN / self.elapsed_time.full_turn
 
     @property
     def pieces(self) -> tuple[Array, Array]:
-        """Knots (k + 1,) of a turn, rad, and the polynomials (4, k) of p between them, by falling powers."""
+        """Knots (k + 1,) in a turn, rad, and the polynomials (4, k) of p between them, by descending powers."""
         return np.array(self._spline.x), np.ascontiguousarray(self._spline.c / self.mean)
 
     @property
     def text(self) -> str:
-        """The profile in a few words."""
+        """A short description of the profile."""
         return f"table of {len(self.angles)} crank angles"
 
 

@@ -1,4 +1,4 @@
-"""Material and pins of crank and rod, to judge their strength."""
+"""Material and pins of crank and rod, for judging their strength."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Material:
     """Material of crank and rod, SI.
 
     endurance: fully reversed strength of the finished bar, with all corrections except stress concentration in the eyes
-    (Shigley eq. 6-18). bearing_pressure: permissible pressure at the pins, on the projected area.
+    (Shigley eq. 6-18). bearing_pressure: allowable pressure at the pins, on the projected area.
     """
 
     density: float
@@ -45,11 +45,11 @@ class Material:
 
 @dataclass(frozen=True, kw_only=True)
 class Strength:
-    """Material of the bars of a machine, and its pins.
+    """Material of a machine's bars, and its pins.
 
-    crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: greatest over mean stress in the
-    net section of an eye. criterion: fatigue criterion for mean stresses. wear_coefficient: worn volume over force and
-    sliding distance, m^2/N (Archard); None if unknown.
+    crank_pivot, crank_pin, slider_pin: diameters of the pins, m. eye_concentration: maximum stress divided by mean
+    stress in the net section of an eye. criterion: fatigue criterion for mean stresses. wear_coefficient: worn volume
+    divided by force and sliding distance, m^2/N (Archard); None if unknown.
     """
 
     material: Material

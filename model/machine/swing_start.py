@@ -1,4 +1,4 @@
-"""Start of a swing, if designs choose it."""
+"""Start of a swing, for designs that choose it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from ..checks import require_numbers
 
 @dataclass(frozen=True, kw_only=True)
 class Start:
-    """Start of a swing: crank angle, rad, or slider position, m. None keeps the start of the swing itself."""
+    """Start of a swing: crank angle, rad, or slider position, m. None keeps the start stated for the swing itself."""
 
     angle: float | None = None
     place: float | None = None

@@ -1,9 +1,9 @@
 """A cycle of two turns, treated as two machines with one turn each.
 
-The first has the loads of the first turn, the second those of the second: a table of 720 deg is cut at 0 and 360 deg,
-counted from its datum. An engine of four strokes compresses and burns in the first, and exchanges its gas in the
-second. Everything else repeats with every turn. So the greatest value over the cycle is the greater value of the two
-halves, a mean is the mean of their means, and both are exact. Where a half does not close it jumps at the cut; the
+The first machine has the loads of the first turn, the second those of the second turn: a 720 deg table is cut at 0 and
+360 deg, counted from its datum. A four-stroke engine compresses and burns in the first turn, and exchanges its gas in
+the second. Everything else repeats with every turn. So the maximum over the cycle is the larger of the maxima in the
+two halves, a mean is the mean of their means, and both are exact. If a half does not close, it jumps at the cut; the
 other half has the opposite jump.
 """
 
@@ -28,7 +28,7 @@ TURN = 2.0 * math.pi
 
 
 def cycle_turns(mechanism: Mechanism) -> int:
-    """Return the number of crank turns in a cycle: 2 if a load has a cycle of two."""
+    """Return the number of crank turns in a machine's cycle: 2 if a load has a two-turn cycle."""
     return turns_per_cycle(mechanism.loads)
 
 
@@ -48,7 +48,7 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
     loads = mechanism.loads
 
     def numbers_of_turn(item: Varying) -> Varying:
-        """Return the numbers of the loads by their names on that turn."""
+        """Return the numbers of the loads by their names in that turn."""
         sets = []
         for path, factor in item.sets:
             match = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
@@ -62,12 +62,12 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
 
 
 def one_turn(mechanism: Mechanism) -> Mechanism:
-    """Return the machine of the first turn, for results independent of loads that differ between turns."""
+    """Return the machine for the first turn, for results independent of loads that differ between turns."""
     return halves(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
 
 
 def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:
-    """Return the index of the half, 0 or 1, at crank angles, rad, for dead centres inner and outer; broadcasts."""
+    """Return the half, 0 or 1, that contains crank angles, rad, for dead centres inner and outer; broadcasts."""
     datum = _datum(mechanism)
     way = 1.0 if datum == "zero crank angle" else mechanism.direction
     start = np.mod({"zero crank angle": 0.0, "inner dead centre": inner, "outer dead centre": outer}[datum], TURN)
@@ -76,7 +76,7 @@ def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) ->
 
 
 def in_cycle(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
-    """Return crank angles shifted by whole turns into [0, 4 pi), rad, and there into a half."""
+    """Return crank angles shifted by whole turns into [0, 4 pi), rad, and into a given half there."""
     angle = np.mod(crank_angle, TURN)
     return np.where(half_at(mechanism, inner, outer, angle) == half, angle, angle + TURN)
 
@@ -92,7 +92,7 @@ def _datum(mechanism: Mechanism) -> str:
 
 
 def require_one_turn(mechanism: Mechanism, subject: str) -> None:
-    """Raise an error for a cycle of two turns if an analysis covers only one; subject: the analysis."""
+    """Raise an error for a two-turn cycle if an analysis covers only one turn. subject: the analysis."""
     if cycle_turns(mechanism) > 1:
         raise InputError(
             f"{subject} takes a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "

@@ -1,4 +1,4 @@
-"""Numbers of a machine that differ from design to design, besides crank, rod and offset."""
+"""Numbers of a machine that vary from design to design, besides crank, rod and offset."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..errors import InputError
 
 @dataclass(frozen=True, kw_only=True)
 class Varying:
-    """A number of a machine that a design may choose.
+    """A variable: a number of a machine that a design may choose.
 
     name: displayed name; in a job its path, "mechanism.slider.mass". sets: numbers of the `Mechanism` that follow it,
-    each with its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is factor
-    times value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0). lower,
-    upper: bounds of the value, SI; equal bounds fix it. idle: whether it sets nothing, because it belongs to another
-    turn of the cycle (`two_turns`).
+    each with its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is the factor
+    times the value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
+    lower, upper: bounds of the value, SI; equal bounds fix it. idle: whether it sets nothing, because it belongs to the
+    other turn of the cycle (`two_turns`).
     """
 
     name: str
@@ -40,17 +40,17 @@ class Varying:
 
     @property
     def fullest(self) -> float:
-        """The bound of greatest size."""
+        """The bound with the larger magnitude."""
         return max(self.lower, self.upper, key=abs)
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """The numbers that follow it."""
+        """Paths of the numbers that follow it."""
         return tuple(path for path, _ in self.sets)
 
 
 def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) -> Any:
-    """Return a machine (any frozen dataclass) with the values of its varying numbers in place."""
+    """Return a machine (any frozen dataclass) with its variables set to these values."""
     if len(varying) != len(values):
         names = ", ".join(item.name for item in varying) or "none"
         raise InputError(f"a value is needed for every number that varies ({names}); got {len(values)} values")
@@ -61,7 +61,7 @@ def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) 
 
 
 def number_at(part: Any, path: str) -> float | None:
-    """Return the number at a dotted path of a machine; None where a link uses its default. Raises `InputError`."""
+    """Return the number at a dotted path in a machine; None if a link uses its default. Raises `InputError`."""
     for key in path.split("."):
         part = _member_at(part, key, path)
     if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):
@@ -70,7 +70,7 @@ def number_at(part: Any, path: str) -> float | None:
 
 
 def require_possible(mechanism: Any) -> None:
-    """Raise `InputError` unless the varying numbers of a machine are its own, apart, and possible at both ends."""
+    """Raise `InputError` unless a machine's variables exist, set different numbers, and are valid at both ends."""
     varying: tuple[Varying, ...] = mechanism.varying
     paths = [path for item in varying for path in item.paths]
     for path in paths:
@@ -95,7 +95,7 @@ def require_possible(mechanism: Any) -> None:
 
 
 def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:
-    """Raise `InputError` unless a load is possible at every combination of the ends of its numbers that vary."""
+    """Raise `InputError` unless a load is valid at every combination of the ends of its variables."""
     entries = [
         [(path.removeprefix(prefix), factor * end) for path, factor in item.sets if path.startswith(prefix)]
         for item in varying

@@ -1,8 +1,8 @@
-"""The cam table of a motion law: master time, crank angle, speed and acceleration, for a drive that interpolates.
+"""Cam table of a motion law: master time, crank angle, speed and acceleration, for a drive that interpolates.
 
-Between two points the crank angle is the polynomial of degree 5 in time with the angles, speeds and accelerations of
-both. Where a load steps, so does the acceleration: then two points have the same time, angle and speed, the first with
-the acceleration before the step, the second with that after it.
+Between two points the crank angle is the polynomial of degree 5 in time that matches the angles, speeds and
+accelerations at both. Where a load steps, so does the acceleration. Two points then have the same time, angle and
+speed, the first with the acceleration before the step, the second with the acceleration after it.
 """
 
 from __future__ import annotations
@@ -16,13 +16,16 @@ from ..transient.equation import TURN
 from .motion_law import MotionLaw
 
 POINTS = 1_000
-"""Least number of intervals of a table."""
-_STEP = 1e-9  # of the greatest acceleration: a smaller step is rounding
+"""Minimum number of intervals in a table."""
+_STEP = 1e-9  # relative to the maximum acceleration: a smaller step is a rounding error
 
 
 @dataclass(frozen=True)
 class CamTable:
-    """Points (n,) of a turn, its end included: time, s; crank angle, rad, not taken modulo a turn; rad/s; rad/s^2."""
+    """Points (n,) over a turn, including its end: time, s; crank angle, rad, not reduced modulo a turn; rad/s.
+
+    Rad/s^2.
+    """
 
     time: Array
     crank_angle: Array

@@ -1,12 +1,12 @@
-"""A turn of the crank, cut into cells, with the terms of the kinetic energy over the crank angle.
+"""A crank turn divided into cells, with the terms of the kinetic energy over the crank angle.
 
 With the kinetic energy K = J w^2 / 2 of all moving parts and phi the angle passed, in the direction of rotation,
 
     dK / d(phi) = T - Q(phi),        w^2 = 2 K / J(phi),        alpha = (T - Q - K J' / J) / J,
 
-where T is the torque in that direction, and Q what gravity and loads take of it. J and Q follow from the equation of
-motion (`model.transient.equation`); the drive's inertia at the crank counts as one of the crank. Cells end at all
-breakpoints, so that every term is smooth within a cell, and is known at its 16 nodes of Gauss and Legendre.
+where T is the torque in that direction, and Q is the torque that gravity and loads absorb. J and Q follow from the
+equation of motion (`model.transient.equation`); the drive's inertia at the crank counts as part of the crank. Cells end
+at all breakpoints, so that every term is smooth within a cell and is known at its 16 Gauss-Legendre nodes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from ..transient.turn import PeriodicTurn
 
 
 def with_drive_inertia(mechanism: Mechanism) -> Mechanism:
-    """Return the machine at constant speed whose crank has the inertia of flywheel and rotor too."""
+    """Return the machine at constant speed whose crank also has the inertia of flywheel and rotor."""
     added = 0.0 if mechanism.drive is None else mechanism.drive.inertia
     weight = mechanism.counterweight
     heavy = replace(weight, inertia=weight.inertia + added) if added else weight
@@ -48,7 +48,7 @@ class LawTerms:
 
 
 class LawTurn:
-    """Cells of a turn in the order of the crank's passage: n cells, 16 nodes each.
+    """Cells of a turn in the order in which the crank passes them: n cells, 16 nodes each.
 
     machine: the mechanism with the drive's inertia on its crank. way: +1 or -1, direction of rotation. start: crank
     angle of the first cell, rad. passed: phi at the start of each cell, (n,), rad. width: (n,), rad. angle, inertia,
@@ -56,10 +56,10 @@ class LawTurn:
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, marks: tuple[float, ...] = ()) -> None:
-        """Take a machine and further crank angles at which cells end, rad.
+        """Take a machine and additional crank angles at which cells end, rad.
 
         Raises `AssemblyError` for a linkage that does not rotate fully, and `InputError` for machines without such an
-        equation: with friction, several cylinders, a cycle of two turns, or loads that depend on the speed.
+        equation: with friction, several cylinders, a two-turn cycle, or speed-dependent loads.
         """
         self.machine = with_drive_inertia(mechanism)
         self.linkage = single(self.machine, linkage)
@@ -90,7 +90,7 @@ class LawTurn:
         self.end_terms = LawTerms(self.inertia_at(angles), at_ends(slope), at_ends(load), *self.slider(angles))
 
     def finer(self, cells: Mask) -> LawTurn:
-        """Return the turn with chosen cells (n,) halved."""
+        """Return the turn with the chosen cells (n,) halved."""
         turn = object.__new__(LawTurn)
         turn.machine, turn.linkage = self.machine, self.linkage
         turn._take(self._turn.cut(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
@@ -98,7 +98,7 @@ class LawTurn:
 
     @property
     def weights(self) -> Array:
-        """Weights (n, 16) of an integral over phi."""
+        """Weights (n, 16) for an integral over phi."""
         return np.asarray(self.width[:, None] * WEIGHTS)
 
     @property
@@ -108,11 +108,11 @@ class LawTurn:
 
     @property
     def work(self) -> float:
-        """Work that the loads take in a turn, J; gravity takes none."""
+        """Work that the loads absorb in a turn, J; gravity absorbs none."""
         return float(np.sum(self.weights * self.terms.load))
 
     def slider(self, crank_angle: Array) -> tuple[Array, Array]:
-        """Return x' and x'', by phi, m, at crank angles, rad."""
+        """Return x' and x'' by phi, m, at crank angles, rad."""
         motion = self.linkage.at(crank_angle, speed=self.way)
         return motion.slider_velocity, motion.slider_acceleration
 
@@ -121,33 +121,33 @@ class LawTurn:
         return np.asarray(self._turn.equation.inertia(crank_angle))
 
     def locate(self, crank_angle: Array) -> tuple[IntArray, Array]:
-        """Return the cells (n,) with crank angles, rad, and the places within them, from 0 to 1."""
+        """Return the cells (n,) that contain crank angles, rad, and the positions within them, from 0 to 1."""
         phi = np.mod(self.way * (crank_angle - self.start), TURN)
         cell = np.clip(np.searchsorted(self.passed, phi, side="right") - 1, 0, len(self.width) - 1)
         return np.asarray(cell), (phi - self.passed[cell]) / self.width[cell]
 
     def integrals(self, values: Array) -> Array:
-        """Return integrals over phi (n, 16) from the start of each cell to its nodes of values there."""
+        """Return integrals over phi (n, 16) of values at the nodes, from the start of each cell to its nodes."""
         return np.asarray(self.width[:, None] * (values @ INTEGRALS.T))
 
     def integral_of(self, values: Array, cell: IntArray, place: Array) -> Array:
-        """Return integrals over phi from the start of cells (n,) to places in them of values at all nodes."""
+        """Return integrals over phi of values at all nodes, from the start of cells (n,) to positions within them."""
         return np.asarray(self.width[cell] * np.einsum("ni,ni->n", integrals_to(place), values[cell]))
 
 
 def values_at(values: Array, cell: IntArray, place: Array) -> Array:
-    """Return values (n,) at places from 0 to 1 in cells, from those at all nodes (cells, 16)."""
+    """Return values (n,) at positions from 0 to 1 in cells, interpolated from those at all nodes (cells, 16)."""
     basis = legendre.legvander(2.0 * place - 1.0, DEGREE) @ FIT
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))
 
 
 def integrals_to(place: Array) -> Array:
-    """Return weights (n, 16) of integrals over a unit cell, from its start to places from 0 to 1."""
+    """Return weights (n, 16) for integrals over a unit cell, from its start to positions from 0 to 1."""
     return np.asarray(legendre.legvander(2.0 * place - 1.0, DEGREE + 1) @ INTEGRATED @ FIT)
 
 
 def _require_simple(mechanism: Mechanism) -> None:
-    """Raise `InputError` for machines whose torque is more than T = K' + Q."""
+    """Raise `InputError` for machines whose torque has terms besides T = K' + Q."""
     require_one_cylinder(mechanism.arrangement, "a motion law")
     if cycle_turns(mechanism) > 1:
         raise InputError(

@@ -1,7 +1,7 @@
 """Motion laws: crank speed over the crank angle, for a drive torque that is linear in each cell.
 
-The kinetic energy is K = K_start + integral of T - Q over the angle passed (`law_turn`): exact but for the integral of
-Q, a polynomial of degree 15 on each cell. The crank acceleration is continuous except where a load steps.
+The kinetic energy is K = K_start + integral of T - Q over the angle passed (`law_turn`). It is exact except for the
+integral of Q, a polynomial of degree 15 on each cell. The crank acceleration is continuous except where a load steps.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ _NEWTON = 8
 
 @dataclass(frozen=True)
 class MotionLaw:
-    """A law over the cells of a turn.
+    """A motion law over the cells of a turn.
 
     torque: drive torque in the direction of rotation at the start of each cell, N m, (n,). start_energy: K at the start
-    of the turn, J. The torque's mean equals that of the loads, so that the speed repeats.
+    of the turn, J. The mean torque equals that of the loads, so the speed repeats.
     """
 
     turn: LawTurn
@@ -35,7 +35,7 @@ class MotionLaw:
 
     @classmethod
     def closed(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
-        """Return the law with the constant torque added that makes it repeat."""
+        """Return the law with a constant torque added that makes it repeat."""
         excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.work
         return cls(turn, torque - excess / float(turn.width.sum()), start_energy)
 
@@ -74,7 +74,7 @@ class MotionLaw:
         return math.sqrt(float(np.sum(self.turn.weights * self.node_torques**2 * self.node_slowness)) / self.period)
 
     def combined(self, other: MotionLaw, share: float) -> MotionLaw:
-        """Return a mixture of this law's K and T and, by a share, those of another law."""
+        """Return a mixture of this law's K and T with those of another law, in the proportion `share`."""
         torque = (1.0 - share) * self.torque + share * other.torque
         return MotionLaw(self.turn, torque, (1.0 - share) * self.start_energy + share * other.start_energy)
 
@@ -93,7 +93,7 @@ class MotionLaw:
     def acceleration(self, crank_angle: Array, *, before: bool = False) -> Array:
         """Return the crank acceleration, rad/s^2, positive counter-clockwise, at crank angles (n,), rad.
 
-        before: whether it is that before a step of the load, if an angle lies on one.
+        before: whether to return the value before a step in the load, if an angle lies on one.
         """
         cell, place = self.turn.locate(crank_angle)
         if before:
@@ -108,16 +108,16 @@ class MotionLaw:
 
     @property
     def motion(self) -> CrankMotion:
-        """The law as a crank motion, for the evaluation along any speed profile."""
+        """The law as a crank motion that can be evaluated like any speed profile."""
         return CrankMotion(lambda angle: (self.speed(angle), self.acceleration(angle)), np.mod(self.turn.low, TURN))
 
     def time(self, crank_angle: Array) -> Array:
-        """Return the time from the start of the turn, s, at crank angles (n,), rad."""
+        """Return the time since the start of the turn, s, at crank angles (n,), rad."""
         cell, place = self.turn.locate(crank_angle)
         return np.asarray(self._starts[cell] + self.turn.integral_of(self.node_slowness, cell, place))
 
     def angle_at(self, time: Array) -> Array:
-        """Return the crank angle, rad, not taken modulo a turn, at times (n,) from 0 to the period, s."""
+        """Return the crank angle, rad, not reduced modulo a turn, at times (n,) from 0 to the period, s."""
         cell = np.clip(np.searchsorted(self._starts, time, side="right") - 1, 0, len(self._starts) - 1)
         rest = time - self._starts[cell]
         lasts = self.turn.integral_of(self.node_slowness, cell, np.ones(len(time)))

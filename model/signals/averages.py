@@ -1,4 +1,4 @@
-"""Means and root mean squares over the cycle, above all of the torque, with exact gradients.
+"""Means and root mean squares over the cycle, mainly of the torque, with exact gradients.
 
 Here the speed is constant, so the crank angle is proportional to time; along a profile see `shaft_averages`.
 """
@@ -26,11 +26,11 @@ from .two_turns import averaged
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages (3, n) of n designs' curves and their gradients (3, n, 3 + k) or None, over the cycle.
+    """Averages (3, n) of curves of n designs over the cycle, and their gradients (3, n, 3 + k) or None.
 
-    Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, relevant for a flywheel;
-    RMS value over time, relevant for heating. At constant speed the last two are the same. Where friction locks a
-    design the mean is NaN and the RMS values are infinite.
+    Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, which matters for a
+    flywheel; RMS value over time, which matters for heating. At constant speed the last two are the same. If friction
+    locks a design, the mean is NaN and the RMS values are infinite.
     """
 
     values: Array
@@ -73,11 +73,11 @@ def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = Fa
 
 
 def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS values of a signal for fully turning designs (n, 3 + k): crank, rod, offset, m.
+    """Return mean and RMS values of a signal for fully rotating designs (n, 3 + k): crank, rod, offset, m.
 
-    The k further columns are the values of the machine's varying numbers.
-    The torque counts with its sign, any other signal by its size. The mean torque is exactly zero for a machine that
-    takes no work over a turn. `shaft_statistics` describes how several cylinders and a speed profile count.
+    The k additional columns are the values of the machine's variables. The torque keeps its sign; any other signal
+    counts by its magnitude. The mean torque is exactly zero for a machine that absorbs no work over a turn.
+    `shaft_statistics` describes how several cylinders and a speed profile are included.
     """
     averages = _batch_averages(mechanism, designs, kind, gradients)
     return Averages(averages.values.copy(), None if averages.gradients is None else averages.gradients.copy())
@@ -105,7 +105,9 @@ def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradient
         by_mean, by_rms = means.mean_slope[:, 0], means.square_slope[:, 0]
         by_rms = np.divide(by_rms, rms[:, None], out=np.zeros_like(by_rms), where=rms[:, None] > 0.0)
         slopes = np.stack([by_mean, by_rms, by_rms])
-    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exact: no rounding of cancelling terms
+    if kind is Signal.TORQUE and not works_over_a_turn(
+        mechanism
+    ):  # exact, because cancelling terms leave no rounding error
         mean[:] = 0.0
         if slopes is not None:
             slopes[0] = 0.0

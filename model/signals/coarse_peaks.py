@@ -1,15 +1,15 @@
 """Location of the peaks of very many designs: curves sampled in single precision, and their highest samples.
 
-The sweep only has to find the cell that a peak lies in; `screening` refines it in double precision, by the formulas of
-`signals`. Single precision is twice as fast and enough: near locking rounding grows to 1e-7 l / (l - r - |e|), but so
-does the drop from a peak to the next sample, to spacing^2 / 4 times the same factor: at 360 angles a thousand times as
-much. A second peak of equal height to rounding could still mislead, so it is refined as well. Lengths are scaled by the
-rod and curves to about one, so that no unit overflows.
+The sweep only has to find the cell that contains a peak; `screening` refines the peak in double precision, with the
+formulas from `signals`. Single precision is twice as fast and is sufficient. Near locking its rounding error grows to
+1e-7 l / (l - r - |e|), but the drop from a peak to the next sample grows to spacing^2 / 4 times the same factor, a
+thousand times as much at 360 angles. A second peak that is equally high to rounding could still mislead, so it is
+refined as well. Lengths are scaled by the rod, and curves to about one, so that nothing overflows in any unit.
 
-For the same reason the torque comes from virtual work here, with half the operations of the joint forces in `dynamics`;
-tests compare the two. With S the rod's first moment about the crank pin, C that of the crank, to which the rod's mass
-at the crank pin is added, a = phi'' w^2 + phi' alpha, and u, v = r times the components of S along and across the
-crank,
+For the same reason, the torque comes from virtual work here, with half the operations of the joint forces in
+`dynamics`; tests compare the two. Let S be the rod's first moment about the crank pin, C that of the crank, to which
+the rod's mass at the crank pin is added, a = phi'' w^2 + phi' alpha, and u, v = r times the components of S along and
+across the crank,
 
     T = a (I phi' + u) + phi' (w^2 (1 - phi') v + alpha u - S x G) + x' F + I_O alpha - C x G,
 
@@ -28,7 +28,7 @@ from ..machine.design import design_at
 from .signals import Signal
 
 LANES = 64
-"""Designs in a block: its working arrays stay in the first-level cache."""
+"""Designs per block: its working arrays stay in the first-level cache."""
 # Rows of the numbers that the curves need.
 _R, _E, _BRANCH, _KAPPA, _DOUBT, _W2, _ALPHA, _INERTIA, _ALONG, _ACROSS = range(10)
 _MASS, _DAMPING, _STIFFNESS, _STIFFNESS_LESS_MASS, _FORCE_POSITIVE, _FORCE_NEGATIVE = range(10, 16)
@@ -37,8 +37,8 @@ _OF_CRANK, _OF_ROD, _OF_OFFSET, _OF_ANGLE = range(21, 25)
 ROWS = 25
 _TORQUE, _WORST = int(Signal.TORQUE), int(Signal.POSITION_ERROR)
 _ZERO, _EIGHTH, _HALF, _ONE, _TWO = (np.float32(x) for x in (0.0, 0.125, 0.5, 1.0, 2.0))
-_LOCKED = np.float32(2.0**-22)  # least square of cos(phi): below, rounding could make it negative
-_ROUNDING = 2.0**-20  # rounding error of a sample, with a margin, where the linkage is far from locking
+_LOCKED = np.float32(2.0**-22)  # minimum square of cos(phi); below this, rounding could make it negative
+_ROUNDING = 2.0**-20  # rounding error of a sample, with a margin, for a linkage far from locking
 
 
 @analytic
@@ -77,7 +77,7 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
         b[_ALONG, j], b[_ACROSS, j], b[_MASS, j] = per_size * rod_along, per_size * rod_across, per_size * mass
         b[_DAMPING, j], b[_STIFFNESS, j] = per_size * damping, per_size * stiffness
         b[_STIFFNESS_LESS_MASS, j] = per_size * (stiffness - mass)
-        # Which force acts while x' is positive.
+        # Determines which force acts while x' is positive.
         b[_FORCE_POSITIVE, j] = per_size * (outward if d.branch * direction > 0.0 else inward)
         b[_FORCE_NEGATIVE, j] = per_size * (inward if d.branch * direction > 0.0 else outward)
         b[_ROD_ALONG, j], b[_ROD_ACROSS, j] = per_size * fall_along, per_size * fall_across
@@ -104,7 +104,7 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     """Torque, worst case and square of the root-sum-square, each at theta and at pi - theta, which share the motion.
 
-    Terms named `odd` change sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to pi -
+    Terms marked `odd` change sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to pi -
     theta. `turn` is -phi' at theta.
     """
     rs, rc = b[_R, j] * sine, b[_R, j] * cosine
@@ -152,7 +152,7 @@ def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
 
 @analytic
 def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
-    """Torque and worst-case position error of all lanes at tau and -tau."""
+    """Torque and worst-case position error for all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
         at_tau[0, j], at_minus_tau[0, j], at_tau[1, j], at_minus_tau[1, j], _, _ = _curves(b, j, sine, cosine)
@@ -160,7 +160,7 @@ def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_
 
 @analytic
 def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
-    """Squares of the root-sum-square of all lanes at tau and -tau."""
+    """Squares of the root-sum-square for all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
         _, _, _, _, at_tau[2, j], at_minus_tau[2, j] = _curves(b, j, sine, cosine)
@@ -176,8 +176,8 @@ def row_of(kind: Any) -> Any:
 def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
     """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and the wrapped ends.
 
-    Torque and worst case are always computed together. Two ways to compute a curve would round differently, and a
-    result would depend on what else was requested.
+    Torque and worst case are always computed together. Two ways of computing a curve would round differently, and
+    results would depend on what else was requested.
     """
     angles = tau.shape[1]
     for squares in (False, True):
@@ -185,7 +185,8 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
         for kind in kinds:
             is_needed = is_needed or (row_of(kind) == 2) == squares
         for k in range(angles // 2 + 1 if is_needed else 0):
-            # Where an angle is its own mirror image, the other row is a spare one: writing one row twice would be slow.
+            # If an angle is its own mirror image, the other row is a spare one, because writing one row twice would be
+            # slow.
             w = angles - k + 1 if 2 * k < angles else 0
             if squares:
                 _sample_squares(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
@@ -201,7 +202,7 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
 def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) -> Any:
     """Return 1 at a local maximum, other than the highest sample, near which the curve may exceed the floor.
 
-    A parabola through three samples rises above the middle one by a quarter of their half difference at most.
+    A parabola through three samples rises above the middle one by at most a quarter of their half difference.
     """
     bound = middle + _EIGHTH * abs(high - low)
     return _ONE if (middle >= low) & (middle > high) & (bound > floor) & (place != at) else _ZERO
@@ -209,7 +210,7 @@ def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) ->
 
 @analytic
 def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
-    """Fill three rows of `top` from the samples around each lane's first (i = 0) or second maximum."""
+    """Fill three rows in `top` from the samples around each lane's first (i = 0) or second maximum."""
     for j in range(LANES):
         place = int(mark[2 * i + 1, j])
         top[3 * i, j] = place - 1
@@ -226,9 +227,10 @@ def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
 def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
     """Find each lane's highest sample, and the highest other local maximum that could exceed it between samples.
 
-    samples: samples of one signal. `top` (6, LANES) receives, for both maxima, the place, the vertex of the parabola
-    through the samples (in spacings from there), and their second difference over the middle one. The place is -1
-    without a second maximum. Returns whether any lane has one. mark: work space, (7, LANES).
+    samples: samples of one signal. `top` (6, LANES) receives three values for each of both maxima: the index, the
+    vertex of the parabola through the samples (in spacings from there), and their second difference divided by the
+    middle sample. The index is -1 if there is no second maximum. Returns whether any lane has a second maximum. mark:
+    work space, (7, LANES).
     """
     angles = samples.shape[0] - 2
     for j in range(LANES):

@@ -1,6 +1,6 @@
 """Joint forces of many designs at given crank angles, in complex numbers, for custom quantities.
 
-Where loads or friction are piecewise, the real crank angle of the real design selects the piece, as in `cycle`.
+If loads or friction are piecewise, the real crank angle of the real design selects the piece, as in `cycle`.
 """
 
 from __future__ import annotations
@@ -72,9 +72,10 @@ def complex_joint_forces(
 ) -> tuple[Forces, ComplexArray]:
     """Return the joint forces and the load on the slider, N outward, each (n, k).
 
-    designs: (n, 3), crank, rod, offset, m, each rotating fully. angles: (n, k), rad. NaN where friction locks.
+    designs: (n, 3), crank, rod, offset, m, each rotating fully. angles: (n, k), rad. NaN where friction locks the
+    linkage.
     """
-    # Arrays of one kind, so that one compiled kernel serves.
+    # Arrays of one type, so that one compiled kernel serves all.
     designs, angles = (np.require(array, np.complex128, ["C", "W"]) for array in (designs, angles))
     out = np.empty((len(angles), _ROWS, angles.shape[1]), np.complex128)
     raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)

@@ -1,4 +1,4 @@
-"""Segments of the cycles of many designs, in flat lists, and the panels of these."""
+"""Segments of many designs' cycles as flat lists, and the panels of these segments."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from ..dynamics.segments import angle_within
 
 @dataclass(frozen=True)
 class Segments:
-    """The cycles of n designs between breakpoints: s segments in order of design and place, with smooth curves.
+    """Cycles of n designs between breakpoints: s segments ordered by design and place, with smooth curves.
 
-    row: design. low, high: places (crank angle or time) of the ends. cut: breakpoint at its start. next_segment: -1
-    where none follows. unit: unit of place for counting panels.
+    row: design. low, high: places (crank angle or time) of the ends. cut: breakpoint at its start. next_segment:
+    following segment, -1 if there is none. unit: unit of place for counting panels.
     """
 
     row: IntArray
@@ -28,7 +28,7 @@ class Segments:
 
     @property
     def probe(self) -> Array:
-        """A place in each segment that identifies strokes and pieces."""
+        """A place in each segment that identifies its strokes and pieces."""
         low: Any = self.low
         high: Any = self.high
         return np.asarray(angle_within(low, high))

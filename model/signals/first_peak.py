@@ -1,4 +1,4 @@
-"""Greatest values of a signal over the cycle, and the crank angles reported for them."""
+"""Maxima of a signal over the cycle, and the crank angles reported for them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST = 256  # peaks: more than 24 cylinders have at equal height
 
 
 def first_peaks(mechanism: Mechanism, kind: Signal, designs: Array) -> tuple[Array, Array]:
-    """Return the greatest values (n,) of a signal over the cycle, and their first crank angles (n,), rad.
+    """Return the maxima (n,) of a signal over the cycle, and their first crank angles (n,), rad.
 
     Designs (n, 3 + k), values and angles are as in `find_peaks`.
     """

@@ -1,13 +1,13 @@
-"""Curves of a motor over the cycle: torque, power and the energy that it draws, behind a gear with losses.
+"""Curves of a motor over the cycle: torque, power and the energy that it draws, with a gear that has losses.
 
-In the direction of rotation, with T the crank's torque, J_f the flywheel, J_m the rotor, i the gear ratio, and w and a
-the crank's speed and acceleration:
+In the direction of rotation, let T be the crank torque, J_f the flywheel inertia, J_m the rotor inertia, i the gear
+ratio, and w and a the crank's speed and acceleration:
 
     T_g = T + J_f a,        T_m = i J_m a + max(T_g / eta, eta_b T_g) / i.
 
-The efficiency acts on the torque through the gear, not on the rotor's own. The supply gives T_m i + c T_m^2 / w per
-crank angle, with c the copper loss over the square of the torque; of what comes back it keeps a fraction. Where T_g or
-the supply's power change sign the curves have kinks, which are breakpoints.
+The efficiency acts on the torque through the gear, not on the rotor's own torque. The supply delivers T_m i + c T_m^2 /
+w per crank angle, where c is the copper loss divided by the square of the torque; it recovers a fraction of the
+returned energy. Where T_g or the supply power changes sign, the curves have kinks, which are breakpoints.
 """
 
 from __future__ import annotations
@@ -44,8 +44,9 @@ _Stepped = NDArray[np.complexfloating[Any, Any]]
 class MotorCurve(IntEnum):
     """A curve of the motor in the direction of rotation.
 
-    Torque, N m; power at its shaft, W; energy drawn from the supply per crank angle, J, net of what it takes back. The
-    last two have the kinks: torque at the crank through the gear, N m, and energy per crank angle in either direction.
+    Torque, N m; power at its shaft, W; energy drawn from the supply per crank angle, J, net of the recovered energy.
+    The last two curves are those with the kinks: torque at the crank through the gear, N m, and energy per crank angle
+    in either direction.
     """
 
     TORQUE = auto()
@@ -60,7 +61,7 @@ _KINKS = {GEAR: MotorCurve.THROUGH_GEAR, SUPPLY: MotorCurve.SUPPLIED}
 
 
 class _Numbers(NamedTuple):
-    """Numbers of the drive train, (n, 1 + v): complex, stepped in place and in each number of a design."""
+    """Numbers of the drive train, (n, 1 + v): complex, stepped in the place and in each number of a design."""
 
     speed: _Stepped
     acceleration: _Stepped
@@ -74,7 +75,7 @@ class _Numbers(NamedTuple):
 
 
 class MotorShaft(Shaft):
-    """Designs (n, 3 + k) of a machine with a drive, followed by one curve of its motor."""
+    """Designs (n, 3 + k) of a machine with a drive, and one curve of its motor along their cycles."""
 
     def __init__(self, mechanism: Mechanism, curve: MotorCurve, designs: Array, *, gradients: bool = False) -> None:
         members = tuple(range(cylinder_count(mechanism)))
@@ -87,11 +88,14 @@ class MotorShaft(Shaft):
     def evaluate(
         self, row: IntArray, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
-        """Return the curve (p, k, 2 + v) and its sizes (p, k), as `Shaft.evaluate` does."""
+        """Return the curve (p, k, 2 + v) and its magnitudes (p, k), as `Shaft.evaluate` does."""
         return self._motor_curve(self.curve, row, probe, angle, rate, gradients)
 
     def rates(self, cuts: IntArray, probe: Array) -> Array:
-        """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""
+        """Return the derivatives (c, v) of breakpoint angles by the design.
+
+        Probe: angles in segments that begin there.
+        """
         out = super().rates(cuts, probe)
         for code, curve in _KINKS.items():
             rows = np.flatnonzero(self.breaks.code[cuts] == code)
@@ -101,7 +105,7 @@ class MotorShaft(Shaft):
         return out
 
     def _cut_at_kinks(self, breaks: Breaks) -> Breaks:
-        """Return breakpoints with those of gear and supply."""
+        """Return breakpoints together with those of gear and supply."""
         breaks = super()._cut_at_kinks(breaks)
         codes = ([GEAR] if self._lossy else []) + ([SUPPLY] if self.curve is MotorCurve.DRAWN else [])
         for code in codes:
@@ -114,7 +118,7 @@ class MotorShaft(Shaft):
     def _motor_curve(
         self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array, rate: Array | None, gradients: bool
     ) -> tuple[Array, Array]:
-        """Return a curve and its sizes, as `evaluate` does; the probe says which sides of the kinks count."""
+        """Return a curve and its magnitudes, as `evaluate` does; the probe says which sides of the kinks count."""
         angle = np.concatenate([angle, probe[:, None]], axis=1)
         torque, size = super().evaluate(row, probe, angle, rate=rate, gradients=gradients)
         steps: _Stepped = 1j * STEP * torque[:, :, 1:]
@@ -183,7 +187,7 @@ def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
 
 @memoise_by_batch
 def motor_peaks(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradients: bool, limit: int) -> Peaks:
-    """Return the highest local peaks of the size of a motor's curve for designs (n, 3 + k); see `Peaks`."""
+    """Return the highest local peaks of the magnitude of a motor's curve for designs (n, 3 + k); see `Peaks`."""
     designs = turning(designs)
     values, angles = np.empty((len(designs), limit)), np.empty((len(designs), limit))
     slopes = np.empty((len(designs), limit, designs.shape[1])) if gradients else None
@@ -202,7 +206,7 @@ def motor_peaks(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradien
 class MotorAverages:
     """Averages of a motor's curve over the cycle, (n,), and their derivatives (n, 3 + k) or None.
 
-    integral: over the crank angle. rms: root mean square over time. Both are infinite where friction locks a design.
+    integral: over the crank angle. rms: root mean square over time. Both are infinite where friction locks the design.
     """
 
     integral: Array

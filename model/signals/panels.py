@@ -1,8 +1,8 @@
 """Curves over the crank angle as polynomials on panels: means, extremes and integrals to rounding.
 
-On every panel each curve is its polynomial of degree 15 through the nodes of Gauss and Legendre. Panels are halved
-until the last coefficients have died out, or are rounding error of the crank angle on a steep curve. Extremes are at
-the ends of panels, by their one-sided limits, or where the derivative of the polynomial is zero.
+On every panel, each curve is its polynomial of degree 15 through the Gauss-Legendre nodes. Panels are halved until the
+last coefficients have died out, or are rounding errors of the crank angle on a steep curve. Extremes are at panel ends,
+where one-sided limits count, or where the derivative of the polynomial is zero.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from .first_greatest import first_greatest
 
 Curves = Callable[[Array], Array]
 
-_PRODUCT = 24  # nodes that integrate the product of three polynomials exactly
-_RESOLVED = 1e-12  # remaining size of the last coefficients of a resolved panel, relative to the curve's size
+_PRODUCT = 24  # number of nodes that integrate the product of three polynomials exactly
+_RESOLVED = 1e-12  # remaining magnitude of the last coefficients on a resolved panel, relative to that of the curve
 _SHORTEST = 1e-12  # rad
 _PRODUCT_NODES, _PRODUCT_WEIGHTS = gauss(_PRODUCT)
 _AT_PRODUCT_NODES = legendre.legvander(2.0 * _PRODUCT_NODES - 1.0, DEGREE)
@@ -36,7 +36,7 @@ class Extreme:
 
 
 def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
-    """Return the least or the greatest value, whichever is greater in magnitude; if equal, the first in the cycle."""
+    """Return the minimum or maximum, whichever has the larger magnitude; if equal, the first in the cycle."""
     sizes = np.abs([end.value for end in ends])
     first = ends[int(first_greatest(sizes, np.array([end.angle for end in ends]), period))]
     return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
@@ -44,14 +44,14 @@ def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
 
 @dataclass(frozen=True)
 class Panels:
-    """Curves on p panels. low, width: (p,), rad. coefficients: (p, 16, m), of Legendre polynomials."""
+    """Curves on p panels. low, width: (p,), rad. coefficients: (p, 16, m), those of Legendre polynomials."""
 
     low: Array
     width: Array
     coefficients: Array
 
     def mean(self, curve: int, time: int | None = None) -> float:
-        """Return the mean over the crank angle or over time. time: curve of the time per crank angle, any unit."""
+        """Return the mean over the crank angle or over time. time: curve of the time per crank angle, in any unit."""
         if time is not None:
             return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
         return self.integral(curve) / float(np.sum(self.width))
@@ -72,7 +72,7 @@ class Panels:
         return float(np.sum(self.width * products) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
-        """Return the least and the greatest value; of equal ones the first (`first_greatest`)."""
+        """Return the minimum and the maximum; among equal values the first (`first_greatest`)."""
         return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
 
     def integral(self, curve: int) -> float:
@@ -114,8 +114,8 @@ class Panels:
 def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
     """Return curves (m,) on panels between ascending ends, rad.
 
-    curves: function of crank angles (n,), returns (m, n), smooth between the ends. sizes: reference sizes (m,) for what
-    is negligible.
+    curves: function of crank angles (n,) that returns (m, n), smooth between the ends. sizes: reference magnitudes (m,)
+    below which values are negligible.
     """
     low, width = ends[:-1], np.diff(ends)
     low, width = low[width > _SHORTEST], width[width > _SHORTEST]

@@ -1,10 +1,10 @@
 """Peaks of a curve over the cycle for many designs, to machine precision, with exact derivatives.
 
-The cycle is cut into segments, on each of which the curve is smooth. Value and slope are sampled on panels of segments,
-halved until they are followed. Between two samples where the curve rises and falls again lies a local maximum, found as
-the root of the slope. A breakpoint between segments is also a maximum where the curve peaks in a kink or a jump. The
-derivative of a maximum by the design is the partial derivative at its place (envelope theorem); a maximum on a
-breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
+The cycle is cut into segments on which the curve is smooth. Value and slope are sampled on panels in these segments,
+halved until they resolve the curve. Between two samples where the curve first rises and then falls there is a local
+maximum, found as the root of the slope. A breakpoint between segments is also a maximum if the curve peaks there in a
+kink or a jump. The derivative of a maximum by the design is the partial derivative at its place (envelope theorem); a
+maximum at a breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
 
 The motion defines the independent variable (place): the crank angle of a shaft, or the time of a swing.
 """
@@ -21,29 +21,29 @@ from ..quadrature import NODES, Samples, resolve, resolved_tail
 from .cycle_segments import Segments
 from .roots import find_roots
 
-_ROUGH = 1e-6  # greatest size of the last coefficients on a resolved panel, as a fraction of the curve's greatest size
-_DEEPEST = 8  # halvings of a panel
-_CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
-_SAME = 1e-7  # a flat top is not located better
+_ROUGH = 1e-6  # maximum of the last coefficients on a resolved panel, as a fraction of the curve's maximum
+_DEEPEST = 8  # maximum halvings of a panel
+_CONTINUOUS = 1e-11  # relative difference below which the curve is continuous at a breakpoint
+_SAME = 1e-7  # a flat top cannot be located more accurately
 _ON_EDGE = 1e-13
 _NODES = np.concatenate([[0.0], NODES, [1.0]])
 
 
 class Curve(Protocol):
-    """A curve of many designs, smooth on each segment of their cycles."""
+    """A curve for many designs, smooth on each segment of their cycles."""
 
     @property
     def numbers(self) -> int:
-        """Count of design numbers by which it has derivatives, 0 for none."""
+        """Number of design variables for derivatives, 0 for none."""
         ...
 
     def evaluate(
         self, row: IntArray, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
-        """Return the curve (p, k, 2 + v) and its sizes (p, k) at places (p, k) in segments.
+        """Return the curve (p, k, 2 + v) and its magnitudes (p, k) at places (p, k) in segments.
 
-        row: (p,), the designs. Value, slope and, with `gradients`, derivatives by the numbers; NaN without a curve.
-        probe: (p,), a place within each segment. rate: (p, v), derivatives of the places by the numbers.
+        row: (p,), the designs. Value, slope and, with `gradients`, derivatives by the numbers; NaN where there is no
+        curve. probe: (p,), a place within each segment. rate: (p, v), derivatives of the places by the numbers.
         """
         ...
 
@@ -54,9 +54,9 @@ class Curve(Protocol):
 
 @dataclass(frozen=True)
 class Maxima:
-    """Local maxima of n designs, highest first: values (n, k), -inf beyond the last, and places (n, k), NaN there.
+    """Local maxima for n designs, highest first: values (n, k), -inf beyond the last, and places (n, k), NaN there.
 
-    slopes: (n, k, v), by the design's numbers. size: (n,), greatest size of the curve that was sampled.
+    slopes: (n, k, v), by the design's numbers. size: (n,), maximum magnitude of the sampled curve.
     """
 
     values: Array
@@ -67,7 +67,10 @@ class Maxima:
 
 @dataclass(frozen=True)
 class _Tops:
-    """Local maxima: design, value, place, segment; end: -1 or 1 on the breakpoint at its start or end."""
+    """Local maxima: design, value, place, segment.
+
+    End: -1 or 1 if it is the breakpoint at the segment's start or end.
+    """
 
     row: IntArray
     value: Array
@@ -82,7 +85,7 @@ class _Tops:
 def find_maxima(
     curve: Curve, segments: Segments, fineness: Array, *, limit: int, counted: Mask | None = None, signed: bool = False
 ) -> Maxima:
-    """Return the highest local maxima of the size of a curve, or of its value if `signed`, for n designs.
+    """Return the highest local maxima of a curve's magnitude, or of its value if `signed`, for n designs.
 
     fineness: (n,), initial panels per unit of the place. limit: maxima per design; a single one is found faster.
     counted: (s,), segments that count.
@@ -104,7 +107,7 @@ def find_maxima(
 
 @dataclass(frozen=True)
 class _Search:
-    """A curve on segments; only live segments count. signed: whether its value counts, not its size."""
+    """A curve on segments; only live segments count. signed: whether its value counts instead of its magnitude."""
 
     curve: Curve
     segments: Segments
@@ -112,11 +115,11 @@ class _Search:
     signed: bool
 
     def judged(self, curve: Array) -> Array:
-        """Return the curve (..., c) with derivatives, negated where its size counts and its value is negative."""
+        """Return the curve (..., c) with derivatives, negated where its magnitude counts and its value is negative."""
         return curve if self.signed else np.asarray(np.where(curve[..., :1] < 0.0, -curve, curve))
 
     def inner_maxima(self, fineness: Array, limit: int) -> tuple[_Tops, _Tops, Array]:
-        """Return the maxima between breakpoints, each design's highest sample, and the curve's greatest size."""
+        """Return the maxima between breakpoints, each design's highest sample, and the curve's maximum magnitude."""
         row, probe, low, width, segment = self.segments.panels(fineness)
         counts = self.counted[segment]
         row, probe, low, width, segment = row[counts], probe[counts], low[counts], width[counts], segment[counts]
@@ -143,14 +146,16 @@ class _Search:
         bound = np.minimum(
             value[panel, at] + step * slope[panel, at], value[panel, at + 1] - step * slope[panel, at + 1]
         )
-        if limit == 1:  # a curve that rises and falls only once lies below both tangents; margin for other curves
+        if (
+            limit == 1
+        ):  # a curve that rises and falls only once lies below both tangents; the margin is for other curves
             bound_with_margin = bound + 0.5 * (bound - np.maximum(value[panel, at], value[panel, at + 1]))
             near = bound_with_margin >= highest[row[panel]]
             panel, at = panel[near], at[near]
         begin = place[panel, at], slope[panel, at], value[panel, at]
         end = place[panel, at + 1], slope[panel, at + 1]
         top, top_places = self.refined(row[panel], probe[panel], begin, end)
-        # On a kink rounding may give the slope of the other side: a root that near to a breakpoint moves with it.
+        # At a kink, rounding may give the slope from the other side: a root that close to a breakpoint moves with it.
         panel_segment = segment[panel]
         from_low, from_high = (
             top_places - self.segments.low[panel_segment],
@@ -164,7 +169,7 @@ class _Search:
     ) -> tuple[Array, Array]:
         """Return value and place of the maxima in brackets: roots of the slope.
 
-        begin, end: place and slope at both ends of the brackets; at the beginning also the value.
+        begin, end: place and slope at both ends of the brackets; at the beginning, the value as well.
         """
         place, rise, value = begin[0], begin[1], begin[2].copy()
 
@@ -177,7 +182,7 @@ class _Search:
         return value, find_roots(slope, (place, rise), end)
 
     def breakpoint_maxima(self) -> _Tops:
-        """Return the breakpoints that are maxima: kinks, jumps, and ends where the curve stops."""
+        """Return the breakpoints that are maxima: kinks, jumps, and ends at which the curve stops."""
         segments, live = self.segments, self.counted
         n = len(live)
         edge = np.full((n + 1, 2, 2), -np.inf)  # the last one belongs to no segment
@@ -220,7 +225,7 @@ class _Search:
 
 
 def _ranked(tops: _Tops) -> _Tops:
-    """Return maxima by design, highest first; only the first of those at one place."""
+    """Return maxima by design, highest first; only the first of several at one place."""
     tops = tops.select(np.lexsort((-tops.value, tops.place, tops.row)))
     again = (tops.row[1:] == tops.row[:-1]) & (np.abs(np.diff(tops.place)) < _SAME) & (np.diff(tops.segment) == 0)
     tops = tops.select(np.concatenate([[True], ~again]) if len(tops.row) else np.zeros(0, dtype=bool))

@@ -21,19 +21,19 @@ from .turn_peaks import TurnTask, find_in_turns
 from .two_turns import highest
 
 ANGLES = 128
-"""Sampled angles per turn. Alone they miss the higher of two close peaks on 3 of 750,000 random machines with all kinds
-of loads (64 angles: on 19), with errors up to 2e-4; hence the finer row of samples around near-highest tops."""
+"""Sampled angles per turn. Alone, they miss the higher of two close peaks on 3 of 750,000 random machines with all
+kinds of loads (64 angles: on 19), with errors up to 2e-4; hence the finer row of samples around near-highest peaks."""
 STORED_PEAKS = 6
 """Peaks stored per design, highest first."""
 
 
 @dataclass(frozen=True)
 class Peaks:
-    """Local peaks of n designs, highest first.
+    """Local peaks for n designs, highest first.
 
-    values: (n, k), SI, -inf beyond the last peak; where friction locks the design one peak of +inf, at no angle (NaN).
-    angles: (n, k), crank angles in [0, 2 pi), rad; in [0, 4 pi) for a cycle of two turns.
-    gradients: (n, k, v), by the design variables; None unless asked for.
+    values: (n, k), SI, -inf beyond the last peak; if friction locks the design, one peak of +inf without an angle
+    (NaN). angles: (n, k), crank angles in [0, 2 pi), rad; in [0, 4 pi) for a two-turn cycle. gradients: (n, k, v), by
+    the design variables; None unless requested.
     """
 
     values: Array
@@ -53,11 +53,11 @@ def find_peaks(
 ) -> Peaks:
     """Return the local peaks of a signal for designs (n, 3 + k): crank, rod, offset, m, each rotating fully.
 
-    The k further columns are the values of the machine's varying numbers.
+    The k additional columns are the values of the machine's variables.
 
-    during: stroke that restricts the torque search, "outward stroke" or "inward stroke"; the position error counts over
-    the window of the mechanism's tolerances. limit: peaks returned per design. angles: samples per turn.
-    `shaft_statistics` describes how several cylinders and a speed profile count.
+    during: stroke to which the torque search is limited, "outward stroke" or "inward stroke"; the position error counts
+    over the window in the mechanism's tolerances. limit: peaks returned per design. angles: samples per turn.
+    `shaft_statistics` describes how several cylinders and a speed profile are included.
     """
     designs = turning(designs)
     if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:

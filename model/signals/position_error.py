@@ -1,4 +1,4 @@
-"""First-order influence of errors of dimensions and crank angle on the slider position.
+"""First-order influence of errors in dimensions and crank angle on the slider position.
 
 dx = (dx/dr) dr + (dx/dl) dl + (dx/de) de + (dx/dtheta) dtheta, with
 dx/dr = cos(theta - phi) / cos(phi), dx/dl = 1 / cos(phi), dx/de = -tan(phi),
@@ -6,15 +6,15 @@ dx/dtheta = -r sin(theta - phi) / cos(phi).
 Source of the approach: Chetana R. and Vineeth Kumar T.V., "Analysis of Position Error in Offset Slider Crank
 Mechanism", Eq. (3), whose offset is the mirror image of the one here.
 
-Clearances. A pin with radial clearance c lets the two centres of its joint lie apart by any vector u with |u| <= c. At
-the crank pivot and the crank pin, u moves the end A of the rod; at the slider pin, the other end. To first order
-dx = u . n / cos(phi), n the direction of the rod. The greatest value is c / cos(phi), with the contact along the rod,
-where the force of a massless rod also holds it. This is exact and not only first order: by the triangle inequality the
-distance of the centres at both ends lies between l - c and l + c, and every distance in between occurs. So the
-clearance of a pin is a tolerance of the rod, and that of the guide, across its line, a tolerance of the offset. In the
-root-sum-square each clearance is a separate source, with its c as a limit like the tolerances. A pin that the force
-presses to either side scatters more widely, with a standard deviation of c instead of a third of it. The Monte Carlo
-simulation shows the effect.
+Clearances. A pin with radial clearance c lets the two centres of its joint be apart by any vector u with |u| <= c. At
+the crank pivot and the crank pin, u moves the end A of the rod; at the slider pin, it moves the other end. To first
+order dx = u . n / cos(phi), where n is the direction of the rod. The maximum is c / cos(phi), with the contact along
+the rod, where the force of a massless rod also holds it. This is exact rather than only first order. By the triangle
+inequality, the distance between the outer centres lies between l - c and l + c, and every distance in between occurs.
+So the clearance of a pin acts as a tolerance of the rod, and that of the guide, across its line, as a tolerance of the
+offset. In the root-sum-square each clearance is a separate source whose limit is c, like a tolerance. A pin that the
+force presses to either side scatters more widely, with a standard deviation of c instead of a third of it. The Monte
+Carlo simulation shows the effect.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Roots of many functions in brackets, by secants with the weights of Illinois (Dowell and Jarratt, BIT 11, 1971)."""
+"""Roots of many functions in brackets, by secants with Illinois weights (Dowell and Jarratt, BIT 11, 1971)."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _CONVERGED = 1e-15
 def find_roots(
     function: Callable[[IntArray, Array], Array], begin: tuple[Array, Array], end: tuple[Array, Array]
 ) -> Array:
-    """Return where functions fall through zero in brackets, (n,).
+    """Return the places in brackets, (n,), where functions fall through zero.
 
-    function: takes the brackets (m,) and a place in each (m,), returns the values there (m,). begin, end: place and
-    value, (n,), at both ends of the brackets; the value is positive at the beginning and not at the end.
+    function: takes the brackets (m,) and a place in each (m,), and returns the values there (m,). begin, end: place and
+    value, (n,), at both ends of the brackets; the value is positive at the beginning and not positive at the end.
     """
     (a, rise), (b, fall) = ((place.copy(), value.copy()) for place, value in (begin, end))
     root = a.copy()

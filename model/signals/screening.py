@@ -1,11 +1,11 @@
-"""Peak torque and greatest position error of very many designs together, with gradients.
+"""Peak torque and maximum position error for very many designs together, with gradients.
 
 The innermost loop is over designs, so that every operation is a vector instruction. All designs share the crowded
-angles, at which `coarse_peaks` samples the curves and finds the cells of the two highest local maxima; these are
-refined by the formulas of `peaks`. The result equals that of `peaks.find_peaks` to rounding where the curve is smooth.
-Where a load changes at the dead centres, a peak that sits on the kink there is found only to the spacing of the angles.
-This suffices for choosing designs; `peaks` evaluates the results. Tables, loads with their own formula and partial
-strokes are not handled here.
+angles, at which `coarse_peaks` samples the curves and finds the cells of the two highest local maxima. These are
+refined with the formulas from `peaks`. The result equals that of `peaks.find_peaks` to rounding if the curve is smooth.
+If a load changes at the dead centres, a peak at the kink there is found only to the spacing of the angles. This
+suffices for choosing designs; `peaks` evaluates the results. Tables, loads with their own formula and partial strokes
+are not supported here.
 """
 
 from __future__ import annotations
@@ -36,20 +36,20 @@ from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal
 
 ANGLES = 64
-"""Sampled angles per turn if thousands of designs are only sorted."""
+"""Sampled angles per turn if thousands of designs are only ranked."""
 
 _STEPS = 7
-_CONVERGED = 3e-7  # a step of the refinement, rad, whose cube does not show in the value
+_CONVERGED = 3e-7  # a refinement step, rad, whose cube does not show in the value
 _TORQUE, _WORST, _RSS = int(Signal.TORQUE), int(Signal.POSITION_ERROR), int(Signal.POSITION_ERROR_RSS)
 _FLAT = 1e-13
 
 
 @dataclass(frozen=True)
 class Screened:
-    """Greatest value over the cycle: values (n,), gradients (n, 3 + k) or None.
+    """Maximum over the cycle: values (n,), gradients (n, 3 + k) or None.
 
-    angles: crank angles of the greatest value (n,), rad, or (0,). still: greater size of the drive torque at the dead
-    centres (n,), N m, or (0,). Where a load changes there, a peak that does not exceed `still` may be a kink.
+    angles: crank angles of the maximum (n,), rad, or (0,). still: larger magnitude of the drive torque at the two dead
+    centres (n,), N m, or (0,). If a load changes there, a peak that does not exceed `still` may be at a kink.
     """
 
     values: Array
@@ -59,7 +59,7 @@ class Screened:
 
 
 class Screening(NamedTuple):
-    """Subject of a screening: signals, angles per turn, whether these are crowded, and the machine's numbers.
+    """Input of a screening: signals, angles per turn, whether these are crowded, and the machine's numbers.
 
     columns: slots of the raw numbers that designs set.
     """
@@ -74,7 +74,7 @@ class Screening(NamedTuple):
 
 
 class ScreenedArrays(NamedTuple):
-    """Fields of `Screened` for all signals, first axis; without rows if not requested."""
+    """Fields of `Screened` for all signals (first axis); without rows if not requested."""
 
     values: Table
     angles: Table
@@ -83,7 +83,7 @@ class ScreenedArrays(NamedTuple):
 
 
 class _Lanes(NamedTuple):
-    """Derived designs of a block, one a lane, with kappa of the crowded angle, and the sense of rotation."""
+    """Derived designs in a block, one per lane, with kappa of the crowded angle and the sense of rotation."""
 
     block: Any
     kappa: Any
@@ -91,7 +91,7 @@ class _Lanes(NamedTuple):
 
 
 class _Tops(NamedTuple):
-    """Values of maxima and their place: at the crowded angle, or at the crank angle."""
+    """Values of maxima and their location: the crowded angle or the crank angle."""
 
     value: Any
     sine: Any
@@ -100,7 +100,7 @@ class _Tops(NamedTuple):
 
 @memoise_by_machine
 def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
-    """Whether `screen` handles this signal of this mechanism."""
+    """Whether `screen` supports this signal for this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
     watch, shaft = cycle_window(mechanism, kind, during=during), is_shaft(mechanism)
@@ -120,7 +120,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
 
 @analytic
 def _value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
-    """Value of a signal, its load taken from the stroke that the slider is in."""
+    """Value of a signal, with the load for the stroke that the slider is in."""
     outward = d.branch.real * m.x_1.real * direction > 0.0
     load = smooth_load(m, d, d.outward_force if outward else d.inward_force)
     return signal(kind, sine, cosine, m, d, load)
@@ -145,14 +145,14 @@ def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direct
 
 @analytic
 def _step(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any) -> Any:
-    """Value, and slope over the crowded angle."""
+    """Value and slope over the crowded angle."""
     z = _curve(kind, complex(sine, cosine * STEP), complex(cosine, -sine * STEP), kappa, d, direction)
     return z.real, z.imag * (1.0 / STEP)
 
 
 @analytic
 def _slopes(kind: Any, sine: Any, cosine: Any, lanes: _Lanes, value: Any, slope: Any) -> Any:
-    """Value and slope of every lane at its own angle."""
+    """Value and slope for every lane at its own angle."""
     block, kappa, direction = lanes
     if kind == _TORQUE:
         for j in range(LANES):
@@ -173,7 +173,7 @@ def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
 
 @analytic
 def _partials(kind: Any, tops: _Tops, block: Any, direction: Any, slope: Any) -> Any:
-    """Derivatives of all lanes, each at the crank angle of its maximum."""
+    """Derivatives for all lanes, each at the crank angle of its maximum."""
     sine, cosine = tops.sine, tops.cosine
     if kind == _TORQUE:
         for j in range(LANES):
@@ -188,14 +188,14 @@ def _partials(kind: Any, tops: _Tops, block: Any, direction: Any, slope: Any) ->
 
 @analytic
 def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops) -> Any:
-    """Move every lane to its local maximum within one angle on either side, from the vertex of the parabola.
+    """Move every lane to its local maximum within one angle on either side, starting at the vertex of the parabola.
 
     top: place, vertex and curvature of `coarse_peaks.two_highest`. work: workspace (12, lanes). A lane that has settled
-    stays where it is while others take more steps, so its result does not depend on them.
+    stays there while others take more steps, so its result does not depend on them.
     """
     best, sines, cosines = tops
     h = 2.0 * math.pi / tau.shape[1]
-    share = 0.5 if kind == _RSS else 1.0  # `coarse_peaks` samples its square, which curves twice as much
+    share = 0.5 if kind == _RSS else 1.0  # `coarse_peaks` samples its square, whose curvature is twice as large
     for j in range(LANES):
         at = max(int(top[0, j]), 0)
         work[4, j], work[5, j], work[6, j] = tau[0, at], tau[1, at], top[1, j] * h
@@ -225,12 +225,11 @@ def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops
             trial = t - rise / bend
             middle = 0.5 * (floor + ceiling)
             trial = trial if (trial > floor) & (trial < ceiling) else middle
-            # Such a short step is taken without checking again: its square still counts in the value, its cube does
-            # not.
+            # Such a short step is taken without another check: its square still affects the value, its cube does not.
             goes_on = moves if (abs(trial - t) > _CONVERGED) | (step == 0) else 0.0
             ahead = 0.0 if goes_on > 0.0 else trial - t
             value_here += 0.5 * rise * ahead
-            # On the flat top the later angle is the better.
+            # On a flat top, the later angle is better.
             better = (moves > 0.0) & (value_here >= peak - _FLAT * abs(peak))
             best[j] = value_here if better else peak
             sines[j] = new_sine + new_cosine * ahead if better else old_sine
@@ -244,7 +243,7 @@ def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops
 
 @analytic
 def _still(d: Any) -> Any:
-    """Greater size of the torque at the two dead centres, where loads along the stroke need no torque."""
+    """Larger magnitude of the torque at the two dead centres, where loads along the stroke need no torque."""
     outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
     sine, cosine = outer, d.branch * root(1.0 - outer * outer)
     at_outer = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
@@ -255,9 +254,10 @@ def _still(d: Any) -> Any:
 
 @analytic
 def _higher(kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: Any, found: Any, peak: _Tops) -> None:
-    """Fill the higher of each lane's two refined maxima.
+    """Fill in the higher of each lane's two refined maxima.
 
-    tops: `top` of `coarse_peaks.two_highest`; rivals: whether any lane has a second. found: workspace (2, 3, lanes).
+    tops: `top` from `coarse_peaks.two_highest`; rivals: whether any lane has a second maximum. found: workspace (2, 3,
+    lanes).
     """
     kappa = lanes.kappa
     for i in range(2 if rivals else 1):
@@ -276,7 +276,7 @@ def _higher(kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: An
 def _fill_gradients(task: Screening, lanes: _Lanes, raw: Any, peaks: Any, workspace: Any, out: Any) -> None:
     """Fill the derivatives (signals, designs, columns) of peaks (signals, 3, lanes).
 
-    raw: numbers of all lanes. workspace: complex raw numbers and derived designs, and derivatives of the lanes.
+    raw: numbers for all lanes. workspace: complex raw numbers and derived designs, and derivatives for the lanes.
     """
     stepped, block, slope = workspace
     for i in range(raw.shape[0]):
@@ -353,13 +353,13 @@ def screen(
     angles: int = ANGLES,
     crowd: bool = True,
 ) -> tuple[Screened, ...]:
-    """Return the greatest values of torque or position errors for designs (n, 3 + k): crank, rod, offset, m.
+    """Return the maxima of torque or position errors for designs (n, 3 + k): crank, rod, offset, m.
 
-    The k further columns are the values of the machine's varying numbers.
+    The k additional columns are the values of the machine's variables.
 
-    kinds: signals that `screens` accepts; evaluated together, they share the motion. places, still: whether to return
-    these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples where the
-    linkage comes close to locking.
+    kinds: signals that `screens` accepts; they are evaluated together and share the motion. places, still: whether to
+    return these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples where
+    the linkage is close to locking.
     """
     designs = turning(designs)
     n, signals = len(designs), len(kinds)

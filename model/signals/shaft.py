@@ -1,4 +1,4 @@
-"""A rotating crankshaft: breakpoints of all its cylinders, and its curves between them."""
+"""A rotating crankshaft: breakpoints of all its cylinders, and its curves between these."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
-_NEAR = 1e-9  # rad: a breakpoint this near to the start of one of two turns may belong to either
-_CROSSED = 24  # panels of a turn in which a curve may change its sign, of 16 samples each
+_NEAR = 1e-9  # rad: a breakpoint this close to the start of one of two turns may belong to either
+_CROSSED = 24  # panels per turn in which a curve may change sign, with 16 samples each
 _SIDE_STEP = 1e-12  # rad
 
 
 class Shaft:
-    """Designs (n, 3 + k) of a machine with cylinders or a profile, followed by one curve.
+    """Designs (n, 3 + k) of a machine with cylinders or a profile, and one curve along their cycles.
 
     kind: signal, or curve of `shaft_curves`. members: cylinders to be summed. during: stroke of the first cylinder.
     """
@@ -120,7 +120,7 @@ class Shaft:
 
     @cached_property
     def fineness(self) -> Array:
-        """Panels of a turn (n,) to begin with: more for designs near locking and for rough profiles."""
+        """Initial panels per turn (n,): more for designs near locking and for rough profiles."""
         r, l, e = self._designs[:, :3].T
         crowd = np.array([crowding(*lengths) for lengths in zip(r, l, e, strict=True)])
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
@@ -143,7 +143,7 @@ class Shaft:
     def evaluate(
         self, row: IntArray, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
-        """Return the curve (p, k, 2 + v) and its sizes (p, k) at angles (p, k) of segments.
+        """Return the curve (p, k, 2 + v) and its magnitudes (p, k) at angles (p, k) in segments.
 
         Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles by the
         design.
@@ -161,7 +161,7 @@ class Shaft:
         return ShaftCurve(self.kind, self.members, self.vector, self.rubbing)
 
     def _touch(self, member: int) -> ShaftCurve:
-        """Return the curve with the sign of the force on a cylinder's guide."""
+        """Return the curve that has the sign of the force on a cylinder's guide."""
         return ShaftCurve(TOUCH, np.array([member]), False, self.rubbing)
 
     def _items(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
@@ -171,7 +171,7 @@ class Shaft:
         return Evaluations(contiguous(row), contiguous(probe), contiguous(angle), contiguous(rate), contiguous(half))
 
     def _evaluate(self, curve: ShaftCurve, items: Evaluations, gradients: bool = False) -> CurveArrays:
-        """Return a curve; where all forces vanish together, that beside that angle."""
+        """Return a curve; where all forces vanish together, its value beside that angle."""
         evaluated = self._run_kernel(curve, items, gradients)
         lost = np.asarray(~np.isfinite(evaluated.curve).all(axis=(1, 2)))
         if lost.any():
@@ -203,7 +203,7 @@ class Shaft:
         return self._cut_at_kinks(joined(parts))
 
     def _cut_at_kinks(self, breaks: Breaks) -> Breaks:
-        """Return breakpoints with those where friction changes sides, between which the curve is smooth."""
+        """Return breakpoints together with those at which friction changes sides, between which the curve is smooth."""
         parts = [breaks]
         for member in self.members if self.rubbing else ():
             touch = self._touch(member)
@@ -215,7 +215,7 @@ class Shaft:
         return joined(parts)
 
     def _breaks_of_half(self, half: int) -> Breaks:
-        """Return the breakpoints of every cylinder in a turn of two."""
+        """Return the breakpoints of every cylinder in one of two turns."""
         cuts = breakpoints_of(self._plain[half], self._loads[half], self._watch, rubbing=False)
         places = np.arange(cuts.angle.shape[1])
         row, place = np.nonzero((places < cuts.many[:, None]) & self.drives[:, None])
@@ -245,9 +245,9 @@ class Shaft:
     def crossings(
         self, breaks: Breaks, curve: Callable[[IntArray, Array, Array], Array], code: int, member: int = 0
     ) -> Breaks:
-        """Return the angles between neighbouring samples at which a curve of designs changes its sign.
+        """Return the angles between neighbouring samples at which a curve changes sign.
 
-        curve: function of designs (p,), angles in their segments (p,) and angles (p, k), rad; returns (p, k).
+        curve: function of designs (p,), angles in their segments (p,) and angles (p, k), rad, that returns (p, k).
         """
         segments = segments_of(breaks, self.period)
         row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CROSSED))
@@ -266,7 +266,10 @@ class Shaft:
         return Breaks(row[panel], at, zeros + member, zeros, zeros + code, np.zeros(len(panel)), zeros)
 
     def rates(self, cuts: IntArray, probe: Array) -> Array:
-        """Return the derivatives (c, v) of breakpoint angles by the design; probe: angles in the segments behind."""
+        """Return the derivatives (c, v) of breakpoint angles by the design.
+
+        Probe: angles in segments that begin there.
+        """
         breaks = self.breaks
         code, row = breaks.code[cuts], breaks.row[cuts]
         out = np.zeros((len(cuts), self.numbers))

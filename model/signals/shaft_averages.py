@@ -1,7 +1,7 @@
-"""Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives: Gauss on resolved panels.
+"""Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives, by Gauss quadrature.
 
-In means over time every crank angle has the weight 1 / p, where p is the speed profile. A panel is resolved if the
-curve T is, and for the mean square over time if T / sqrt(p) is too.
+In means over time, every crank angle has the weight 1 / p, where p is the speed profile. A panel is resolved if the
+curve T is and, for the mean square over time, if T / sqrt(p) is, too.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .shaft_segments import segments_of
 
 MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
 """Rows of `Means`: mean and mean square over the crank angle, mean square over time."""
-_RESOLVED = 1e-12  # greatest size of the last coefficients on a resolved panel, relative to the curve's greatest size
+_RESOLVED = 1e-12  # maximum of the last coefficients on a resolved panel, relative to the curve's maximum
 
 
 @dataclass(frozen=True)
 class Means:
-    """Means (3, n) in the rows above, and their derivatives (3, n, v) or None. NaN where friction locks a design.
+    """Means (3, n) in the rows above, and their derivatives (3, n, v) or None. NaN where friction locks the design.
 
     nothing: (n,), whether the cylinders cancel to within rounding.
     """
@@ -75,7 +75,10 @@ def _time_weight(shaft: Shaft, angle: Array) -> Array | None:
 
 
 def _is_rough(value: Array, size: Array, sizes: Array, row: IntArray, width: Array) -> Mask:
-    """Return which panels (p,) are not resolved, from values and sizes (p, 16); raise the sizes (n,) of the designs."""
+    """Return which panels (p,) are not resolved, from values and magnitudes (p, 16).
+
+    Raises the maxima (n,) of the designs.
+    """
     np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
     rough: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
     return rough

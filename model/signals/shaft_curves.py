@@ -1,9 +1,10 @@
 """Curves for a crankshaft: for all its cylinders or one, at constant speed or along a speed profile.
 
-Each cylinder is a single crank at the angle theta + lead, seen in axes that turn with its bank. Speed and acceleration
-of the shaft are w p and w^2 p p' of the profile p at the shaft's own angle, a constant acceleration added. Every curve
-is the size of a vector with two components, or of the first component; components add up over the cylinders. All of it
-is complex, so that one compiled formula gives values, slopes over the crank angle and derivatives by the design.
+Each cylinder is a single crank at the angle theta + lead, in axes that are rotated with its bank. Speed and
+acceleration of the shaft are w p and w^2 p p', where p is the profile at the shaft's own angle; a constant acceleration
+is added. Every curve is the magnitude of a vector with two components, or its first component; components add up over
+the cylinders. All numbers are complex, so one compiled formula gives values, slopes over the crank angle and
+derivatives by the design.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ from ..machine.raw import Loads
 from .signals import Signal, design_motion, guide_lever
 
 TOUCH, WORK = 100, 101
-"""Curves in addition to signals: one with the sign of the guide's force (`rubbing.touch`), and those of `turn_work`
-from `WORK` on, in their order."""
+"""Curves in addition to signals: one with the sign of the guide force (`rubbing.touch`), and those of `turn_work` from
+`WORK` on, in order."""
 CURVES = 5
 VECTORS = (
     Signal.PIVOT_FORCE,
@@ -37,7 +38,7 @@ VECTORS = (
     Signal.SHAKING_FORCE,
     Signal.ROCKING_COUPLE,
 )
-"""Signals that are the size of a vector; the others are one component, with its sign."""
+"""Signals that are the magnitude of a vector; the others are one component, with its sign."""
 _TORQUE, _PIVOT, _CRANK_PIN, _SLIDER_PIN, _GUIDE, _GUIDE_MOMENT, _POWER, _LINE, *_OTHERS = map(int, Signal)
 _SPEED, _ACCELERATION, _JERK, _, _, _INERTIA, _SHAKING_FORCE, _SHAKING_MOMENT, _ROCKING_COUPLE = _OTHERS
 _ROW_SPEED, _ROW_ACCELERATION, _ROW_X, _ROW_Y = (
@@ -46,7 +47,7 @@ _ROW_SPEED, _ROW_ACCELERATION, _ROW_X, _ROW_Y = (
 
 
 class Axes(NamedTuple):
-    """The cylinders (m,): lead of each crank angle over the shaft's, rad, bank by its cosine and sine, place, m."""
+    """The cylinders (m,): lead of each crank angle over the shaft angle, rad, cosine and sine of bank, position, m."""
 
     lead: Row
     cosine: Row
@@ -55,10 +56,10 @@ class Axes(NamedTuple):
 
 
 class Evaluations(NamedTuple):
-    """Arguments of p evaluations: design, shaft angle that identifies the segment, angles, their rates, half.
+    """Arguments for p evaluations: design, shaft angle that identifies the segment, angles, their rates, half.
 
     row, probe: (p,). angle: (p, k), rad. rate: (p, v), derivative of the angle by each number of the design, if
-    derivatives are needed. half: (p, m), half of a cycle of two turns in which each cylinder is.
+    derivatives are needed. half: (p, m), half of a two-turn cycle that each cylinder is in.
     """
 
     row: Integers
@@ -71,7 +72,7 @@ class Evaluations(NamedTuple):
 class CurveArrays(NamedTuple):
     """Results. curve: (p, k, 2 + v), value, slope over the crank angle and, if needed, derivatives by the design.
 
-    size: (p, k), sum of the cylinders' sizes. outward: (p, m), 1 where the slider moves outward.
+    size: (p, k), sum of the cylinders' magnitudes. outward: (p, m), 1 if the slider moves outward.
     """
 
     curve: Cube
@@ -80,7 +81,10 @@ class CurveArrays(NamedTuple):
 
 
 class Blocks(NamedTuple):
-    """Derived designs of h halves. plain: (n h, rows, 1). stepped: (n h (1 + v), rows, 1), the first without a step."""
+    """Derived designs for h halves.
+
+    plain: (n h, rows, 1). stepped: (n h (1 + v), rows, 1), the first without a step.
+    """
 
     plain: Cube
     stepped: ComplexCube
@@ -88,7 +92,7 @@ class Blocks(NamedTuple):
 
 @analytic
 def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
-    """Return the components of a signal that follows from the joint forces alone, or of a force of `turn_work`."""
+    """Return the components of a signal that follows from the joint forces alone, or of a force in `turn_work`."""
     zero = 0.0 * d.r
     if kind in (_PIVOT, WORK + 2):
         return f.pivot_x, f.pivot_y
@@ -105,7 +109,7 @@ def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
 
 @analytic
 def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> Any:
-    """Return the components of a signal without joint forces. rate: acceleration's slope over the crank angle."""
+    """Return the components of a signal without joint forces. rate: slope of the acceleration over the crank angle."""
     zero = 0.0 * d.r
     if kind == _SPEED:
         return m.x_1 * d.speed, zero
@@ -124,7 +128,7 @@ def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> An
 def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: Any, rate: Any) -> Any:
     """Return one cylinder's components of a curve.
 
-    place: its crank angle, and the segment there. rate: acceleration's slope over the crank angle, rad/s^2.
+    place: its crank angle, and the segment there. rate: slope of the acceleration over the crank angle, rad/s^2.
     """
     zero = 0.0 * d.r
     theta, segment = place
@@ -172,7 +176,7 @@ class Crankshaft(NamedTuple):
 
 
 class _Workspace(NamedTuple):
-    """Work space. real, stepped: one cylinder's numbers. piece, shift, sides: of the members, in a segment."""
+    """Work space. real, stepped: one cylinder's numbers. piece, shift, sides: those of the members, in a segment."""
 
     real: Table
     stepped: ComplexTable
@@ -183,7 +187,7 @@ class _Workspace(NamedTuple):
 
 @analytic
 def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: Any) -> None:
-    """Fill `out` with numbers of cylinder k: speed, acceleration (p = ratio, p' = slope), gravity in its axes."""
+    """Fill `out` with the numbers of cylinder k: speed, acceleration (p = ratio, p' = slope), gravity in its axes."""
     for row in range(out.shape[0]):
         out[row, 0] = source[row, 0]
     speed, x, y = source[_ROW_SPEED, 0], source[_ROW_X, 0], source[_ROW_Y, 0]
@@ -197,7 +201,7 @@ def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: 
 def _enter_segment(
     curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, space: _Workspace, out: Any
 ) -> None:
-    """Fix strokes, pieces of loads and signs of the members in the segment of evaluation p."""
+    """Fix strokes, load pieces and signs of the members in the segment of evaluation p."""
     watch = CycleWindow(0, 0.0, 1.0, False)
     ratio, slope, _, _ = speed_ratio_at(items.probe[p], shaft.pace)
     for i in range(curve.members.shape[0]):
@@ -218,9 +222,9 @@ def _enter_segment(
 def _sum_members(
     curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, p: int, place: Any, space: _Workspace, out: Any
 ) -> Any:
-    """Return the curve and its size at one angle of evaluation p.
+    """Return the curve and its magnitude at one angle of evaluation p.
 
-    place: shaft angle, its imaginary step, p with three derivatives there, and the number of the stepped design.
+    place: shaft angle, its imaginary step, p with three derivatives there, and the index of the stepped design.
     """
     theta, step, (p_0, p_1, p_2, p_3), v = place
     axes, sides, numbers = shaft.axes, space.sides, shaft.blocks.stepped.shape[0] // max(1, shaft.blocks.plain.shape[0])
@@ -252,7 +256,7 @@ def _sum_members(
 
 @seldom_kernel
 def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: CurveArrays) -> None:
-    """Fill `out` with a curve of designs, added up over its members."""
+    """Fill `out` with a curve for each design, added up over its members."""
     rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first_turn.kind.shape[0]
     real, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
     space = _Workspace(
@@ -275,7 +279,7 @@ def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: C
 def cut_rates(
     chosen: Integers, angle: Row, code: Integers, number: Row, load: Integers, stepped: ComplexCube, out: Table
 ) -> None:
-    """Fill `out` (p, v) with the derivatives of breakpoints, at own angles of their cylinders, by the design."""
+    """Fill `out` (p, v) with the derivatives of breakpoints, at the cylinders' own angles, by the design."""
     cuts = Cuts(angle, code, number, load)
     for p in range(chosen.shape[0]):
         for v in range(out.shape[1]):

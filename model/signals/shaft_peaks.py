@@ -10,14 +10,15 @@ from .shaft import Shaft
 from .shaft_segments import segments_of
 
 NOTHING = 1e-12
-"""Fraction of the cylinders' individual sizes below which the total counts as zero: they cancel up to rounding."""
+"""If the total is below this fraction of the cylinders' individual magnitudes, it counts as zero: they cancel up to
+rounding."""
 
 
 def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
-    """Return values, crank angles (n, kept) and derivatives of the highest local maxima of the curve's size.
+    """Return values, crank angles (n, kept) and derivatives for the highest local maxima of the curve's magnitude.
 
-    stroke: whether only the outward stroke counts, or only the inward one; None for both. The value is infinite where
-    friction locks a design.
+    stroke: whether only the outward stroke, or only the inward stroke, counts; None for both. The value is infinite
+    where friction locks the design.
     """
     segments = segments_of(shaft.breaks, shaft.period)
     live = None if stroke is None else shaft.outward(segments) == stroke

@@ -1,4 +1,4 @@
-"""Breakpoints of many crankshafts in flat lists, and the segments between them."""
+"""Breakpoints of many crankshafts as flat lists, and the segments between them."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from ..machine.two_turns import TURN
 from .cycle_segments import Segments
 
 FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4
-"""Codes of a breakpoint that no design moves, and of those where a sign changes: that of a guide's force, of the torque
-through the gear, and of the power from the supply."""
-_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
+"""Codes of a breakpoint that no design moves, and of breakpoints where a sign changes: that of a guide force, of the
+torque through the gear, and of the supply power."""
+_SHORTEST = 1e-13  # rad: breakpoints closer than this count as one
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Breaks:
 
 
 def joined(parts: list[Breaks]) -> Breaks:
-    """Return the breakpoints of several lists."""
+    """Return the breakpoints of several lists as one."""
     columns = zip(*((p.row, p.angle, p.member, p.half, p.code, p.number, p.load) for p in parts), strict=True)
     return Breaks(*(np.concatenate(column) for column in columns))
 

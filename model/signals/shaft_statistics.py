@@ -1,8 +1,9 @@
-"""Peaks and averages of a machine treated as a shaft: of sums, and of one cylinder.
+"""Peaks and averages of a machine treated as a shaft: of totals, and of single cylinders.
 
 Torque and power, moving inertia, shaking force, moment and rocking couple are totals of all cylinders. Joint forces and
-slider motion are those of the cylinder with the greatest value, its crank angle counted from its own slider line.
-Without a profile, cylinders with equal gravity have equal values. Geometry depends on neither cylinders nor profile.
+slider motion are those of the cylinder with the largest value, whose crank angle is counted from its own slider line.
+Without a profile, cylinders with equal gravity have equal values. Geometry depends neither on cylinders nor on the
+profile.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ _STROKES = {"cycle": None, "outward stroke": True, "inward stroke": False}
 
 
 def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
-    """Return machines of one crank at constant speed with the same highest peak as the shaft, if any."""
+    """Return single-crank machines at constant speed that have the same highest peak as the shaft, if there are any."""
     if kind in _GEOMETRY:
         return (single_cylinder(mechanism),)
     banked = any(cylinder.bank for cylinder in cylinders_of(mechanism))
@@ -57,7 +58,7 @@ def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechan
 def shaft_signal_peaks(
     mechanism: Mechanism, kind: Signal, designs: Array, *, during: str, gradients: bool, limit: int
 ) -> PeakArrays:
-    """Return values, angles (n, kept) and derivatives of the highest local peaks of a signal; see `find_peaks`.
+    """Return values, angles (n, kept) and derivatives for the highest local peaks of a signal; see `find_peaks`.
 
     NaN for several cylinders over one stroke, and for a rocking couple of cylinders in one plane.
     """
@@ -87,7 +88,7 @@ def shaft_signal_peaks(
 
 
 def highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
-    """Return the highest of several lists of peaks (n, k), as many as each has."""
+    """Return the highest among several lists of peaks (n, k), as many as each has."""
     if len(parts) == 1:
         return parts[0]
     limit = parts[0][0].shape[1]
@@ -105,7 +106,7 @@ def shaft_signal_averages(
 ) -> tuple[Array, Array | None]:
     """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `average`.
 
-    The mean of a signal judged by its size is NaN, except for the reflected inertia.
+    The mean of a signal judged by its magnitude is NaN, except for the reflected inertia.
     """
     members = tuple(range(cylinder_count(mechanism)))
     averages, slopes = _averages(mechanism, [int(kind)], designs, members, gradients)
@@ -126,7 +127,10 @@ def shaft_signal_averages(
 def _averages(
     mechanism: Mechanism, kinds: Sequence[int], designs: Array, members: tuple[int, ...], gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return `Averages` (3, n, c) of curves, NaN where friction locks, and their derivatives (3, n, c, 3 + k)."""
+    """Return `Averages` (3, n, c) of curves and their derivatives (3, n, c, 3 + k).
+
+    NaN where friction locks the design.
+    """
     shape = 3, len(designs), len(kinds)
     values, slopes = np.empty(shape), np.empty((*shape, designs.shape[1])) if gradients else None
 
@@ -149,7 +153,7 @@ def _averages(
 
 
 def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[Array, Array | None]:
-    """Return the means (n, 5) of `turn_work`, added up over the cylinders, and their derivatives (n, 5, 3 + k)."""
+    """Return the means (n, 5) from `turn_work`, added up over the cylinders, and their derivatives (n, 5, 3 + k)."""
     mean = np.zeros((len(designs), CURVES))
     slopes = np.zeros((len(designs), CURVES, designs.shape[1])) if gradients else None
     for member in range(cylinder_count(mechanism)):
@@ -170,7 +174,7 @@ def mean_speed_ratio(mechanism: Mechanism) -> float:
 
 @memoise_by_machine
 def greatest_speed_ratio(mechanism: Mechanism) -> float:
-    """Return the greatest speed over the crank angle divided by its mean; 1 without a profile."""
+    """Return the maximum speed over the crank angle divided by its mean; 1 without a profile."""
     profile = mechanism.speed_profile
     if profile is None:
         return 1.0

@@ -1,4 +1,4 @@
-"""Curves that remain in total from the cylinders of a crankshaft, for any dimensions."""
+"""Curves whose sum over the cylinders of a crankshaft does not vanish for all dimensions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SAME = 1e-9  # rad, and fraction of a sum that counts as cancelled
 
 
 def has_shaking_force(mechanism: Mechanism) -> bool:
-    """Return whether a shaking force of a machine's cylinders remains for some design."""
+    """Return whether a machine's cylinders leave a shaking force for some design."""
     arrangement = mechanism.arrangement
     return arrangement is None or is_unbalanced(arrangement, lambda k: cmath.exp(1j * arrangement.bank(k)))
 
@@ -27,7 +27,7 @@ def has_rocking_couple(mechanism: Mechanism) -> bool:
 
 
 def is_unbalanced(arrangement: Arrangement, weight: Callable[[int], complex]) -> bool:
-    """Return whether contributions do not cancel over cylinders with equal crank angles from their lines.
+    """Return whether contributions of cylinders with equal crank angles from their lines do not cancel.
 
     A curve of period 2 pi with every harmonic cancels only among cylinders with the same crank angle from their lines.
     """

@@ -1,4 +1,4 @@
-"""Inputs for following a signal over the cycle: loads, and the places where its curve is piecewise."""
+"""Inputs for following a signal over the cycle: loads, and the angles at which its curve is piecewise."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -
 
 
 def signal_inputs(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
-    """Return the raw numbers and loads that a signal needs: irrelevant loads create no breakpoints."""
+    """Return the raw numbers and loads that a signal needs; irrelevant loads create no breakpoints."""
     if kind.needs_forces:
         require_no_winding(mechanism)
         return fullest_inputs(mechanism)
@@ -37,7 +37,7 @@ def stroke_dependent(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
     if any(load.by_stroke for load in mechanism.fullest.loads):
         return True
-    # Forces of the two strokes that vary independently may agree at one value only.
+    # Forces in the two strokes that vary independently may agree at one value only.
     forces: dict[str, list[tuple[str, float]]] = {}
     for item in mechanism.varying:
         for path, factor in item.sets:

@@ -1,4 +1,4 @@
-"""The curves over the cycle whose peaks matter, each as one non-negative formula."""
+"""The curves over the cycle whose peaks matter, each as one nonnegative formula."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .position_error import influences, root_sum_square, worst_case
 
 
 class Signal(IntEnum):
-    """A signal judged by its size over the cycle.
+    """A signal judged by its magnitude over the cycle.
 
-    Torque (N m), forces (N), guide moment (N m), power (W), the component along the slider line of the force between
-    rod and slider (N), slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking
-    force (N), shaking moment (N m) and rocking couple (N m), which needs several cylinders. The signals up to the line
-    force follow from the joint forces.
+    Torque (N m), forces (N), guide moment (N m), power (W), component of the force between rod and slider along the
+    slider line (N), slider speed, acceleration and jerk, position error (m), reflected inertia (kg m^2), shaking force
+    (N), shaking moment (N m) and rocking couple (N m), which needs several cylinders. The signals up to the line force
+    follow from the joint forces.
     """
 
     TORQUE = 0
@@ -45,7 +45,7 @@ class Signal(IntEnum):
 
     @property
     def needs_forces(self) -> bool:
-        """Whether it follows from the joint forces, and with them from loads and friction."""
+        """Whether it follows from the joint forces, and thus from loads and friction."""
         return self <= Signal.LINE_FORCE
 
 

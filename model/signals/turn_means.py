@@ -1,15 +1,16 @@
 """Means and mean squares of signals and of work over one turn, with exact gradients.
 
-Smooth curves are integrated by the trapezoidal rule in the crowded angle, which converges geometrically for periodic
-analytic functions; piecewise curves by Gauss-Legendre panels between breakpoints. The nearer a linkage is to locking,
-the nearer are the curves' singularities, at the distance atanh(kappa) in the crowded angle (`segments.crowding`): nodes
-grow in number with 1 / kappa. The rod's direction would lose digits likewise; `_square_along` keeps them. Loads that
-jump at a dead centre do so while the slider stands still. Without friction, therefore, only steps of tables make the
-torque jump. A breakpoint that moves adds the jump times its own motion to the derivatives.
+Smooth curves are integrated with the trapezoidal rule in the crowded angle, which converges geometrically for periodic
+analytic functions. Piecewise curves are integrated on Gauss-Legendre panels between breakpoints. The closer a linkage
+is to locking, the closer are the curves' singularities, at the distance atanh(kappa) in the crowded angle
+(`segments.crowding`). The number of nodes therefore grows with 1 / kappa. The rod's direction would lose digits in the
+same way; `_square_along` keeps them. Loads that jump at a dead centre do so while the slider stands still. Without
+friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump times its own motion
+to the derivatives.
 
-Sizes of joint forces, |A| and the like, turn sharply where a force passes close to zero. Friction brings them into the
-torque. There panels are halved until the last Legendre coefficients of curve and derivatives have died out, or are
-rounding error from a load that changes over a tiny distance.
+Magnitudes of joint forces, such as |A|, have sharp bends where a force is close to zero. Friction transfers these bends
+to the torque. There, panels are halved until the last Legendre coefficients of curve and derivatives have died out, or
+are rounding errors from a load that changes over a tiny distance.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ from ..quadrature import ANGLE_ROUNDING, DEEPEST, MOST_HALVINGS, NODES, TAIL, WE
 from .signals import Signal, signal_of_forces, signal_of_motion
 
 WORK = -1
-"""Instead of a signal: the five curves of `turn_work`."""
+"""In place of a signal: the five curves of `turn_work`."""
 CURVES = 5
 """Their number."""
 _TORQUE, _LINE = int(Signal.TORQUE), int(Signal.LINE_FORCE)
@@ -58,12 +59,12 @@ _SMOOTH = 192  # nodes for a smooth curve
 # Measured on rods 0.1 % longer than crank + offset (kappa 0.21), over random machines: 128 nodes and 12 panels of 16
 # nodes leave an RMS torque off by 4e-9 and gradients by 7e-7; these 2e-14 and 2e-11. Below _EVEN there are more.
 _PANELS, _EVEN = 24, 0.21
-_RESOLVED = 1e-12, 1e-10  # size of the last coefficients, relative to the greatest of the curve and its derivatives
-_NOISE = 0.004  # rounding of a curve from the crank angle itself, in units of _RESOLVED, times kappa^2
+_RESOLVED = 1e-12, 1e-10  # magnitude of the last coefficients, relative to the maximum of the curve and its derivatives
+_NOISE = 0.004  # rounding error of a curve due to the crank angle itself, in units of _RESOLVED, times kappa^2
 _SHARE = 0.1
-"""Permissible tail in a panel's mean of the work, as a fraction of that in a curve: narrow panels count less.
+"""Allowed tail in a panel's mean of the work, as a fraction of that in a curve: narrow panels count less.
 
-Otherwise rounding, which halving does not reduce, would halve every panel of a linkage that nearly locks.
+Otherwise rounding errors, which halving does not reduce, would halve every panel for a linkage that nearly locks.
 """
 
 
@@ -81,7 +82,9 @@ class MeansTask(NamedTuple):
 
 
 class CurveMeans(NamedTuple):
-    """Results of n designs. mean: (n, c) of c curves, infinite where friction locks. square: mean squares (n, c or 0).
+    """Results for n designs.
+
+    mean: (n, c) for c curves, infinite where friction locks the design. square: mean squares (n, c or 0).
 
     mean_slope, square_slope: (n, c, v), derivatives of the means and half those of the mean squares, or without rows.
     """
@@ -105,7 +108,9 @@ class _Curve(NamedTuple):
 
 
 class _Workspace(NamedTuple):
-    """Work space and rule. rates: (c, 1 + v, nodes), curves and derivatives at a panel's nodes. greatest: their sizes.
+    """Work space and rule.
+
+    rates: (c, 1 + v, nodes), curves and derivatives at a panel's nodes. greatest: their maximum magnitudes.
 
     real, stepped: curves at one node. stack: start, width and depth of the panels that remain. nodes, weights, tail:
     see `quadrature`.
@@ -126,9 +131,9 @@ class _Workspace(NamedTuple):
 def _square_along(theta: Any, d: Any, gap: Any) -> Any:
     """Return l^2 cos^2(phi), m^2, exact to rounding however close to locking; gap: l - r - |e|, m, equally exact.
 
-    l^2 - across^2 = (l - |across|) (l + |across|) loses its digits where the rod is nearly normal to the slider line.
-    With psi the crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and gap + 2 |e| + 2
-    r cos^2(psi / 2).
+    l^2 - across^2 = (l - |across|) (l + |across|) loses digits where the rod is nearly normal to the slider line. With
+    psi the crank angle from there, -pi/2 for e >= 0, the factors are gap + 2 r sin^2(psi / 2) and gap + 2 |e| + 2 r
+    cos^2(psi / 2).
     """
     half = 0.5 * (theta - (0.5 if d.e < 0.0 else 1.5) * math.pi)
     s, c = math.sin(half), math.cos(half)
@@ -146,7 +151,7 @@ def _fill_curves(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, s
         out[0] = signal_of_motion(kind, sine, cosine, m, d)
         return
     load = load_on_slider(m, d, theta, segment)
-    if kind == _TORQUE:  # on its own: the compiler leaves out all that the torque alone does not need
+    if kind == _TORQUE:  # separate, so that the compiler leaves out everything that the torque alone does not need
         torque = joint_forces(sine, cosine, m, d, load, sides).torque
         out[0] = torque_without_crank_loads(torque, theta, sense_of(d), segment)
         return
@@ -163,7 +168,7 @@ def _fill_curves(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, s
 
 @analytic
 def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspace: _Workspace) -> None:
-    """Fill curves, derivatives and weights at the nodes of a panel of the crowded angle, Gauss's or equidistant."""
+    """Fill curves, derivatives and weights at the nodes of a panel in the crowded angle, Gauss or equidistant."""
     own, kappa = curve.segment, curve.kappa
     is_even = points == _SMOOTH
     for i in range(points):
@@ -186,7 +191,7 @@ def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspac
 
 @analytic
 def _is_rough(curve: _Curve, width: float, workspace: _Workspace) -> bool:
-    """Return whether the last Legendre coefficients on a panel exceed the tolerance; raise the greatest sizes."""
+    """Return whether the last Legendre coefficients on a panel exceed the tolerance; raises the maximum magnitudes."""
     halve, points = False, workspace.nodes.shape[0]
     resolved = max(1.0, _NOISE / (curve.kappa * curve.kappa))
     for k in range(workspace.rates.shape[0]):
@@ -252,7 +257,7 @@ def _add_segment(
             _fill_panel(curve, begin, width, points, workspace)
             if left >= 0 and _is_rough(curve, width, workspace) and depth < DEEPEST and left > 0:
                 left -= 1
-                for half in range(2):  # the left one on top: panels are added up in order
+                for half in range(2):  # the left one on top, because panels are added up in order
                     workspace.stack[top, 0] = begin + 0.5 * width * (1 - half)
                     workspace.stack[top, 1], workspace.stack[top, 2] = 0.5 * width, depth + 1.0
                     top += 1
@@ -283,7 +288,7 @@ def _add_jumps(curve: _Curve, cuts: Cuts, s: int, count: int, n: int, workspace:
 def fill_means(
     task: MeansTask, blocks: Cube, steps: ComplexCube, gaps: Row, rule: tuple[Row, Row, Table], means: CurveMeans
 ) -> None:
-    """Fill the means of n designs, whose fields are zero.
+    """Fill the means for n designs, whose fields are zero.
 
     blocks: derived numbers (n, rows, 1). steps: (n v, rows, 1), with an imaginary step in each number in turn. gaps:
     (n,), see `_gaps`.
@@ -334,7 +339,7 @@ def fill_means(
 def turn_means(
     task: MeansTask, raw: Array, mechanism: Mechanism, designs: Array, *, squares: bool, gradients: bool
 ) -> CurveMeans:
-    """Return the means of fully turning designs (n, 3 + k), derivatives by the numbers of the designs.
+    """Return the means for fully rotating designs (n, 3 + k), with derivatives by the numbers of the designs.
 
     raw: the machine's raw numbers. squares: whether mean squares are needed.
     """

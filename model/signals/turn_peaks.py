@@ -1,10 +1,10 @@
 """Peaks of a curve over the cycle, to machine precision, with exact gradients.
 
-Each segment between breakpoints (`segments`) is sampled at crowded angles. Every local maximum (for a single peak:
-those near the highest) is then bracketed. A safeguarded secant iteration refines it on the slope, which the complex
-step gives exactly. A breakpoint is a peak too when the curve has a kink or a jump there. The derivative of a peak by a
-design variable is the partial derivative at the peak angle (envelope theorem); a peak on a breakpoint moves with it,
-which the complex step carries along.
+Each segment between breakpoints (`segments`) is sampled at crowded angles. Every local maximum (for a single peak: each
+one near the highest) is then bracketed. A safeguarded secant iteration refines it using the slope, which the complex
+step gives exactly. A breakpoint is also a peak if the curve has a kink or a jump there. The derivative of a peak by a
+design variable is the partial derivative at the peak angle (envelope theorem); a peak at a breakpoint moves with it,
+and the complex step carries that along.
 """
 
 from __future__ import annotations
@@ -34,16 +34,16 @@ from ..machine.design import Design, design_at
 from ..machine.raw import Loads
 from .signals import design_motion, signal_within
 
-_FINER, _NEAR = 16, 0.95  # samples of that row, and how near the highest a sample must be to get one
+_FINER, _NEAR = 16, 0.95  # samples in that row, and how close to the highest a sample must be to get one
 _HOPELESS = 0.8
-"""Fraction of the highest sample below which no sample is followed if one peak is requested. Of a million random peaks
-of all signals, on machines with all loads, long tables, cylinders and friction, none was lost."""
+"""Fraction of the highest sample below which no sample is followed if a single peak is requested. No peak was lost
+among a million random peaks of all signals, on machines with all loads, long tables, cylinders and friction."""
 _ITERATIONS = 60
 _TURN = 2.0 * math.pi
-_CONTINUOUS = 1e-11  # relative difference below which the two sides of a breakpoint count as continuous
+_CONTINUOUS = 1e-11  # relative difference below which the curve is continuous at a breakpoint
 _FLAT = 1e-13
-_SAME = 1e-7  # rad: a flat top is not located better
-_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
+_SAME = 1e-7  # rad: a flat top cannot be located more accurately
+_SHORTEST = 1e-13  # rad: breakpoints closer than this count as one
 
 
 class _Curve(NamedTuple):
@@ -56,7 +56,7 @@ class _Curve(NamedTuple):
 
 
 class TurnTask(NamedTuple):
-    """A signal of a machine, with the number of angles that are sampled in a turn. rubbing: whether friction counts."""
+    """A signal of a machine, with the number of sampled angles per turn. rubbing: whether friction counts."""
 
     kind: int
     loads: Loads
@@ -66,7 +66,7 @@ class TurnTask(NamedTuple):
 
 
 class _Tops(NamedTuple):
-    """Lists of peaks, highest first. pin: the breakpoint on which a peak lies, -1 for none."""
+    """Lists of peaks, highest first. pin: the breakpoint at which a peak lies, -1 for none."""
 
     value: Row
     angle: Row
@@ -77,8 +77,9 @@ class _Tops(NamedTuple):
 class _Workspace(NamedTuple):
     """Work space for one design.
 
-    piece, shift: of the tables. counts, negligible: whether a segment counts, is empty. edge: value and slope at
-    start and end of each. starts: where the samples of each segment begin. theta, value: samples of all segments.
+    piece, shift: those of the tables. counts, negligible: whether a segment counts, or is empty. edge: value and slope
+    at start and end of each segment. starts: where the samples of each segment begin. theta, value: samples in all
+    segments.
     """
 
     cuts: Cuts
@@ -95,7 +96,7 @@ class _Workspace(NamedTuple):
 
 @analytic
 def _slope(theta: Any, curve: _Curve) -> Any:
-    """Value and slope over crank angle."""
+    """Value and slope over the crank angle."""
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = design_motion(s, c, curve.d)
@@ -110,7 +111,7 @@ def _refine(a: Any, b: Any, start: Any, curve: _Curve) -> Any:
     best = old_slope = 0.0
     for i in range(_ITERATIONS):
         value, slope = _slope(theta, curve)
-        # On the flat top values differ by rounding only: there the later angle is the better one.
+        # On a flat top values differ only by rounding errors; the later angle is then the better one.
         if i == 0 or value >= best - _FLAT * best:
             best, at = value, theta
         if slope > 0.0:
@@ -133,7 +134,7 @@ def _refine(a: Any, b: Any, start: Any, curve: _Curve) -> Any:
 
 @analytic
 def _divide(a: Any, b: Any, curve: _Curve) -> Any:
-    """Sample a finer row between a and b: value and angle of its highest sample, and the spacing."""
+    """Sample a finer row between a and b; return value and angle of its highest sample, and the spacing."""
     step = (b - a) / _FINER
     best, at = -1.0, a
     for i in range(1, _FINER):
@@ -193,8 +194,8 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
             continue
         segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
         sides = sides_of(probe, d, segment, task.rubbing)
-        # A segment shorter than the spacing, such as between knots of a long table, has no samples of its own: the
-        # slopes at its ends show whether it has a peak.
+        # A segment shorter than the spacing, such as between knots of a long table, has no samples of its own; the
+        # slopes at its ends show whether it contains a peak.
         low = high = 0.0
         points = 2
         if task.angles * (b - a) > 0.99 * kappa * _TURN:  # the spacing is nowhere less than kappa times that of tau
@@ -218,7 +219,7 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
 
 @analytic
 def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, workspace: _Workspace, peaks: int) -> int:
-    """List the peaks next to the samples of segment s that reach `floor`; return the new number of peaks.
+    """List the peaks next to those samples in segment s that reach `floor`; return the new number of peaks.
 
     best: highest sample so far.
     """
@@ -241,10 +242,10 @@ def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, worksp
         if not is_top:
             continue
         left, right, angle = theta[max(i - 1, start)], theta[min(i + 1, end)], theta[i]
-        # One call serves both rows, as the compiler inlines each call separately.
+        # A single call serves both rows, as the compiler inlines each call separately.
         for finer in range(2):
             value, angle = _refine(left, right, angle, curve)
-            # A finer row that rises to the very end of the segment has no top; the breakpoint may be one.
+            # A finer row that rises up to the end of the segment has no maximum inside; the breakpoint may be one.
             if (finer == 0 or a + _SAME < angle < b - _SAME) and not _is_listed(tops.angle, peaks, angle):
                 peaks = _insert(tops, peaks, value, angle, s, -1)
             if finer == 1 or not f[i] > _NEAR * best:
@@ -304,7 +305,7 @@ def _breakpoint_peaks(count: int, workspace: _Workspace, peaks: int) -> int:
     for s in range(count):
         if workspace.negligible[s]:
             continue
-        # The breakpoint between segment `before` and segment s; between the two, breakpoints may coincide.
+        # The breakpoint between segment `before` and segment s; breakpoints in between may coincide.
         before = s - 1 if s > 0 else count - 1
         while workspace.negligible[before]:
             before = before - 1 if before > 0 else count - 1
@@ -346,7 +347,7 @@ def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace:
 def find_in_turns(
     task: TurnTask, blocks: Cube, steps: ComplexCube, values: Table, peak_angles: Table, gradients: Cube
 ) -> None:
-    """Fill the peaks of n designs (n, k), highest first, and their derivatives (n, k, v), if these have rows.
+    """Fill the peaks for n designs (n, k), highest first, and their derivatives (n, k, v), if these have rows.
 
     blocks: derived numbers (n, rows, 1). steps: (n v, rows, 1), with an imaginary step in each number in turn.
     """
@@ -380,7 +381,7 @@ def find_in_turns(
         if task.rubbing:
             count = cut_contacts(d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        highest = _sample(task, d, block, count, workspace)  # for a single peak, low segments need nothing more
+        highest = _sample(task, d, block, count, workspace)  # for a single peak, low segments need nothing further
         floor = _HOPELESS * highest if listed == 1 else -1.0
         peaks, best, best_at, best_segment = _inner_peaks(task, d, block, count, floor, workspace)
         peaks = _breakpoint_peaks(count, workspace, peaks)
@@ -394,6 +395,6 @@ def find_in_turns(
                 continue
             values[n, i] = tops.value[i]
             turned = tops.angle[i] - _TURN * math.floor(tops.angle[i] / _TURN)
-            peak_angles[n, i] = turned if turned < _TURN else 0.0  # rounding, for an angle just below zero
+            peak_angles[n, i] = turned if turned < _TURN else 0.0  # rounding error of an angle just below zero
             if nv:
                 _fill_gradient(task, d, block, steps[n * nv : (n + 1) * nv], workspace, i, gradients[n, i])

@@ -1,15 +1,15 @@
-"""Work on the load, and each joint's force times its sliding speed, as means over crank angle.
+"""Work on the load, and each joint's force times its sliding speed, as means over the crank angle.
 
 Over one turn, per radian and in the sense of rotation, with phi' = d phi / d theta:
 
 - load: -F dx/dtheta, the work done against the load on the slider;
 - guide: |N| |x'|; crank pivot: |P|; crank pin: |A| (1 - phi'); slider pin: |B| |phi'|.
 
-Friction heat is the coefficient of friction times the guide's mean, and the radius of a friction circle times each
-pin's. A pin's radius times its own mean is pressure times sliding. The sizes turn sharply where a force passes close to
-zero, with or without friction: panels are halved until the last Legendre coefficients of each curve and its derivatives
-have died out for the mean. Forces jump with the load, so cuts that move with the design add the jump times their own
-motion.
+Friction heat is the coefficient of friction times the guide's mean, plus the radius of a friction circle times each
+pin's mean. A pin's radius times its mean is force times sliding distance. The magnitudes have sharp bends where a force
+is close to zero, with or without friction. Panels are therefore halved until the last Legendre coefficients of each
+curve and its derivatives have died out for the mean. Forces jump with the load, so cuts that move with the design add
+the jump times their own motion.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ from .signals import Signal
 from .turn_means import WORK, MeansTask, turn_means
 
 LOAD, GUIDE, CRANK_PIVOT, CRANK_PIN, SLIDER_PIN = range(5)
-"""Places of the curves."""
-_WATCH = CycleWindow(0, 0.0, 1.0, True, True)  # |x'|, |phi'|: kinks at the dead centres and where the rod turns back
+"""Indices of the curves."""
+_WATCH = CycleWindow(0, 0.0, 1.0, True, True)  # |x'|, |phi'|: kinks at the dead centres and where the rod reverses
 
 
 @dataclass(frozen=True)
 class TurnWork:
-    """Means over crank angle of n designs, N m (pins: N). mean: (n, 5). gradients: (n, 5, 3 + k) or None.
+    """Means over the crank angle for n designs, N m (pins: N). mean: (n, 5). gradients: (n, 5, 3 + k) or None.
 
-    Where friction locks a design all means are infinite.
+    If friction locks a design, all means are infinite.
     """
 
     mean: Array
@@ -47,9 +47,9 @@ class TurnWork:
 
 @memoise_by_batch
 def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> TurnWork:
-    """Return the means of fully turning designs (n, 3 + k): crank, rod, offset, m, then the machine's varying numbers.
+    """Return the means for fully rotating designs (n, 3 + k): crank, rod, offset, m, then the machine's variables.
 
-    For a cycle of two turns they cover both turns; for several cylinders they are sums.
+    For a two-turn cycle they cover both turns; for several cylinders they are sums.
     """
     designs = turning(designs)
     if is_shaft(mechanism):

@@ -1,4 +1,4 @@
-"""Peaks and averages over a cycle of two turns from those of its two halves."""
+"""Peaks and averages over a two-turn cycle, from those of its two halves."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Averages(Protocol):
 
 
 def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
-    """Return values, angles and gradients of the highest peaks of both turns, as many as each turn has."""
+    """Return values, angles and gradients for the highest peaks of both turns, as many as each turn has."""
     limit = first.values.shape[1]
     values = np.concatenate([first.values, second.values], axis=1)
     order = np.argsort(-values, axis=1, kind="stable")[:, :limit]
@@ -44,7 +44,7 @@ def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks)
 
 
 def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
-    """Return `Averages` (3, n) and their gradients over both turns of a crank at constant speed."""
+    """Return `Averages` (3, n) and their gradients over both turns, for a crank at constant speed."""
     mean, square = 0.5 * (first.values[:1] + second.values[:1]), 0.5 * (first.values[1:] ** 2 + second.values[1:] ** 2)
     rms = np.sqrt(square)
     values = np.concatenate([mean, rms])
@@ -58,7 +58,7 @@ def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
 
 
 def _angles(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:
-    """Return the crank angles in the two turns of peaks of a half (n, k), rad; NaN stays."""
+    """Return the crank angles within both turns for peaks of a half (n, k), rad; NaN stays."""
     dimensions = designs[:, :3].T[:, :, None]
     inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)
     if mechanism.branch == "crossed":

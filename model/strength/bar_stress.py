@@ -1,4 +1,4 @@
-"""Stress of crank or rod of one design over the cycle and along the bar, for a figure."""
+"""Stress in the crank or rod of one design over the cycle and along the bar, for a figure."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ _TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class BarStress:
-    """Stress at the two faces of a bar. For a design that friction locks, the angles are empty.
+    """Stress at both faces of a bar. If friction locks the design, the angles are empty.
 
     theta: (s,), rad, over a cycle. shares: fractions of the length from the crank pin, (k,). stress: (2, k, s), Pa,
-    tension positive; first the face where bending adds to tension.
+    tension positive; the first face is that where bending adds to tension.
     """
 
     theta: Array
@@ -30,12 +30,12 @@ class BarStress:
 
     @property
     def envelope(self) -> tuple[Array, Array]:
-        """Least and greatest stress over the cycle at every place, (k,)."""
+        """Minimum and maximum stress over the cycle at every location, (k,)."""
         return self.stress.min(axis=(0, 2)), self.stress.max(axis=(0, 2))
 
     @property
     def worst(self) -> int:
-        """Index of the place with the greatest stress of either sign."""
+        """Index of the location with the stress of largest magnitude."""
         return int(np.abs(self.stress).max(axis=(0, 2)).argmax())
 
 
@@ -50,7 +50,8 @@ def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
     shares = np.linspace(0.0, 1.0, _STATIONS)
     stress = Stress(*samples.stress[:, base : base + 7].T)
     both_sides = [at_share(stress, side, shares[:, None]) for side in (1.0, -1.0)]
-    # Samples cover a turn from the first breakpoint: those beyond a whole turn come first, in their order at jumps.
+    # Samples cover a turn from the first breakpoint; those beyond a whole turn come first, keeping their order at
+    # jumps.
     turned = int(np.searchsorted(samples.theta, _TURN))
     theta = np.roll(np.where(samples.theta < _TURN, samples.theta, samples.theta - _TURN), -turned)
     return BarStress(theta, shares, np.roll(np.array(both_sides), -turned, axis=2))

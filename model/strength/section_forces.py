@@ -2,19 +2,19 @@
 
 A link is a round-ended `Bar`: width w in the plane, depth t, density rho. Sections are counted from the crank pin A, x
 along the unit vector to the other pin (slider pin of the rod, crank pivot of the crank), y across. The part on the
-crank pin's side of a section, including a half-disc beyond the pin, has the acceleration (less gravity)
+crank pin's side of a section, including the half-disc beyond the pin, has the acceleration (less gravity)
 
     a_t(x, y) = a_t0 - omega^2 x - alpha y,    a_n(x, y) = a_n0 + alpha x - omega^2 y
 
-and is held by the pin's force F, the couple C of the pin's friction, and the section. With m = rho t w, and for the
-half-disc m_c = pi rho t w^2 / 8, first moment s = rho t w^3 / 12, second moments each j = pi rho t w^4 / 128,
-d'Alembert's equations of that part give axial force (tension positive) and moment, exactly for a rigid bar:
+and is in equilibrium with the pin force F, the couple C of the pin's friction, and the section. Let m = rho t w and,
+for the half-disc, m_c = pi rho t w^2 / 8, first moment s = rho t w^3 / 12, and second moments j = pi rho t w^4 / 128
+each. D'Alembert's equations for that part then give axial force (tension positive) and moment, exactly for a rigid bar:
 
     N(x) = -F_t + a_t0 (m_c + m x) + omega^2 (s - m x^2 / 2)
     M(x) = -C + F_n x - a_n0 (s + m_c x + m x^2 / 2) + alpha (2 j + 2 s x - m x^3 / 6)
 
-A moment is linear elastic bending (Shigley, "Mechanical Engineering Design", 9th ed., sec. 3-10): the stress at the
-faces is N / (w t) +- 6 M / (t w^2), two cubics along the bar.
+The moment causes linear elastic bending (Shigley, "Mechanical Engineering Design", 9th ed., sec. 3-10): the stress at
+the faces is N / (w t) +- 6 M / (t w^2), two cubics along the bar.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Stress(NamedTuple):
 def stress_along(
     part: Any, sine: Any, cosine: Any, m: Motion, d: Design, f: Forces, turn: Any, bar: tuple[Any, Any, Any]
 ) -> Stress:
-    """Return the `Stress` of the rod (`ROD`) or the crank under joint forces.
+    """Return the `Stress` in the rod (`ROD`) or the crank under joint forces.
 
     turn: `turn` of `rubbing.Sides`. bar: width, m, depth, m, density, kg/m^3.
     """

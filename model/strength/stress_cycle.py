@@ -1,22 +1,22 @@
-"""Greatest stresses and stress ranges in crank and rod, exact over crank angle and place, with gradients.
+"""Maximum stresses and stress ranges in crank and rod, exact over crank angle and location, with gradients.
 
-At every point of a bar (fraction xi of its length from the crank pin, face +-), the stress is a smooth curve over each
-segment of the cycle (`segments`). This module finds the greatest value of
+At every point of a bar (fraction xi of its length from the crank pin, face +-), the stress is a smooth curve in each
+segment of the cycle (`segments`). This module finds the maximum of
 
     p sigma(xi, theta) - q sigma(xi, phi),    p, q >= 0,
 
-over place, face and two crank angles: with (p, q) = (1, 0) and (0, 1) the greatest tension and compression, and with
+over location, face and two crank angles: (p, q) = (1, 0) and (0, 1) give the maximum tension and compression, while
 
     2 p = 1 / S_e + 1 / S_m,   2 q = 1 / S_e - 1 / S_m      and      2 p = 2 q = 1 / S_e
 
-the greatest amplitude / S_e + mean / S_m of one point over the cycle, ignoring compressive mean stress (Goodman's line
-with its horizontal part, Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46). Since p, q >= 0, the maximising
-pair of angles is that of the point's own greatest and least stress.
+give the maximum of amplitude / S_e + mean / S_m at one point over the cycle, ignoring compressive mean stress
+(Goodman's line with its horizontal part, Shigley, "Mechanical Engineering Design", 9th ed., eq. 6-46). Since p, q >= 0,
+the maximising pair of angles is that of the point's own maximum and minimum stress.
 
 Samples over crank angle and stations along the bar locate the highest maxima (`stress_search`). Each is then followed
-between its own samples, ever closer, until the cubics between them are exact to rounding. Place and angles are
-stationary, or at an end that moves with the design. The gradient is therefore the partial derivative there (envelope
-theorem).
+using samples of its own at ever smaller distances, until the cubics between them are exact to rounding. Location and
+angles are stationary, or at an end that moves with the design. The gradient is therefore the partial derivative there
+(envelope theorem).
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ STORED_MAXIMA = 8
 """Maxima stored per design, highest first."""
 _NEAR, _WIDE = 0.05, 0.2  # depth below the highest sample down to which maxima are refined: for the value, for pieces
 _TURN = 2.0 * math.pi
-_EDGE = 1e-11  # rad, from a breakpoint: on it
+_EDGE = 1e-11  # rad, distance from a breakpoint within which an angle is at it
 _OTHER = 7.0  # weight of the second angle in a label, more than a turn
 _EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing maxima, with two digits to spare
 # Fractions of the spacing of samples: distance of the ends of a cubic, and of a maximum from its predicted place within
@@ -65,11 +65,11 @@ LABEL_STEP, CLASSES = 60.0, 12
 
 @dataclass(frozen=True)
 class StressPeaks:
-    """Local maxima of n designs, highest first.
+    """Local maxima for n designs, highest first.
 
     values: (n, k), -inf beyond the last one; inf where friction locks the design. labels: identifiers (n, k) that match
-    maxima across neighbouring designs. places: (n, k, 4), fraction of the length from the crank pin, face, both angles,
-    rad. gradients: (n, k, 3 + v); None unless asked for.
+    maxima between neighbouring designs. places: (n, k, 4), fraction of the length from the crank pin, face, both
+    angles, rad. gradients: (n, k, 3 + v); None unless requested.
     """
 
     values: Array
@@ -80,7 +80,7 @@ class StressPeaks:
 
 @dataclass
 class _Maxima:
-    """Maxima of places, c of them: bar, number of side and criterion (c,); fraction of the length, value (c,).
+    """Maxima at c locations: bar, index of side and criterion (c,); fraction of the length, value (c,).
 
     angle: (c, 2). segment: (c, 2). is_counted: (c, 2), whether the angle counts. spacing: (c, 2), between samples, rad.
     """
@@ -96,7 +96,7 @@ class _Maxima:
     spacing: Array
 
     def __post_init__(self) -> None:
-        """Give an angle that does not count the value of the other one."""
+        """Give an angle that does not count the value of the other angle."""
         self.angle = np.where(self.is_counted, self.angle, self.angle[:, ::-1])
 
     def select(self, rows: IntArray) -> _Maxima:
@@ -108,7 +108,7 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
     """Return the highest maxima of the cubics between the samples of the cycle."""
     start, theta, first, segment, stress = bars.samples
     n = len(start) - 1
-    # Every second station, face and criterion may be one, with all pairs of angles.
+    # Every second station may have a maximum for each face and criterion, with all pairs of angles.
     candidate_count = n * len(sides) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
     best = np.empty((len(sides), len(criteria), STATIONS))
@@ -138,7 +138,7 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
 
 
 def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Maxima) -> None:
-    """Follow maxima between samples of their own, until these are so close that the cubics are exact."""
+    """Follow maxima using samples of their own, until these are so close that the cubics are exact."""
     begin, end = bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
     width, near = _CLOSE * maxima.spacing, _FORETOLD * maxima.spacing
@@ -168,12 +168,12 @@ def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Max
         is_inside &= (angles < high) | (high >= end[waiting])
         closer = waiting[np.all(is_inside | ~is_counted, axis=1)]
         width[closer] /= _CLOSER
-        near[closer] *= _CLOSER  # the remaining ones are off by less, wherever they were predicted
+        near[closer] *= _CLOSER  # the remaining ones err by less, wherever they were predicted
         waiting = waiting[~is_converged]
 
 
 def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: IntArray) -> Array:
-    """Return the derivatives (c, 3 + k) of maxima on breakpoints `pins` (c, 2), or on none (-1)."""
+    """Return the derivatives (c, 3 + k) of maxima at breakpoints `pins` (c, 2), or at none (-1)."""
     is_counted = maxima.is_counted
     counted_bars = np.broadcast_to(maxima.bar[:, None], is_counted.shape)[is_counted]
     slopes = bars.slopes(counted_bars, maxima.segment[is_counted], maxima.angle[is_counted], pins[is_counted])
@@ -233,7 +233,7 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
 
 
 def _require_one_sided(criteria: Array) -> None:
-    """Raise `InputError` for criteria that compare two crank angles, which may belong to different turns."""
+    """Raise `InputError` for criteria that compare two crank angles, because these may belong to different turns."""
     if (criteria > 0.0).all(axis=1).any():
         raise InputError(
             "greatest and least stress of one place are those of one turn; got a cycle of 720 deg; leave the fatigue "
@@ -242,7 +242,7 @@ def _require_one_sided(criteria: Array) -> None:
 
 
 def _highest_of_both_turns(first_turn: StressPeaks, second_turn: StressPeaks, limit: int) -> StressPeaks:
-    """Return the highest maxima of two turns."""
+    """Return the highest maxima over two turns."""
     order = np.argsort(-np.concatenate([first_turn.values, second_turn.values], axis=1), axis=1, kind="stable")[
         :, :limit
     ]
@@ -269,10 +269,10 @@ def stress_peaks(
     gradients: bool = False,
     limit: int = STORED_MAXIMA,
 ) -> list[StressPeaks]:
-    """Return the greatest p sigma - q sigma of designs (n, 3 + k) at each place; `StressLocation` defines sigma.
+    """Return the maximum of p sigma - q sigma for designs (n, 3 + k) at each location; `StressLocation` defines sigma.
 
-    criteria: (m, 2), p and q of each, none negative. limit: maxima returned per design; if 1, only the highest are
-    followed. The links of the places must be `Bar`.
+    criteria: (m, 2), p and q of each, none negative. limit: maxima returned per design; if 1, only the highest ones are
+    followed. The links at the locations must be `Bar`.
     """
     designs = turning(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)

@@ -1,13 +1,14 @@
-"""Places searched together for stress over the cycle: all along crank and rod, and the net sections of eyes.
+"""Locations searched together for stress over the cycle: all along crank and rod, and the net sections of eyes.
 
-With axial force N and moment M of the section through a pin's centre, width w, depth d, the pin's diameter D, and K the
-stress concentration of the eye, the stress of its net section is at the bore and at the outer edge
+Let N and M be axial force and moment in the section through a pin's centre, w and d width and depth, D the pin
+diameter, and K the stress concentration factor of the eye. The stress in its net section at the bore and at the outer
+edge is
 
     K N / ((w - D) d) +- min(K, 2) 6 M D / (d (w^3 - D^3))      and      N / ((w - D) d) +- 6 M w / (d (w^3 - D^3)):
 
 from the area and second moment that remain without the hole. A hole in a bent bar at most doubles this stress at the
-bore (W. D. Pilkey, "Peterson's Stress Concentration Factors", 3rd ed., sec. 4.6). Here the factor 1 / (w - D) of both
-is left out, so that a pin as wide as its bar needs no special case: stress times w - D, N/m.
+bore (W. D. Pilkey, "Peterson's Stress Concentration Factors", 3rd ed., sec. 4.6). The factor 1 / (w - D), common to
+both, is left out here, so that a pin as wide as its bar needs no special case: stress times w - D, N/m.
 """
 
 from __future__ import annotations
@@ -36,10 +37,10 @@ class LinkBody(NamedTuple):
 
 
 class Eye(NamedTuple):
-    """An edge of the net section of an eye.
+    """An edge of the net section in an eye.
 
-    part: `ROD` or `CRANK`. far: whether at the end opposite the crank pin. width, pin: slots of the raw numbers.
-    bent: whether moments count. outer: whether the outer edge, else the bore.
+    part: `ROD` or `CRANK`. far: whether it is at the end opposite the crank pin. width, pin: slots of the raw numbers.
+    bent: whether moments count. outer: whether it is the outer edge, else the bore.
     """
 
     part: int
@@ -52,17 +53,17 @@ class Eye(NamedTuple):
 
 StressLocation = LinkBody | Eye
 Formula = Callable[[Callable[[int], Any]], Any]
-"""A number by the raw numbers of a machine."""
+"""A number as a function of the raw numbers of a machine."""
 
 
 @dataclass(frozen=True)
 class StressLocations:
-    """Stress over the cycle at m locations of n designs, stated as m n bars, first location first.
+    """Stress over the cycle at m locations of n designs, given as m n bars, first location first.
 
-    An eye is a bar whose stress falls linearly from the eye's value to zero at the other end, so the greatest value
-    along it is the eye's. Without bending, half of the axial stress counts as bending: all of it on one side, none on
-    the other. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3 + k,
-    2), their derivatives by the numbers of the design.
+    An eye is treated as a bar whose stress falls linearly from the eye's value to zero at the other end, so the maximum
+    along it is the eye's value. Without bending, half of the axial stress counts as bending: all of it is on one side,
+    none on the other. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3
+    + k, 2), their derivatives by the numbers of the design.
     """
 
     field: Field
@@ -78,11 +79,11 @@ class StressLocations:
 
     @property
     def locked(self) -> Mask:
-        """Return whether friction locks the design of a bar, (m n,)."""
+        """Return whether friction locks the design of each bar, (m n,)."""
         return np.tile(self.field.locked, len(self.places))
 
     def segment_counts(self, bars: IntArray) -> IntArray:
-        """Return the number of segments in the cycle of bars (p,)."""
+        """Return the number of segments in the cycles of bars (p,)."""
         counts: IntArray = self.field.cuts.many[self._design(bars)]
         return counts
 
@@ -120,7 +121,7 @@ class StressLocations:
 
 
 def _spread(places: Sequence[StressLocation], stress: Array, row: IntArray, place: IntArray, factors: Array) -> Array:
-    """Return the stress of locations (p, WIDE) from rows (p,) of the stress of both links (r, 2 WIDE)."""
+    """Return the stress at locations (p, WIDE) from rows (p,) of the stress in both links (r, 2 WIDE)."""
     codes = np.array(
         [
             (
@@ -140,7 +141,10 @@ def _spread(places: Sequence[StressLocation], stress: Array, row: IntArray, plac
 
 @seldom_kernel
 def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table) -> None:
-    """Fill stresses. codes: (m, 4), link's first column, whether an eye, whether far, whether bent. factors: (p, 2)."""
+    """Fill stresses.
+
+    codes: (m, 4), link's first column, whether it is an eye, whether far, whether bent. factors: (p, 2).
+    """
     for i in range(row.shape[0]):
         base, eye = codes[place[i], 0], codes[place[i], 1] == 1
         far, bent = codes[place[i], 2] == 1, codes[place[i], 3] == 1
@@ -167,7 +171,7 @@ def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, fa
 def stress_at_locations(
     field: Field, mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
 ) -> StressLocations:
-    """Return the `StressLocations` of designs (n, 3 + k) whose links have a field."""
+    """Return the `StressLocations` for designs (n, 3 + k) whose links have a field."""
     cycle_samples, n, many = field.samples, len(designs), len(places)
     factors, rates = np.ones((many * n, 2)), np.zeros((many * n, designs.shape[1], 2))
     for number, place in enumerate(places):
@@ -188,7 +192,7 @@ def stress_at_locations(
 
 
 def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
-    """Return the formulas of the factors of axial stress and bending of the whole section."""
+    """Return the formulas for the factors of axial stress and bending in the whole section."""
     assert mechanism.strength is not None
     raised = mechanism.strength.eye_concentration
 
@@ -203,7 +207,7 @@ def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
 
 
 def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
-    """Return the factors of axial stress and bending of the whole section, (n, 2), and their derivatives."""
+    """Return the factors of axial stress and bending in the whole section, (n, 2), and their derivatives."""
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
     for number, formula in enumerate(eye_factors(mechanism, eye)):
         factors[:, number], rates[:, :, number] = formula_of_numbers(mechanism, designs, formula, gradients=True)

@@ -1,6 +1,6 @@
 """Stress along crank and rod at many crank angles of many designs, with derivatives, in a single kernel for forces.
 
-The search for the greatest stress (`stress_cycle`) then needs no forces.
+The search for the maximum stress (`stress_cycle`) then needs no forces.
 """
 
 from __future__ import annotations
@@ -41,18 +41,18 @@ from .section_forces import stress_along
 ANGLES = 128
 """Samples per turn, at least three per segment."""
 WIDE = 14
-"""Columns of a link: seven coefficients of its `Stress`, and their derivatives."""
+"""Columns for a link: seven coefficients of its `Stress`, and their derivatives."""
 _TURN = 2.0 * math.pi
-_SHORTEST = 1e-13  # rad: breakpoints closer than this are one
+_SHORTEST = 1e-13  # rad: breakpoints closer than this count as one
 _SLOTS = (*range(Raw.ROD_WIDTH, Raw.ROD_WIDTH + 3), *range(Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 3))
 
 
 class Points(NamedTuple):
     """Crank angles of designs, p in total; all fields (p,).
 
-    design: number of the design. probe: an angle within the segment, which identifies its pieces. angle: rad. column:
-    column of the design number for the derivatives, -1 for those by the crank angle. cut: breakpoint on which the angle
-    lies, -1 for none.
+    design: index of the design. probe: an angle within the segment, which identifies its pieces. angle: rad. column:
+    column of the design number for the derivatives, -1 for derivatives by the crank angle. cut: breakpoint at which the
+    angle lies, -1 for none.
     """
 
     design: Integers
@@ -65,8 +65,9 @@ class Points(NamedTuple):
 class Samples(NamedTuple):
     """Samples over the cycles of n designs, one design after the other.
 
-    start: (n + 1,), index at which each begins. theta: (s,), rad. begins_segment: (s,), whether a segment begins.
-    segment: (s,). stress: (s, 2 WIDE), of rod and crank.
+    start: (n + 1,), index at which each design begins. theta: (s,), rad. begins_segment: (s,), whether a segment
+    begins.
+    segment: (s,). stress: (s, 2 WIDE), for rod and crank.
     """
 
     start: Integers
@@ -77,7 +78,7 @@ class Samples(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """Width, depth and density of rod and crank (n, 6), with derivatives (v, 6) by raw numbers; 0 without bar."""
+    """Width, depth and density of rod and crank (n, 6), derivatives (v, 6) by raw numbers; 0 for a link without bar."""
 
     sizes: Table
     rates: Table
@@ -179,7 +180,7 @@ def _sample_segments(
 class Field:
     """Stress over the cycles of n designs: their samples, and the data to evaluate it at any crank angle.
 
-    kappa: (n,), parameter of the crowded angle. locked: (n,), whether friction locks the design.
+    kappa: (n,), parameter kappa of the crowded angle. locked: (n,), whether friction locks the design.
     """
 
     mechanism: Mechanism
@@ -193,7 +194,7 @@ class Field:
 
     @property
     def locked(self) -> Mask:
-        """Return whether friction locks a design, (n,)."""
+        """Return whether friction locks each design, (n,)."""
         is_locked: Mask = self.cuts.many == 0
         return is_locked
 
@@ -213,7 +214,7 @@ class Field:
         )
 
     def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
-        """Return stress and its derivatives by the raw numbers of `numbers`, (p, c, 2 WIDE).
+        """Return stress and its derivatives by the raw numbers in `numbers`, (p, c, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
         """
@@ -235,7 +236,7 @@ class Field:
 
 
 def _angles_within(begin: Array, end: Array) -> Array:
-    """Return `angle_within` of many segments."""
+    """Return `angle_within` for many segments."""
     angles: Array = angle_within(begin, end)  # type: ignore[arg-type, assignment]
     return angles
 
@@ -259,7 +260,7 @@ def _stress_at(
 
 
 def field_of(mechanism: Mechanism, designs: Array) -> Field:
-    """Return the `Field` of designs (n, 3 + k), each rotating fully."""
+    """Return the `Field` for designs (n, 3 + k), each rotating fully."""
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=True)
     values, n = numbers.values, len(designs)

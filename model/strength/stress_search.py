@@ -1,7 +1,7 @@
-"""Greatest combinations of stress among samples over the cycle, by polynomials between neighbours.
+"""Maximum combinations of stress among samples over the cycle, by polynomials between neighbours.
 
-Between two samples each coefficient of `section_forces.Stress` is the cubic that matches values and slopes at both. The
-greatest value of p sigma(xi, theta) - q sigma(xi, phi) is found in closed form for both crank angles, by secants along
+Between two samples, each coefficient of `section_forces.Stress` is the cubic that matches values and slopes at both.
+The maximum of p sigma(xi, theta) - q sigma(xi, phi) is found in closed form for both crank angles, and by secants along
 the bar. Its error falls with the fourth power of the distance between samples.
 """
 
@@ -16,20 +16,20 @@ from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Cube, Flags, Integers, IntegerTable, Row, Table, seldom_kernel
 
 STATIONS = 9
-"""Places along the bar at which samples are taken."""
+"""Locations along the bar at which samples are taken."""
 LISTED = 6
-"""Local maxima of a place's stress over the cycle."""
+"""Local maxima of the stress at one location over the cycle."""
 _ITERATIONS = 60
 _CONVERGED = 1e-11  # fraction of the length
 _SLOPE = 7  # first column of the slopes over the crank angle
-_PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, 1 - cosine of crank angles: maxima this near are one
+_PLACE, _ANGLE = 1e-5, 1e-9  # fraction of the length, and 1 - cosine of crank angles: maxima this close are one
 
 
 class Candidates(NamedTuple):
-    """Maxima to be climbed, c of them; all (c,), `samples` (c, 2).
+    """Starting points of c maxima; all (c,), `samples` (c, 2).
 
-    bar: number of the bar. side: number of its side. pull: number of the criterion. samples: those next to both crank
-    angles. share: place along the bar.
+    bar: index of the bar. side: index of its side. pull: index of the criterion. samples: those next to both crank
+    angles. share: location along the bar.
     """
 
     bar: Integers
@@ -40,7 +40,7 @@ class Candidates(NamedTuple):
 
 
 def empty_candidates(count: int) -> Candidates:
-    """Return room for candidates."""
+    """Return empty arrays for candidates."""
     columns = [np.empty(count, np.int64) for _ in range(3)]
     return Candidates(columns[0], columns[1], columns[2], np.empty((count, 2), np.int64), np.empty(count))
 
@@ -58,7 +58,7 @@ def first_candidates(candidates: Candidates, count: int) -> Candidates:
 
 @analytic
 def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
-    """Stress of a sample at a place; with base + 7, its slope over the crank angle."""
+    """Stress of a sample at a location; with base + 7, its slope over the crank angle."""
     axial = row[k, base] + xi * (row[k, base + 1] + xi * row[k, base + 2])
     bent = row[k, base + 4] + xi * (row[k, base + 5] + xi * row[k, base + 6])
     return axial + side * (row[k, base + 3] + xi * bent)
@@ -66,14 +66,14 @@ def _stress_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
 
 @analytic
 def _slope_at_share(row: Any, k: Any, base: Any, side: Any, xi: Any) -> Any:
-    """Slope of `_stress_at_share` over the place."""
+    """Slope of `_stress_at_share` over the location."""
     axial = row[k, base + 1] + 2.0 * xi * row[k, base + 2]
     return axial + side * (row[k, base + 4] + xi * (2.0 * row[k, base + 5] + 3.0 * xi * row[k, base + 6]))
 
 
 @analytic
 def _list_maxima(row: Any, first: Any, begin: Any, count: Any, sign: Any, listed: Any) -> int:
-    """List the highest local maxima of sign times a row of samples, ends of segments included; return how many."""
+    """List the highest local maxima of sign times a row of samples, segment ends included; return their number."""
     n = 0
     for k in range(count):
         value = sign * row[k]
@@ -105,7 +105,7 @@ class SampledStress(NamedTuple):
 
 @analytic
 def _fill_greatest(samples: SampledStress, begin: int, count: int, criteria: Any, best: Any) -> float:
-    """Fill `best` (sides, m, STATIONS) with each criterion's greatest value over samples; return the greatest."""
+    """Fill `best` (sides, m, STATIONS) with each criterion's maximum over samples; return the overall maximum."""
     greatest = -math.inf
     for f in range(samples.sides.shape[0]):
         for j in range(STATIONS):
@@ -131,7 +131,7 @@ def propose(
     best: Cube,
     candidates: Candidates,
 ) -> int:
-    """List the samples next to maxima within the fraction `margin` of the greatest; return their number.
+    """List the samples next to maxima within the fraction `margin` of the overall maximum; return their number.
 
     start: (n + 1,), where the samples of each design begin. criteria: (m, 2), p and q. space: (STATIONS, samples of a
     design), listed: (2, LISTED), best: (sides, m, STATIONS), work space. candidates: with room for all possible ones.
@@ -159,7 +159,7 @@ def propose(
                         row[k] = _stress_at_share(stress, begin + k, 0, sides[f], xi)
                     high_count = low_count = 1
                     ups[0] = downs[0] = 0
-                    for end in range(2):  # one call, as the compiler inlines each call separately
+                    for end in range(2):  # a single call, as the compiler inlines each call separately
                         if end == 0 and p > 0.0:
                             high_count = _list_maxima(row, samples.begins, begin, count, 1.0, ups)
                         elif end == 1 and q > 0.0:
@@ -180,7 +180,8 @@ def propose(
 def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) -> Any:
     """Return the sample before the maximum of sign times the stress, near sample k, and its values.
 
-    Those are the crank angle of the maximum, the stress, and its slope over the place. Stays within the segment.
+    The values are the crank angle of the maximum, the stress, and its slope over the location. Stays within the
+    segment.
     """
     stress, first, last = samples.stress, samples.begins, samples.theta.shape[0] - 1
     t = 0.0
@@ -205,7 +206,7 @@ def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) 
     f1, g1 = _stress_at_share(stress, k + 1, 0, side, xi), _slope_at_share(stress, k + 1, 0, side, xi)
     s0 = h * _stress_at_share(stress, k, _SLOPE, side, xi)
     s1 = h * _stress_at_share(stress, k + 1, _SLOPE, side, xi)
-    # The slope of the cubic is s0 + b t + a t^2, s0 and s1 = s0 + b + a of opposite signs.
+    # The slope of the cubic is s0 + b t + a t^2; s0 and s1 = s0 + b + a have opposite signs.
     a, b = 3.0 * (s0 + s1) - 6.0 * (f1 - f0), 6.0 * (f1 - f0) - 4.0 * s0 - 2.0 * s1
     width = sign * math.sqrt(max(b * b - 4.0 * a * s0, 0.0))
     t = min(1.0, max(0.0, 2.0 * s0 / (width - b)))
@@ -219,7 +220,7 @@ def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) 
 
 @seldom_kernel
 def climb(samples: SampledStress, criteria: Table, candidates: Candidates, values: Row, angles: Table) -> None:
-    """Move candidates to the maxima that they are next to: values (c,), places and angles (c, 2) of them.
+    """Move candidates to the maxima next to them; fill values (c,), locations and angles (c, 2) of these maxima.
 
     `candidates` is updated in place. The search stays within the segment.
     """
@@ -270,7 +271,8 @@ def climb(samples: SampledStress, criteria: Table, candidates: Candidates, value
 def choose(candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 
-    Of coinciding candidates the highest counts: next to a breakpoint there may be two, one of them on it.
+    Among coinciding candidates, the highest counts: next to a breakpoint there may be two, one of them at the
+    breakpoint.
     """
     count = -1
     for n in range(chosen.shape[0]):

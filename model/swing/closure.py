@@ -1,10 +1,11 @@
-"""Closure of many linkages over a swing, and the transmission angle of the driven side, with derivatives.
+"""Closure of many linkages over a swing, and the transmission angle at the driven side, with derivatives.
 
-Where the crank drives, the linkage ceases to close when |e - r sin(theta)| reaches l. The transmission angle lies
-between the rod and the normal of the slider line, cos(mu) = |e - r sin(theta)| / l. It is least at an end of the swing
-or where the crank is normal to the slider line. Where the slider drives, it is the angle between rod and crank, sin(mu)
-= sin(theta - phi) with the sign that it has in the middle of the swing: below zero beyond a dead point. It is least at
-an end, or where the rod turns as fast as the crank, x = 0.
+If the crank drives, the linkage ceases to close when |e - r sin(theta)| reaches l. The transmission angle is that
+between the rod and the normal of the slider line, cos(mu) = |e - r sin(theta)| / l. Its minimum is at an end of the
+swing or where the crank is normal to the slider line. If the slider drives, it is the angle between rod and crank,
+sin(mu) = sin(theta
+- phi), with the sign that it has in the middle of the swing: negative beyond a dead point. Its minimum is at an end, or
+  where the rod turns as fast as the crank, x = 0.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ _TURN = 2.0 * np.pi
 
 @dataclass(frozen=True)
 class DrivenAngles:
-    """Angles at the places where the least angle may be, rad.
+    """Angles at the locations of a possible minimum, rad.
 
     values: (n, m), inf where absent. slopes: (n, m, 3 + k), by the numbers of the designs.
     """
@@ -43,7 +44,7 @@ def closes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
 
 
 def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close and, where the slider drives, pass no dead point."""
+    """Return which designs (n, 3 + k) close and, if the slider drives, pass no dead point."""
     ends = ends_of(mechanism, swing, designs)
     passing = _closing(designs, ends)
     if swing.driver == "slider" and passing.any():
@@ -55,12 +56,12 @@ def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
 
 
 def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
-    """Return the transmission angles of designs (n, 3 + k) that close, see `closes`."""
+    """Return the transmission angles for designs (n, 3 + k) that close, see `closes`."""
     return _angles(swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs)
 
 
 def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
-    """Return the travel (n,) of the slider between the ends, m, and its slopes (n, 3 + k)."""
+    """Return the slider travel (n,) between the ends, m, and its slopes (n, 3 + k)."""
     ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
 
     def way(sizes: Any, first: Any, last: Any) -> Any:
@@ -72,7 +73,7 @@ def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, 
 
 
 def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
-    """Return the angle (n,) of the crank between the ends, rad, and its slopes (n, 3 + k)."""
+    """Return the crank angle (n,) between the ends, rad, and its slopes (n, 3 + k)."""
     ends = ends_of(mechanism, swing, designs, slopes=True)
     assert ends.slopes is not None
     slopes = np.zeros(designs.shape)
@@ -94,7 +95,7 @@ def _closing(designs: Array, ends: Ends) -> Mask:
 
 
 def _has_dead_point(ends: Ends, sign: float, designs: Array) -> Mask:
-    """Return which designs have a dead point in the swing: beyond two of them the angle is above zero again."""
+    """Return which designs have a dead point in the swing; beyond two dead points the angle is positive again."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     dead = np.zeros(len(designs), np.bool_)
     for span, side in ((r + l, sign), (r - l, -sign)):
@@ -116,7 +117,7 @@ def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bo
         side = np.where(middle < 0.0, -1.0, 1.0)
 
     def measure(sizes: Any, theta: Any) -> Any:
-        """Return cos(mu) where the crank drives, else sin(mu)."""
+        """Return cos(mu) if the crank drives, else sin(mu)."""
         r, l, e = sizes[:, 0], sizes[:, 1], sizes[:, 2]
         if side is not None:
             with np.errstate(invalid="ignore"):
@@ -142,7 +143,7 @@ def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bo
 def _with_slopes(
     function: Any, designs: Array, ends: Ends, *angles: tuple[Array, int | None], slopes: bool = True
 ) -> tuple[Array, Array]:
-    """Return a function (n,) of sizes and crank angles, and its derivatives (n, 3 + k) by complex steps.
+    """Return a function (n,) of dimensions and crank angles, and its derivatives (n, 3 + k) by complex steps.
 
     angles: each (n,), with the end of the swing (0 or 1) with which it moves; None if it does not move. slopes: whether
     derivatives are needed; otherwise they are zero.
@@ -166,7 +167,7 @@ def _transmission_sine(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
 
 
 def _rod_as_fast(ends: Ends, sign: float, designs: Array) -> list[Array]:
-    """Return the crank angles (n,) at which the slider is at the pivot; NaN where the swing has none."""
+    """Return the crank angles (n,) at which the slider is at the pivot; NaN if the swing has none."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     size = np.abs(e)
     with np.errstate(divide="ignore", invalid="ignore"):

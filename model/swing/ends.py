@@ -1,8 +1,8 @@
 """Crank angles at which the swings of many designs start and end.
 
-A swing is stated by two crank angles, or by two slider positions. For slider positions, the linkage with its crank pin
-on a given side of the line from crank pivot to slider pin gives the crank angles, theta = atan2(e, x) +- acos((r^2 +
-d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2. Where the start varies, the designs have it among their numbers.
+A swing is stated by two crank angles, or by two slider positions. For slider positions, the linkage gives the crank
+angles, with its crank pin on a given side of the line from crank pivot to slider pin: theta = atan2(e, x) +- acos((r^2
++ d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2. If the start varies, it is among the numbers of the designs.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ _TURN = 2.0 * np.pi
 class Ends:
     """Crank angles of n designs at both ends of their swings, rad.
 
-    start, end: (n,), NaN where the slider does not reach its place. slopes: (n, v, 2), their derivatives by the numbers
-    of the designs that `columns` names; None unless asked for.
+    start, end: (n,), NaN if the slider does not reach its position. slopes: (n, v, 2), their derivatives by the design
+    numbers that `columns` names; None unless requested.
     """
 
     start: Array
@@ -45,22 +45,22 @@ class Ends:
 
     @property
     def low(self) -> Array:
-        """The lesser angle of each, rad."""
+        """The smaller angle of each swing, rad."""
         return np.minimum(self.start, self.end)
 
     @property
     def high(self) -> Array:
-        """The greater angle of each, rad."""
+        """The larger angle of each swing, rad."""
         return np.maximum(self.start, self.end)
 
     @property
     def middle(self) -> Array:
-        """The angle half-way, rad."""
+        """The angle halfway, rad."""
         return 0.5 * (self.start + self.end)
 
     @property
     def direction(self) -> Array:
-        """+1 where the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
+        """+1 if the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return np.where(self.end > self.start, 1.0, -1.0)
 
     def turned_into(self, angle: Any) -> Array:
@@ -74,11 +74,11 @@ class Ends:
         return [self.start, self.end, self.turned_into(0.5 * np.pi), self.turned_into(1.5 * np.pi)]
 
     def pin_distance(self, designs: Array) -> Array:
-        """Return the greatest distance (n,) of crank pin and slider line over the swings, m."""
+        """Return the maximum distance (n,) between crank pin and slider line over the swings, m."""
         return greatest_pin_distance(designs, self.extreme_angles())
 
     def stepped(self, columns: int, column: int | None) -> Complexes:
-        """Return both ends (n c, 2), the start last, with an imaginary step of each of c numbers."""
+        """Return both ends (n c, 2), the start last, with an imaginary step in each of c numbers."""
         moved = np.repeat(np.stack([self.start, self.end], axis=1)[:, None] + 0j, columns, axis=1)
         assert self.slopes is not None
         for place, v in enumerate(self.columns):
@@ -91,7 +91,7 @@ def with_start(
 ) -> tuple[Numbers, Complexes]:
     """Return numbers and stepped blocks followed by the start of the swing, a number that no kernel uses.
 
-    plain: blocks (n, rows, 1). steps: (n c, rows, 1); none where no derivatives are requested.
+    plain: blocks (n, rows, 1). steps: (n c, rows, 1); none if no derivatives are requested.
     """
     n, rows = plain.shape[:2]
     if len(steps):
@@ -107,14 +107,14 @@ def with_start(
 
 
 def greatest_pin_distance(designs: Array, angles: Iterable[Array]) -> Array:
-    """Return the greatest |e - r sin(theta)| (n,) of crank angles (n,), NaN ones left out, m."""
+    """Return the maximum |e - r sin(theta)| (n,) over crank angles (n,), ignoring NaN, m."""
     r, e = designs[:, 0], designs[:, 2]
     distances = [np.abs(e - r * np.sin(angle)) for angle in angles]
     return np.asarray(np.fmax.reduce(distances))
 
 
 def start_column(mechanism: Mechanism) -> int | None:
-    """Return the column of designs with the start of their swing; None where all have the same."""
+    """Return the column in which designs have the start of their swing; None if all have the same start."""
     for place, item in enumerate(mechanism.varying):
         if item.paths[0] in STARTS.values():
             return 3 + place
@@ -122,7 +122,7 @@ def start_column(mechanism: Mechanism) -> int | None:
 
 
 def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
-    """Return both ends of the swings of designs (n, 3 + k). slopes: whether derivatives are needed."""
+    """Return both ends of the swings for designs (n, 3 + k). slopes: whether derivatives are needed."""
     sign = mechanism.sign
     column = start_column(mechanism)
     plain = _ends(swing, sign, designs, column)

@@ -1,4 +1,4 @@
-"""Sources of the error of the driven side at a crank angle of a swing."""
+"""Sources of the error at the driven side for a crank angle in a swing."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ class ErrorShare:
 
 
 def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[ErrorShare, ...]:
-    """Return each source's contribution to the worst case of the driven side at a crank angle, rad.
+    """Return each source's contribution to the worst case at the driven side, for a crank angle, rad.
 
-    Where the crank drives: |dx/di| T_i for the slider's position. Where the slider drives: that over |x'| for the crank
-    angle, with the actuator among the sources. Sources without tolerance are left out.
+    If the crank drives: |dx/di| T_i for the slider position. If the slider drives: the same divided by |x'| for the
+    crank angle, with the actuator among the sources. Sources without tolerance are left out.
     """
     checked = one_linkage(mechanism, linkage)
     i, source_limits = checked.error_influences(crank_angle), limits(mechanism, checked)

@@ -1,7 +1,7 @@
-"""Curves of one linkage over a swing: motion, forces, and the drive required.
+"""Curves of one linkage over a swing: motion, forces, and the required drive.
 
-Where the crank is driven, torque and forces are those of `dynamics`. Where the slider is driven, its driver applies a
-force P along the slider line and the crank's torque is zero:
+If the crank is driven, torque and forces are those of `dynamics`. If the slider is driven, its driver applies a force P
+along the slider line and the crank torque is zero:
 
 - rod, moments about the crank pin: along B_y - across B_x + moment - rho_A s_A |A| + rho_B s_B |B| = 0;
 - crank, moments about the pivot: couple - M + r (cos(theta) A_y - sin(theta) A_x) + rho_A s_A |A| + rho_O s_O |P_O|
@@ -9,12 +9,12 @@ force P along the slider line and the crank's torque is zero:
 - slider: P = pull + mu |N| sgn(x' w) - B_x, N = -(B_y + m_s G_y);
 
 with `balance` and the names of `dynamics.torque`, M of `dynamics.crank_loads`,
-and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without
-friction the first two are linear in B, their determinant is r l sin(theta - phi): zero at a dead point. Friction in
-the pins makes them nonlinear: it turns the rows of the Jacobian, of lengths l and r, by at most
-asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r). Where the angle between rod and crank exceeds their sum, the
-determinant cannot vanish. Exactly one force then exists for any load, and Newton's iteration from the frictionless
-force finds it. Elsewhere friction may lock the linkage, and the force is NaN.
+and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without friction the first two are linear in B, with the
+determinant r l sin(theta - phi), which is zero at a dead point. Friction in the pins makes them nonlinear. It rotates
+the rows of the Jacobian, whose lengths are l and r, by at most asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r).
+If the angle between rod and crank exceeds their sum, the determinant cannot vanish. Exactly one force then exists for
+any load, and Newton's method started at the frictionless force finds it. Elsewhere friction may lock the linkage, and
+the force is NaN.
 """
 
 from __future__ import annotations
@@ -47,14 +47,14 @@ _CONVERGED = 1e-14
 
 @dataclass(frozen=True)
 class SwingCurves:
-    """Curves over one way of a swing, each (n,), SI and radians; forces as components along x and y.
+    """Curves over one stroke of a swing, each (n,), SI and radians; forces as components along x and y.
 
-    share: fraction of the time of one way. crank_angle continues beyond a turn where the swing does. drive: torque on
+    share: fraction of the time of one stroke. crank_angle continues beyond a turn if the swing does. drive: torque on
     the crank, N m, counter-clockwise, or force on the slider along +x, N. power: power of the drive, W, 0 for a slow
-    swing. rate: derivative of the driver's place by `share`, rad or m. driven_angle: transmission angle of the driven
-    side. It lies between the rod and the normal of the slider line where the crank drives, between rod and crank where
-    the slider drives. driven_error: worst case of the driven side's position, m at the slider or rad at the crank.
-    rod_rate: phi'. The other fields are as in `Cycle`; load is without the drive.
+    swing. rate: derivative of the driver position by `share`, rad or m. driven_angle: transmission angle at the driven
+    side. It is between the rod and the normal of the slider line if the crank drives, and between rod and crank if the
+    slider drives. driven_error: worst case for the position of the driven side, m at the slider or rad at the crank.
+    rod_rate: phi'. The other fields are as in `Cycle`; load excludes the drive.
     """
 
     share: Array
@@ -81,27 +81,27 @@ class SwingCurves:
 
     @property
     def pivot(self) -> Array:
-        """Size of the force in the crank pivot, N."""
+        """Magnitude of the force in the crank pivot, N."""
         return np.hypot(self.pivot_x, self.pivot_y)
 
     @property
     def crank_pin(self) -> Array:
-        """Size of the force in the crank pin, N."""
+        """Magnitude of the force in the crank pin, N."""
         return np.hypot(self.crank_pin_x, self.crank_pin_y)
 
     @property
     def slider_pin(self) -> Array:
-        """Size of the force in the slider pin, N."""
+        """Magnitude of the force in the slider pin, N."""
         return np.hypot(self.slider_pin_x, self.slider_pin_y)
 
 
 def swing_curves(
     mechanism: Mechanism, linkage: Linkage, swing: Swing, share: Array, *, back: bool = False
 ) -> SwingCurves:
-    """Return the curves of a linkage accepted by `require_swing`, at fractions (n,) of the time of one way."""
+    """Return the curves of a linkage accepted by `require_swing`, at fractions (n,) of the time of one stroke."""
     share = np.atleast_1d(np.asarray(share, dtype=np.float64))
     s, s_1, s_2 = way_of(swing.law, share, swing.table)
-    s_1 = np.maximum(s_1, 0.0)  # at rest, rounding may give a speed of the opposite sign, and reverse friction
+    s_1 = np.maximum(s_1, 0.0)  # at rest, rounding may give a speed of the opposite sign, which would reverse friction
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
     first, last = driver_ends(linkage, swing)
     # Exact at the ends, where a rounded angle might lie beyond a dead point or the reach of the rod.
@@ -134,7 +134,7 @@ def swing_curves(
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(toggle_distance(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
         error = _crank_error(theta, m, d, swing.actuator_tolerance)
-    # Drop values that only come from the negligible crank speed.
+    # Remove values that only come from the negligible crank speed.
     load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
     return SwingCurves(
         share=share,
@@ -159,7 +159,7 @@ JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "s
 
 
 def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
-    """Return the driver's place at start and end: crank angle, rad, or slider position, m."""
+    """Return the driver position at start and end: crank angle, rad, or slider position, m."""
     if swing.driver == "crank":
         return swing.start, swing.end
     x = _motion_at(linkage, np.array([swing.start, swing.end])).x
@@ -172,15 +172,15 @@ def _motion_at(linkage: Linkage, theta: Array) -> Motion:
 
 
 def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
-    """Return the crank angles (n,) of a swing without dead point that put the slider at x (n,).
+    """Return the crank angles (n,) in a swing without dead point that put the slider at x (n,).
 
-    theta = atan2(e, x) -+ acos((r^2 + d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2, then one step of Newton's iteration, as
-    acos is rough near its ends.
+    theta = atan2(e, x) -+ acos((r^2 + d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2, then one Newton step, as acos is
+    inaccurate near the ends of its domain.
     """
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     d = np.hypot(x, e)
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
-    # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign of the swing's middle.
+    # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign that it has mid-swing.
     middle = np.array([0.5 * (swing.start + swing.end)])
     side = float(toggle_distance(np.sin(middle), np.cos(middle), _motion_at(linkage, middle))[0])
     theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
@@ -218,21 +218,21 @@ def _free_crank_forces(
 
 
 def _with_pins(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) -> tuple[Array, Array]:
-    """Return B with friction in the pins, from B without it."""
+    """Return B with friction in the pins, starting from B without it."""
     for _ in range(_ITERATIONS):
         step_x, step_y = newton_step(rows(bx, by))
         bx, by = bx + step_x, by + step_y
         size = np.hypot(step_x, step_y)
         if np.all((size <= _CONVERGED * np.hypot(bx, by)) | ~np.isfinite(size)):
             break
-    near = size <= 1e-9 * np.hypot(bx, by)  # rounding may keep the last steps from falling further
+    near = size <= 1e-9 * np.hypot(bx, by)  # rounding may prevent the last steps from decreasing further
     return np.where(near, bx, np.nan), np.where(near, by, np.nan)
 
 
 def locking_angle(d: Design) -> Any:
-    """Return the angle between rod and crank, rad, above which friction in the pins cannot lock; 90 deg at most.
+    """Return the angle between rod and crank, rad, above which friction in the pins cannot lock; at most 90 deg.
 
-    Each row of the two equations' Jacobian turns by no more than the circles of the pins in it, over its length.
+    The pins in a row rotate it by no more than the sum of their friction circles divided by its length.
     """
     at_rod = np.minimum(1.0, (d.crank_pin_circle + d.slider_pin_circle) / d.l)
     at_crank = np.minimum(1.0, (d.crank_pin_circle + d.crank_pivot_circle) / d.r)
@@ -240,7 +240,7 @@ def locking_angle(d: Design) -> Any:
 
 
 def _crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:
-    """Return the worst case of the crank angle, rad: (sum of |dx/di| T_i + T_x) / |x'|."""
+    """Return the worst case for the crank angle, rad: (sum of |dx/di| T_i + T_x) / |x'|."""
     i = influences(np.sin(theta), np.cos(theta), m, d.l)
     off = np.abs(i.crank) * d.crank_error + np.abs(i.rod) * d.rod_error + np.abs(i.offset) * d.offset_error
     return np.asarray((off + actuator) / np.abs(m.x_1))

@@ -1,4 +1,4 @@
-"""Laws of motion between two rests: fraction of the travel over fraction of the time."""
+"""Laws of motion between two positions at rest: fraction of the travel over fraction of the time."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _TRAPEZOID, _HARMONIC, _CYCLOIDAL, _POLYNOMIAL, _TABLE = (_LAWS.index(law) for l
 
 
 def code_of(law: Law) -> int:
-    """Return the number of a law in kernels."""
+    """Return the code of a law in kernels."""
     return _LAWS.index(law)
 
 
 @analytic
 def way_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, Any]:
-    """Return s, ds/dt, d2s/dt2 and d3s/dt3 of a law at fractions t of the time, from 0 to 1.
+    """Return s, ds/dt, d2s/dt2 and d3s/dt3 for a law at fractions t of the time, from 0 to 1.
 
     table: pieces from `spline`, for a tabulated law. probe: a fraction on the same side of a corner as t.
 
@@ -75,7 +75,7 @@ NO_TABLE = np.zeros((0, 7))
 
 
 def spline(points: tuple[tuple[float, float], ...]) -> Array:
-    """Return the cubic pieces (k, 7) through points of fractions of time and travel, at rest at both ends.
+    """Return the cubic pieces (k, 7) through points (fractions of time and travel), at rest at both ends.
 
     Speed and acceleration are continuous. Each piece has the fractions from and up to which it counts, its origin, and
     its four coefficients. Raises `InputError` for points that are out of order, or if the motion reverses between them.
@@ -129,7 +129,7 @@ def way(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, 
 
 
 def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
-    """Return the fractions of the time at which fractions of the travel are reached; bisection, as s rises."""
+    """Return the fractions of the time at which fractions of the travel are reached; by bisection, as s rises."""
     if law in ("slow", "constant"):
         return np.asarray(s, dtype=np.float64)
     low, high = np.zeros(np.shape(s)), np.ones(np.shape(s))
@@ -141,7 +141,7 @@ def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
 
 
 def corners(law: Law, table: Array = NO_TABLE) -> tuple[float, ...]:
-    """Return the fractions of the time between the ends at which the acceleration jumps or has a kink."""
+    """Return the fractions of the time between the ends at which the acceleration has a jump or a kink."""
     if len(table):
         return tuple(table[1:, 2].tolist())
     return (_RAMP, 1.0 - _RAMP) if law == "trapezoid" else ()

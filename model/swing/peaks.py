@@ -1,6 +1,6 @@
 """Peaks of a curve over a swing for many designs, to machine precision, with exact derivatives.
 
-`peak_search` searches the pieces of both ways as segments. The complex step gives slopes over time and derivatives by
+`peak_search` treats the pieces of both strokes as segments. The complex step gives slopes over time and derivatives by
 the design's numbers.
 """
 
@@ -31,11 +31,11 @@ _CHUNK = 128
 
 @dataclass(frozen=True)
 class SwingPeaks:
-    """Local peaks of n designs, highest first.
+    """Local peaks for n designs, highest first.
 
     values: (n, k), SI, -inf beyond the last peak; NaN for a design that cannot make the swing, +inf where friction
-    locks it. places: (n, k), fraction of the time of the stroke, plus 1 on the return stroke. gradients: (n, k, v), by
-    the design's numbers; None unless asked for.
+    locks it. places: (n, k), fraction of the stroke's time, plus 1 on the return stroke. gradients: (n, k, v), by the
+    design's numbers; None unless requested.
     """
 
     values: Array
@@ -47,7 +47,7 @@ class SwingPeaks:
 class _Curve:
     """A state over one or both strokes: places are fractions of the time, plus 1 on the return stroke.
 
-    toward: the sign (n,) by which it is judged; None for its size.
+    toward: the sign (n,) by which it is judged; None for its magnitude.
     """
 
     many: SwingBatch
@@ -57,7 +57,7 @@ class _Curve:
     toward: Array | None = None
 
     def segments(self) -> Segments:
-        """Return the pieces of the strokes, each return stroke after a forward one."""
+        """Return the pieces of the strokes, each return stroke after its forward stroke."""
         parts = []
         for way, pieces in enumerate(self.ways):
             design, piece = np.nonzero(pieces.live)
@@ -107,7 +107,7 @@ def swing_peaks(
     gradients: bool = False,
     limit: int = STORED_PEAKS,
 ) -> SwingPeaks:
-    """Return the greatest sizes of a state (`swing_states.DRIVE`, `POWER` or `ERROR`) for designs (n, 3 + k).
+    """Return the maxima of a state (`swing_states.DRIVE`, `POWER` or `ERROR`), in magnitude, for designs (n, 3 + k).
 
     limit: peaks returned per design.
     """
@@ -125,9 +125,11 @@ def least_drives(
     gradients: bool = False,
     limit: int = STORED_PEAKS,
 ) -> SwingPeaks:
-    """Return the least drives along the motion of one way, without inertia, negated: local peaks, highest first.
+    """Return the minima of the drive effort in one stroke, negated: local peaks, highest first.
 
-    Where the least drive is below zero, loads push the linkage along, and the drive holds it back.
+    The effort is that along the motion, without inertia.
+
+    If the minimum drive effort is negative, loads push the linkage along, and the drive holds it back.
     """
 
     def find(many: SwingBatch) -> Maxima:
@@ -142,7 +144,10 @@ def least_drives(
 def holding_peaks(
     mechanism: Mechanism, swing: Swing, designs: Array, *, free: bool = False, gradients: bool = False
 ) -> SwingPeaks:
-    """Return the sizes of the drive at the ends of designs (n, 3 + k), without inertia. free: without friction."""
+    """Return the magnitudes of the drive effort at the ends, for designs (n, 3 + k), without inertia.
+
+    free: without friction.
+    """
     unit_design = np.ones((1, 3 + len(mechanism.varying)))
     ways = 2 if SwingBatch(mechanism, swing, unit_design, slopes=False, slow=True, free=free).ways_differ else 1
     find = partial(_at_ends, gradients=gradients)
@@ -159,7 +164,7 @@ def _peaks_of_passing(
     find: Callable[[SwingBatch], Maxima],
     batch_of: Callable[[Array], SwingBatch],
 ) -> SwingPeaks:
-    """Return the peaks that `find` has of designs that can swing."""
+    """Return the peaks that `find` gives for designs that can swing."""
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     n = len(designs)
     values, places = np.full((n, limit), -np.inf), np.full((n, limit), np.nan)
@@ -186,7 +191,7 @@ def _peaks_of_passing(
 
 
 def _peaks_of_state(batch: SwingBatch, state: int, limit: int, gradients: bool) -> Maxima:
-    # The size of the guide's friction enters a force on the slider: without slopes, its kink needs no cut.
+    # The magnitude of the guide's friction contributes to a force on the slider: without slopes, its kink needs no cut.
     contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
     ways = batch.ways() if forces else (False,)

@@ -1,4 +1,4 @@
-"""Balance of a linkage whose slider is pushed and whose crank is free: the force in the slider pin.
+"""Equilibrium of a linkage whose slider is pushed and whose crank is free: the force in the slider pin.
 
 The equations are those of `forces`, written for numbers of one design, for arrays, and for kernels.
 """
@@ -36,7 +36,7 @@ class PinSides(NamedTuple):
 
 @analytic
 def toggle_distance(sine: Any, cosine: Any, m: Motion) -> Any:
-    """Distance of the slider pin from the crank line, l sin(theta - phi), m; zero with both links in line."""
+    """Distance of the slider pin from the crank line, l sin(theta - phi), m; zero if both links are in line."""
     return sine * m.l_cos - cosine * m.l_sin
 
 
@@ -50,11 +50,11 @@ def free_pin(sine: Any, cosine: Any, m: Motion, d: Design, b: Balance) -> tuple[
 
 @analytic
 def pin_rows(bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: Balance, sides: PinSides) -> PinRows:
-    """Return the moments of rod and crank for a force in the slider pin, with friction in the pins."""
+    """Return the moments on rod and crank for a force in the slider pin, with friction in the pins."""
     ax, ay = bx + b.rod_x, by + b.rod_y
     px, py = ax + b.crank_x, ay + b.crank_y
     size_a, size_b, size_p = root(ax * ax + ay * ay), root(bx * bx + by * by), root(px * px + py * py)
-    # Without a force there is no direction, and no friction.
+    # Without a force there is no direction, hence no friction.
     per_a, per_b, per_p = inverse(size_a + _NOTHING), inverse(size_b + _NOTHING), inverse(size_p + _NOTHING)
     a, q, o = sides.crank_pin, sides.slider_pin, sides.crank_pivot
     return PinRows(
@@ -69,7 +69,7 @@ def pin_rows(bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: 
 
 @analytic
 def newton_step(rows: PinRows) -> tuple[Any, Any]:
-    """Return the step of Newton's iteration for B."""
+    """Return the Newton step for B."""
     per = inverse(rows.rod_x * rows.crank_y - rows.rod_y * rows.crank_x)
     return (rows.rod_y * rows.crank - rows.crank_y * rows.rod) * per, (
         rows.crank_x * rows.rod - rows.rod_x * rows.crank

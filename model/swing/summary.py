@@ -1,4 +1,4 @@
-"""A swing in numbers: drive, holding forces, energies, transmission and error of the driven side."""
+"""A swing in numbers: drive, holding forces, energies, transmission angle and error at the driven side."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from .swing_cycle import SwingCycle, SwingPoint
 class SwingSummary:
     """One linkage over a swing, SI and radians.
 
-    driver_ends: crank angles or slider positions. swing_angle, travel: sizes of the motion of crank and slider.
-    peak_drive: greatest size of the driver's torque or force, either way. drive_start, drive_end: drive at each end on
-    the forward and on the return stroke, without inertia. With negligible friction both hold the linkage at rest; with
-    friction, any force between them does. holds: whether friction alone holds the linkage at rest throughout the swing.
-    energy_forward, energy_back: energy of the driver on the forward and return strokes, J. stored: energy of the slow
-    forward stroke without friction, J. efficiency: energy without friction over energy with friction, on the slow
-    forward stroke, otherwise the slow return stroke; None where neither is driven. peak_power: W, None for a slow
-    swing. least_transmission: least transmission angle of the driven side. position_error: greatest over the swing,
-    None without tolerances. Where friction may lock the linkage, `locked` is the first such place, and peaks and
-    energies are NaN.
+    driver_ends: crank angles or slider positions. swing_angle, travel: magnitudes of the motion of crank and slider.
+    peak_drive: maximum magnitude of the driver's torque or force, in either stroke. drive_start, drive_end: drive at
+    each end on the forward and on the return stroke, without inertia. With negligible friction, both hold the linkage
+    at rest; with friction, any force between them does. holds: whether friction alone holds the linkage at rest
+    throughout the swing. energy_forward, energy_back: energy from the driver on the forward and return strokes, J.
+    stored: energy in the slow forward stroke without friction, J. efficiency: energy without friction divided by energy
+    with friction, on the slow forward stroke, otherwise the slow return stroke; None if neither is driven. peak_power:
+    W, None for a slow swing. least_transmission: minimum transmission angle at the driven side.
+    position_error: maximum over the swing, None without tolerances. If friction may lock the linkage, `locked` is the
+    first such place, and peaks and energies are NaN.
     """
 
     swing: Swing
@@ -48,19 +48,19 @@ class SwingSummary:
 
     @property
     def swing_angle(self) -> float:
-        """Angle of crank rotation, one way."""
+        """Crank rotation in one stroke."""
         return abs(self.crank_angles[1] - self.crank_angles[0])
 
     @property
     def travel(self) -> float:
-        """Distance between the slider positions at both ends; under a driven crank the slider may pass them."""
+        """Distance between the slider positions at both ends; if the crank drives, the slider may pass them."""
         return abs(self.slider_positions[1] - self.slider_positions[0])
 
 
 def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSummary:
-    """Return the numbers of a swing. Peaks are over the continuous crank angle, energies integrals between kinks.
+    """Return the numbers for a swing. Peaks are over the continuous crank angle; energies are integrals between kinks.
 
-    Raises what `require_swing` raises.
+    Raises the errors of `require_swing`.
     """
     checked = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, checked, swing)
@@ -96,7 +96,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
 
 
 def _drive_efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
-    """Return the energy without friction over that with friction, for the first driven stroke."""
+    """Return the energy without friction divided by that with friction, for the first driven stroke."""
     for back in (False, True):
         least, spent = free.energy(back=back), slow.energy(back=back)
         if least > 0.0 and spent > 0.0:

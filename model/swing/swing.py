@@ -1,7 +1,7 @@
 """A limited swing of the crank, driven at the crank or at the slider.
 
-The linkage need not rotate fully: it only has to close over the whole swing, l > |e - r sin(theta)|. Where the slider
-drives, it must not pass a dead point either, sin(theta - phi) = 0, at which no force on the slider turns the crank.
+The linkage need not rotate fully: it only has to close over the whole swing, l > |e - r sin(theta)|. If the slider
+drives, it must also pass no dead point, sin(theta - phi) = 0, at which no force on the slider turns the crank.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ _LEAST, _MOST = 1e-6, 1e9  # s
 class Swing:
     """A swing from one crank angle to another, rad, and back; or from one slider position to another, m.
 
-    The crank turns from start towards end: clockwise where end is less. stated_for: "crank" where start and end are
-    crank angles, "slider" where they are slider positions; then `side` says on which side of the line from crank pivot
-    to slider pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a
-    start that designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force on the
-    slider along its line. law: law of the driver's motion over time, each way. duration: time of one way, s; none for
-    slow motion. actuator_tolerance: tolerance of the slider position where the slider drives, m. points: points of a
+    The crank turns from start towards end: clockwise if end is smaller. stated_for: "crank" if start and end are crank
+    angles, "slider" if they are slider positions; then `side` says on which side of the line from crank pivot to slider
+    pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a start that
+    designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force on the slider
+    along its line. law: law of the driver's motion over time, in each stroke. duration: time of one stroke, s; none for
+    slow motion. actuator_tolerance: tolerance of the slider position if the slider drives, m. points: points of a
     tabulated law: fractions of time and travel, see `law.spline`.
     """
 
@@ -104,7 +104,7 @@ class Swing:
 
     @property
     def way(self) -> float:
-        """+1 where the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
+        """+1 if the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return math.copysign(1.0, self.end - self.start)
 
     def occurrences(self, angle: float) -> list[float]:
@@ -122,7 +122,7 @@ def slowly(swing: Swing) -> Swing:
 def dead_points(linkage: Linkage) -> tuple[float, ...]:
     """Return the crank angles of one linkage at which crank and rod are in line, rad.
 
-    Stretched: (r + l) sin(theta) = e; folded: (r - l) sin(theta) = e; each on the branch that it is on.
+    Stretched: (r + l) sin(theta) = e; folded: (r - l) sin(theta) = e; each on its own branch.
     """
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     angles = []
@@ -134,7 +134,7 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
 
 
 def started(mechanism: Mechanism, swing: Swing) -> Swing:
-    """Return the swing from the start that a machine of one design sets, if any."""
+    """Return the swing from the start that a machine for one design sets, if any."""
     start = getattr(mechanism.start, "angle" if swing.stated_for == "crank" else "place")
     if start is None:
         return swing
@@ -142,7 +142,7 @@ def started(mechanism: Mechanism, swing: Swing) -> Swing:
 
 
 def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
-    """Return the swing of one linkage between two crank angles. Raises `AssemblyError` where it misses a place."""
+    """Return the swing of one linkage between two crank angles. Raises `AssemblyError` if it cannot reach an end."""
     swing = started(mechanism, swing)
     if swing.stated_for == "crank":
         return swing
@@ -175,7 +175,7 @@ def _missed_place_text(place: float, linkage: Linkage, swing: Swing) -> str:
 def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
     """Return one linkage that can make the swing, with dimensions as floats.
 
-    Raises `InputError` for arrays, another branch than the mechanism's, a dead point where the slider drives, and loads
+    Raises `InputError` for arrays, another branch than the mechanism's, a dead point if the slider drives, and loads
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
     checked = one_linkage(mechanism, linkage)
@@ -208,7 +208,7 @@ def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> No
 
 
 def _is_folded(linkage: Linkage, swing: Swing) -> bool:
-    """Return whether crank and rod lie on each other over a whole swing that has no single dead point."""
+    """Return whether crank and rod overlap over a whole swing that has no single dead point."""
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0
 

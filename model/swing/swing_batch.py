@@ -1,7 +1,7 @@
-"""Many designs over one swing: their pieces between kinks, and states at points of them.
+"""Many designs over one swing: their pieces between kinks, and states at points in these.
 
-A swing is cut where its law has a corner, where a table has a knot, and where friction, a load or the guide's force
-changes sides. Between two cuts every curve is smooth. A cut moves with the design: where a state g is zero on it, the
+A swing is cut where its law has a corner, where a table has a knot, and where friction, a load or the guide force
+changes sides. Between two cuts every curve is smooth. A cut moves with the design. Where a state g is zero at it, the
 fraction t of the time changes by -dg/dp / (dg/dt) (implicit function theorem).
 """
 
@@ -38,10 +38,10 @@ _ROOTS = 60
 
 @dataclass(frozen=True)
 class Pieces:
-    """Pieces of one direction of the swing.
+    """Pieces of one stroke of the swing.
 
-    cuts: fractions of the time (n, c), ascending from 0 to 1. state: index (n, c) of the state that takes a fixed value
-    on a cut; -1 where the cut does not move.
+    cuts: fractions of the time (n, c), ascending from 0 to 1. state: index (n, c) of the state that has a fixed value
+    at a cut; -1 if the cut does not move.
     """
 
     back: bool
@@ -50,7 +50,7 @@ class Pieces:
 
     @property
     def live(self) -> Mask:
-        """Pieces (n, c - 1) that have a length."""
+        """Pieces (n, c - 1) of nonzero length."""
         return np.asarray(np.diff(self.cuts, axis=1) > _SHORTEST)
 
     @property
@@ -91,12 +91,13 @@ class SwingBatch:
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
         self.table = self.swing.table
-        # Quantities that depend only on position are alike both ways: all laws but tables are symmetric in time.
+        # Quantities that depend only on position are equal in both strokes: all laws except tables are symmetric in
+        # time.
         alike = all(load.is_conservative for load in mechanism.loads)
         self.ways_differ = self.rubs or self.swing.law == "table" or not alike
 
     def states(self, designs: Any, share: Any, probe: Any, back: Any, slip: Any = 0.0, step: int | None = None) -> Any:
-        """Return states (..., 8) at fractions of the time. designs: indices. step: raw number of the slope."""
+        """Return states (..., 8) at fractions of the time. designs: indices. step: raw number for the slope."""
         shape = np.broadcast_shapes(*(np.shape(argument) for argument in (designs, share, probe, back, slip)))
         share, slip, probe, back = (
             np.ascontiguousarray(np.broadcast_to(argument, shape), dtype=np.float64).ravel()
@@ -109,7 +110,7 @@ class SwingBatch:
         return flat.reshape(*shape, flat.shape[1])
 
     def locked(self) -> Mask:
-        """Return which designs friction may lock somewhere on the swing."""
+        """Return which designs friction may lock somewhere in the swing."""
         if not self.rubs:
             return np.zeros(self.count, np.bool_)
         d = design_at(self.blocks.transpose(1, 2, 0).reshape(self.blocks.shape[1], -1), slice(None))
@@ -121,14 +122,14 @@ class SwingBatch:
         return np.asarray(drives(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
 
     def ways(self) -> tuple[bool, ...]:
-        """Return the directions that differ: the forward stroke, and the return stroke unless it is alike."""
+        """Return the strokes that differ: the forward stroke, and the return stroke unless it is alike."""
         return (False, True) if self.ways_differ else (False,)
 
     def pieces(self, *, back: bool, forces: bool = True, contacts: bool = True) -> Pieces:
-        """Return the pieces of one way.
+        """Return the pieces of one stroke.
 
-        forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the
-        guide's force.
+        forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the guide
+        force.
         """
         self.table = mirrored(self.swing.points) if back else self.swing.table
         kinks = list(self._kinks()) if forces else []
@@ -148,7 +149,7 @@ class SwingBatch:
             yield np.full(self.count, share), -1
 
     def _kinks(self) -> Any:
-        """Yield every cut in the forces: fraction (n,) of the forward stroke, and state with a fixed value there."""
+        """Yield every cut in the forces: fraction (n,) of the forward stroke, and the state with a fixed value."""
         friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
@@ -169,7 +170,7 @@ class SwingBatch:
                     yield from self._cuts_at_position(self.sign * knot)
 
     def _cuts_at_position(self, x: float) -> Any:
-        """Yield the cuts at which the slider passes a place."""
+        """Yield the cuts at which the slider passes a position."""
         if self.swing.driver == "slider":
             yield self._share_at_position(np.full(self.count, x)), PLACE
             return
@@ -196,7 +197,7 @@ class SwingBatch:
             return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
 
     def driver_at(self, theta: Array) -> Array:
-        """Return the driver's place at crank angles (n,): these angles, or slider positions, m."""
+        """Return the driver position at crank angles (n,): these angles, or slider positions, m."""
         return theta if self.swing.driver == "crank" else self._slider_position(theta)
 
     def _share_at_position(self, x: Array) -> Array:
@@ -206,7 +207,7 @@ class SwingBatch:
         return np.where((s >= 0.0) & (s <= 1.0), s, np.nan)
 
     def _shares(self, ways: list[Array]) -> list[Array]:
-        """Return the fractions of the time (n,) at fractions of the travel; NaN stays NaN. One call is fastest."""
+        """Return the fractions of the time (n,) at fractions of the travel; NaN stays NaN. A single call is fastest."""
         if not ways:
             return []
         s = np.stack(ways)
@@ -214,7 +215,7 @@ class SwingBatch:
         return list(np.where(off, np.nan, shares_of(self.swing.law, np.where(off, 0.0, s), self.table)))
 
     def _with_contacts(self, pieces: Pieces) -> Pieces:
-        """Return pieces, cut further where the guide's force changes sides between neighbouring samples."""
+        """Return pieces with further cuts where the guide force changes sides between neighbouring samples."""
         u = np.linspace(0.0, 1.0, _SCAN)
         a, span = pieces.cuts[:, :-1, None], np.diff(pieces.cuts, axis=1)[:, :, None]
         share = a + span * u
@@ -241,7 +242,7 @@ class SwingBatch:
         return _sorted(Pieces(pieces.back, cuts, states_of))
 
     def _contact_shares(self, design: IntArray, low: Array, high: Array, probe: Array, back: float) -> Array:
-        """Return the fractions between two at which the guide's force is zero, by bisection and Newton's iteration."""
+        """Return the fractions between two at which the guide force is zero, by bisection and Newton's method."""
         rising = self.states(design, high, probe, back)[:, GUIDE].real > 0.0
         roots, rows = 0.5 * (low + high), np.arange(len(low))
         for _ in range(_ROOTS):
@@ -278,7 +279,7 @@ def _sorted(pieces: Pieces) -> Pieces:
     order = np.argsort(pieces.cuts, axis=1, kind="stable")
     cuts = np.take_along_axis(pieces.cuts, order, axis=1)
     state = np.take_along_axis(pieces.state, order, axis=1)
-    ends = (cuts <= 0.0) | (cuts >= 1.0)  # a place outside the swing counts as its end
+    ends = (cuts <= 0.0) | (cuts >= 1.0)  # a position outside the swing counts as its end
     return Pieces(pieces.back, cuts, np.where(ends, -1, state))
 
 

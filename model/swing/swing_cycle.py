@@ -1,4 +1,4 @@
-"""One linkage over both ways of a swing: extremes of curves, energies between kinks, where friction locks."""
+"""One linkage over both strokes of a swing: extremes of curves, energies between kinks, where friction locks."""
 
 from __future__ import annotations
 
@@ -49,25 +49,25 @@ class SwingCycle:
     swing: Swing
 
     def curves(self, share: Array, *, back: bool = False) -> SwingCurves:
-        """Return the curves at fractions (n,) of the time of one way."""
+        """Return the curves at fractions (n,) of the time of one stroke."""
         return swing_curves(self.mechanism, self.linkage, self.swing, share, back=back)
 
     def greatest(self, name: str) -> SwingPoint:
-        """Return the greatest size of a curve on both ways."""
+        """Return the maximum magnitude of a curve over both strokes."""
         forward, back = (self._extreme(name, way, np.abs) for way in (False, True))
-        # Equal on both ways up to rounding, as without friction: take the first.
+        # If both strokes are equal up to rounding, as without friction, take the first.
         return back if abs(back.value) > abs(forward.value) * (1.0 + _EQUAL) or np.isnan(forward.value) else forward
 
     def least(self, curve: str) -> SwingPoint:
-        """Return the least value of a curve, the same on both ways."""
+        """Return the minimum of a curve that is the same in both strokes."""
         return self._extreme(curve, False, np.negative)
 
     def value_range(self, curve: str) -> tuple[SwingPoint, SwingPoint]:
-        """Return the least and the greatest value of a curve over both ways; NaN where friction locks throughout."""
+        """Return the minimum and the maximum of a curve over both strokes; NaN if friction locks throughout."""
         lows, highs = (
             [self._extreme(curve, way, rank, count=4) for way in (False, True)] for rank in (np.negative, np.positive)
         )
-        # Equal on both ways up to rounding: take the first.
+        # If both strokes are equal up to rounding, take the first.
         span = max(point.value for point in highs) - min(point.value for point in lows)
         least = lows[1] if lows[1].value < lows[0].value - _EQUAL * span or np.isnan(lows[0].value) else lows[0]
         greatest = highs[1] if highs[1].value > highs[0].value + _EQUAL * span or np.isnan(highs[0].value) else highs[0]
@@ -75,17 +75,18 @@ class SwingCycle:
 
     @cached_property
     def _sampled_ways(self) -> tuple[SwingCurves, SwingCurves]:
-        """Curves of both ways at many fractions of the time."""
+        """Curves over both strokes at many fractions of the time."""
         share = np.linspace(0.0, 1.0, _SAMPLES)
         return self.curves(share), self.curves(share, back=True)
 
     @cached_property
     def _zoomed_curves(self) -> dict[tuple[bool, float, float], SwingCurves]:
-        """Curves between two fractions of the time, cached by way and fractions; extremes of many curves coincide."""
+        """Curves between two fractions of the time, cached by stroke and fractions, because extremes of many curves
+        coincide."""
         return {}
 
     def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
-        """Return the extreme of one way. count: number of the best local extremes to follow between samples."""
+        """Return the extreme in one stroke. count: number of the best local extremes to refine between samples."""
         curves = self._sampled_ways[back]
         ranks = _rank_values(getattr(curves, name), rank)
         padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
@@ -122,21 +123,21 @@ class SwingCycle:
         return None
 
     def friction_holds(self) -> bool:
-        """Return whether friction alone holds the linkage throughout: zero lies between the drives of both ways."""
+        """Return whether friction alone holds the linkage throughout: zero lies between the drives of both strokes."""
         if not self.mechanism.friction.acts:
             return False
         forward, back = self._sampled_ways
-        # The forward stroke is along the driver's direction: resistance needs a drive that way, and the opposite on
-        # return.
+        # The forward stroke is along the driver's direction: resistance needs a drive in that direction, and the
+        # opposite on return.
         first, last = driver_ends(self.linkage, self.swing)
         way = np.sign(last - first)
         return bool(np.all((way * forward.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
 
     def energy(self, *, back: bool) -> float:
-        """Return the driver's work, J; zero if it is only rounding error.
+        """Return the driver's work, J; zero if it is only a rounding error.
 
-        Gauss's quadrature on panels between the places where the drive has kinks or jumps. Each stretch is graded
-        towards its ends, since near a dead point the drive grows as the inverse root of the distance from it.
+        Gauss quadrature on panels between the places where the drive has kinks or jumps. Each interval is graded
+        towards its ends, because near a dead point the drive grows as the inverse square root of the distance from it.
         """
         cuts = self._cuts(back)
         u, w = graded_gauss(_PANELS, _GRADED)
@@ -155,7 +156,7 @@ class SwingCycle:
         return np.unique([*shares, *self._friction_changes(back)])
 
     def _kink_angles(self) -> list[float]:
-        """Return the crank angles at which loads or friction change: knots of tables, dead centres, the rod's turn."""
+        """Return the crank angles at which loads or friction change: knots of tables, dead centres, rod reversals."""
         linkage, swing = self.linkage, self.swing
         angles = [*dead_points(linkage), 0.5 * np.pi, 1.5 * np.pi]
         if bool(linkage.rotates_fully):
@@ -168,7 +169,7 @@ class SwingCycle:
         return [occurrence for angle in angles for occurrence in swing.occurrences(float(angle))]
 
     def _angles_at_positions(self, knots: Array) -> list[float]:
-        """Return the crank angles at which the slider passes distances from the crank pivot."""
+        """Return the crank angles at which the slider passes given distances from the crank pivot."""
         linkage = self.linkage
         r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
         angles: list[float] = []
@@ -199,7 +200,7 @@ class SwingCycle:
         return shares
 
     def _share_of_change(self, low: float, high: float, side: Callable[[SwingCurves], Mask], back: bool) -> float:
-        """Return the fraction between two at which a side changes, just past the change; bisection."""
+        """Return the fraction between two at which a side changes, just past the change; by bisection."""
         after = side(self.curves(np.array([high]), back=back))[0]
         for _ in range(_BISECTIONS):
             middle = 0.5 * (low + high)

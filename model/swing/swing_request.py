@@ -17,7 +17,9 @@ _ANGLES, _POSITIONS = ("start", "end"), ("slider_start", "slider_end")
 
 @dataclass(frozen=True, kw_only=True)
 class SwingRequest:
-    """Requested ends and law of a swing; None: kept. start, end: crank angles, rad. slider_start, slider_end: m.
+    """Requested ends and law of a swing; None keeps the job's value.
+
+    start, end: crank angles, rad. slider_start, slider_end: m.
 
     side, driver, law, duration (s), actuator_tolerance (m): as in `Swing`.
     """
@@ -42,7 +44,7 @@ def resolve_swing(
     drives, slowly. A start requested alone moves the end along if the job states the angle or the travel. field_names:
     names of the fields of `SwingRequest` in messages, if they differ from Python's.
 
-    Raises `InputError` for ends of two kinds, missing ends, and a table of motion that no job gives.
+    Raises `InputError` for ends of two kinds, missing ends, and a tabulated motion if the job has no table.
     """
     names = {name: (field_names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
     motion = None if motion is None else started(mechanism, motion)

@@ -27,8 +27,8 @@ from .swing import Swing
 Complexes = NDArray[np.complex128]
 
 DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
-"""Columns of states: drive, power, error of the driven side, guide force, slider position and its derivative by crank
-angle, crank angle, derivative of the driver's place by the fraction of the time."""
+"""Columns of states: drive, power, error at the driven side, guide force, slider position and its derivative by crank
+angle, crank angle, derivative of the driver position by the fraction of the time."""
 _STATES = 8
 _STILL = 1e-200  # rad/s: gives the sense of rotation, with negligible inertia
 _NEWTON = 40
@@ -37,7 +37,7 @@ _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acc
 
 
 class Path(NamedTuple):
-    """A swing in the kernel's form. slider: whether the slider drives. law: code. per_time: 1 / s, 0 where slow."""
+    """A swing in the kernel's form. slider: whether the slider drives. law: code. per_time: 1 / s, 0 if slow."""
 
     slider: bool
     law: int
@@ -64,7 +64,7 @@ def slider_at(theta: Any, d: Any) -> Any:
 
 @analytic
 def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end: float) -> Any:
-    """Return the crank angle of a swing without dead point that puts the slider at x; see `forces.angles_at`."""
+    """Return the crank angle in a swing without dead point that puts the slider at x; see `forces.angles_at`."""
     size = math.sqrt(x * x + e * e)
     ratio = (r * r + size * size - l * l) / (2.0 * r * size)
     half = math.acos(min(1.0, max(-1.0, ratio)))
@@ -82,9 +82,9 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 
 @analytic
 def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool) -> Any:
-    """Return the force on the slider that turns a free crank, along +x or NaN, and that of the guide.
+    """Return the force on the slider that turns a free crank, along +x or NaN, and the force in the guide.
 
-    on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts on a cut.
+    on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts at a cut.
     """
     b = with_couple(balance(sine, cosine, m, d, load), on_crank)
     bx, by = free_pin(sine, cosine, m, d, b)
@@ -105,7 +105,7 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
                 break
         if not size <= 1e-9 * (abs(bx.real) + abs(by.real)):
             bx = bx * math.nan
-        else:  # the imaginary part follows one step behind
+        else:  # the imaginary part lags one step behind
             step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
     guide = -by - d.slider_mass * d.gravity_y
@@ -115,10 +115,10 @@ def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, ro
 
 
 class Points(NamedTuple):
-    """Points (p,) of swings: index of the block and of the stepped one, fraction of the time, its imaginary part.
+    """Points (p,) in swings: index of the block and of the stepped block, fraction of the time, its imaginary part.
 
     probe: a fraction of the time within the same piece. back: 0 forward, 1 back. Fractions count from the start of each
-    way.
+    stroke.
     """
 
     design: Integers
@@ -130,7 +130,7 @@ class Points(NamedTuple):
 
 
 class _Workspace(NamedTuple):
-    """Work space: a design's numbers and stepped ones, pieces and shifts of its loads."""
+    """Work space: a design's numbers, real and stepped, with pieces and shifts of its loads."""
 
     block: Table
     stepped: ComplexTable
@@ -168,7 +168,7 @@ def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
 def _drive(
     path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, space: _Workspace
 ) -> tuple[Any, Any, Any, Any]:
-    """Return drive, power, error of the driven side and guide force.
+    """Return drive, power, error at the driven side and guide force.
 
     place: crank angle and its imaginary part, sine, cosine, motion and speed there. probe_angle: within the same piece.
     """
@@ -234,7 +234,7 @@ def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, spa
         rise = (rise - m.x_2 * speed * speed) * inverse(m.x_1)
     if speed.real == 0.0:
         speed = speed + turning * _STILL
-    # Signs are taken within the piece: at its place, speed and acceleration.
+    # Signs are those within the piece: at its place, speed and acceleration.
     fast, faster = speed.real, rise.real
     if not path.slider:
         fast = (end - start) * s_1 * path.per_time
@@ -268,8 +268,8 @@ def _states(
 def states(blocks: Array, steps: Complexes, loads: Loads, path: Path, points: Points, ends: Complexes) -> Complexes:
     """Return states (p, 8) at points.
 
-    blocks: (n, rows, 1), of designs that close over the swing. steps: (k, rows, 1), of the same ones with imaginary
-    steps. ends: crank angles (k, 2) of both ends of the swing, with them.
+    blocks: (n, rows, 1), for designs that close over the swing. steps: (k, rows, 1), the same designs with imaginary
+    steps. ends: crank angles (k, 2) of both ends of the swing, with these steps.
     """
     out = np.empty((len(points.share), _STATES), np.complex128)
     _states(blocks, steps, points, ends, loads, path, out)

@@ -10,8 +10,8 @@ Stated = Literal["crank", "slider"]
 Side = Literal["left", "right"]
 """Side of the crank pin, seen along the line from crank pivot to slider pin."""
 LeverLaw = Literal["slow", "constant", "trapezoid", "harmonic", "cycloidal", "polynomial"]
-"""Laws by name, which need no points."""
+"""Names of the laws that need no points."""
 Law = Literal[LeverLaw, "table"]
-"""slow: without inertia, at constant speed. constant: with a jump of the speed at both ends, without its forces.
-trapezoid: trapezoidal speed, each ramp a third of the time. harmonic: a cosine. cycloidal: a sine added to a
+"""slow: without inertia, at constant speed. constant: with a jump in speed at both ends, whose forces are ignored.
+trapezoid: trapezoidal speed, with each ramp a third of the time. harmonic: a cosine. cycloidal: a sine added to a
 constant speed. polynomial: 3-4-5. table: a spline through given points."""

@@ -1,7 +1,7 @@
 """Work of the drive over a swing, and efficiency, for many designs with exact derivatives.
 
-Gauss's quadrature on the pieces between cuts, graded towards their ends: near a dead point the drive grows as the
-inverse root of the distance from it. The nodes move with the cuts, so that the complex step differentiates the
+Gauss quadrature on the pieces between cuts, graded towards their ends, because near a dead point the drive grows as the
+inverse square root of the distance from it. The nodes move with the cuts, so the complex step differentiates the
 quadrature.
 """
 
@@ -26,14 +26,14 @@ _PANELS, _GRADED = 8, 1
 _CHUNK = 64
 _EQUAL = 1e-12
 _EVEN = 1e-9
-"""Fraction of the work in one direction: remainder of work returned in the other, due to rounding."""
+"""Relative to the work in one direction: what remains due to rounding if the other direction returns it."""
 
 
 @dataclass(frozen=True)
 class Work:
-    """A result for n designs. values: (n,), NaN where a design cannot swing, inf where friction locks it.
+    """A result for n designs. values: (n,), NaN if a design cannot swing, inf if friction locks it.
 
-    gradients: (n, v); None unless asked for.
+    gradients: (n, v); None unless requested.
     """
 
     values: Array
@@ -50,7 +50,7 @@ def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients:
 def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
     """Return the net work (n,), J, of the loads over a swing and back.
 
-    A drive without friction absorbs it. NaN where a design cannot swing.
+    A drive without friction absorbs it. NaN if a design cannot swing.
     """
 
     def both_ways(rows: Array) -> tuple[Array, Array]:
@@ -63,9 +63,9 @@ def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
 
 
 def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
-    """Return the work without friction over the work of the slow forward stroke, (n,).
+    """Return the work without friction divided by the work in the slow forward stroke, (n,).
 
-    Uses the return stroke where only that is driven; NaN where neither is.
+    Uses the return stroke if only that is driven; NaN if neither is driven.
     """
     return _for_passing_designs(
         mechanism, swing, designs, gradients, lambda rows: _efficiency_and_slopes(mechanism, swing, rows, gradients)
@@ -116,7 +116,7 @@ def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, g
 
 
 def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
-    """Return the work over one way (n,) and its derivatives by raw numbers (n, c)."""
+    """Return the work over one stroke (n,) and its derivatives by raw numbers (n, c)."""
     u, w = graded_gauss(_PANELS, _GRADED)
     design, piece = np.nonzero(pieces.live)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]

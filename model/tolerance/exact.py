@@ -1,4 +1,4 @@
-"""Exact worst case: the greatest and the least slider position that the tolerances allow.
+"""Exact worst case: the maximum and the minimum slider position that the tolerances allow.
 
 On the open branch, with the crank pin at (a, b) = r (cos theta, sin theta),
 
@@ -7,20 +7,20 @@ On the open branch, with the crank pin at (a, b) = r (cos theta, sin theta),
 to be maximised and minimised over the box of crank r, rod l, offset e and crank angle theta (clearances widen the box,
 exactly: see `position_error`). The crossed branch is its mirror image, x(theta) -> -x(pi - theta).
 
-1. dx/dl = 1 / cos(phi) > 0: the greatest x has the longest rod, the least x the shortest one.
-2. x is concave in (a, b, e) together, so at a fixed crank angle concave in (r, e) together.
-   - Least x: at a corner of (r, e).
-   - Greatest x: possibly within. dx/de = 0 where the rod lies along the line, e = r sin(theta), and
-     dx/dr = 0 where the crank is normal to the rod, r = e / sin(theta) + l cos(theta) / |sin(theta)|.
-     Both together need cos(theta) = 0; x = l is then the same all along e = r sin(theta), also on an edge.
-3. dx/dtheta = 0 only at the dead centres of a linkage that rotates fully: at the outer one, theta = asin(e / (l + r)),
-   x is greatest over the turn; at the inner one, theta = pi + asin(e / (l - r)), least.
-   - At a dead centre crank and rod are in line, so dx/dr is not 0. With dx/de = 0 as well, e = 0 and theta = 0.
+1. dx/dl = 1 / cos(phi) > 0: the maximum x has the longest rod, the minimum x the shortest rod. 2. x is concave in (a,
+b, e) together, so at a fixed crank angle it is concave in (r, e) together.
+   - Minimum x: at a corner of (r, e).
+   - Maximum x: possibly in the interior. dx/de = 0 where the rod lies along the line, e = r sin(theta), and dx/dr = 0
+     where the crank is normal to the rod, r = e / sin(theta) + l cos(theta) / |sin(theta)|. Both together need
+     cos(theta) = 0; x = l is then the same all along e = r sin(theta), also on an edge. 3. dx/dtheta = 0 only at the
+     dead centres of a fully rotating linkage. At the outer one, theta = asin(e / (l + r)), x has its maximum over the
+     turn; at the inner one, theta = pi + asin(e / (l - r)), its minimum.
+   - At a dead centre, crank and rod are in line, so dx/dr is not 0. With dx/de = 0 as well, e = 0 and theta = 0.
 
-So the greatest x is at one of 8 corners in (r, e, theta), 4 points with only e within its range, 4 with only r, 4 with
-only theta, and one with e and theta; the least x at one of 8 corners, or 4 points with only theta within. All are
-evaluated; those outside are moved into the box. Each is then a position that does occur, and the extreme one is among
-them.
+So the maximum x is at one of 8 corners in (r, e, theta), 4 points with only e in the interior, 4 with only r, 4 with
+only theta, and one with e and theta. The minimum x is at one of 8 corners or 4 points with only theta in the interior.
+All are evaluated; those outside are moved into the box. Each is then a position that does occur, and the extreme is
+among them.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ from ..machine.mechanism import Mechanism
 from ..signals.first_greatest import angle_in_cycle
 from .sources import counted_angles, limit_box
 
-_CELLS = 4  # highest samples around which the greatest deviation is searched further
+_CELLS = 4  # highest samples around which the maximum deviation is refined
 _TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
 class Extremes:
-    """Least and greatest deviation of the slider position, m, at crank angles, rad: each (m,)."""
+    """Minimum and maximum deviation of the slider position, m, at crank angles, rad: each (m,)."""
 
     crank_angle: Array
     least: Array
@@ -53,13 +53,13 @@ class Extremes:
 
     @property
     def size(self) -> Array:
-        """Greater of the two sizes, (m,), m: the exact worst case."""
+        """Larger of the two magnitudes, (m,), m: the exact worst case."""
         return np.maximum(-self.least, self.greatest)
 
 
 @dataclass(frozen=True)
 class Worst:
-    """The exact worst case over the counted part of the cycle: its size, m, and the crank angle, rad."""
+    """The exact worst case over the part of the cycle that counts: its magnitude, m, and the crank angle, rad."""
 
     size: float
     crank_angle: float
@@ -115,7 +115,7 @@ def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
 
 
 def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
-    """Greatest position on the open branch for ranges r, e (2,) and middle + turn (2,) of the crank angle."""
+    """Maximum position on the open branch for ranges r, e (2,) and middle + turn (2,) of the crank angle."""
     ends = middle + turn[:, None]
     best = np.full(middle.shape, -np.inf)
 
@@ -139,7 +139,7 @@ def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array
 
 
 def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
-    """Least position on the open branch; arguments as for `_greatest`."""
+    """Minimum position on the open branch; arguments as for `_greatest`."""
     best = np.full(middle.shape, np.inf)
     for crank, offset in product(r, e):
         dead = _clip_angle(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
@@ -149,6 +149,6 @@ def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
 
 
 def _clip_angle(angle: float, middle: Array, turn: Array) -> Array:
-    """Return a crank angle clipped into middle + turn, up to whole turns."""
+    """Return a crank angle clipped to middle + turn, up to whole turns."""
     away = angle - middle
     return middle + np.clip(away - _TURN * np.round(away / _TURN), *turn)

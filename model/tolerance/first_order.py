@@ -20,8 +20,8 @@ class FirstOrder:
     """First-order position errors at crank angles (m,), rad.
 
     worst_case, root_sum_square: (m,), m. contributions: |influence| times limit of each source, (8, m), m.
-    share_of_worst_case, share_of_variance: fractions, (8, m); NaN where nothing contributes. remainder: (m,), m, bound
-    on the contribution of second and higher orders, anywhere within the limits.
+    share_of_worst_case, share_of_variance: fractions, (8, m); NaN if nothing contributes. remainder: (m,), m, bound on
+    the contribution from second and higher orders, anywhere within the limits.
     """
 
     crank_angle: Array
@@ -36,8 +36,8 @@ class FirstOrder:
 def first_order(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> FirstOrder:
     """Return the first-order position errors of one linkage at crank angles (m,), rad.
 
-    The fractions of the variance assume limits of the same number of standard deviations for all sources. They are
-    squares of the contributions over the square of the root-sum-square.
+    The fractions of the variance assume that all limits are the same number of standard deviations. They are squares of
+    the contributions divided by the square of the root-sum-square.
     """
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -55,7 +55,7 @@ def first_order(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) 
 
 
 def shares(parts: Array) -> Array:
-    """Return parts (n, m) over their sum (m,); NaN where all are zero."""
+    """Return parts (n, m) divided by their sum (m,); NaN if all are zero."""
     total = parts.sum(axis=0)
     fractions: Array = np.divide(parts, total, out=np.full(parts.shape, np.nan), where=total > 0.0)
     return fractions
@@ -64,10 +64,10 @@ def shares(parts: Array) -> Array:
 def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
     """Return a bound (m,), m, on |x - x_0 - first order| within the limits, at crank angles (m,).
 
-    Taylor's theorem: half the sum over pairs of |second derivative| T_i T_j, with bounds of the second derivatives over
-    the whole box. With q = e - r sin(theta) and h = sqrt(l^2 - q^2), x = r cos(theta) + h, those of h are
-    h_qq = -l^2 / h^3, h_ll = -q^2 / h^3, h_lq = l q / h^3; |q| is bounded by |q_0| + T_e + T_r + r T_theta, l and r by
-    their limits, |sin| and |cos| by 1.
+    Taylor's theorem: half the sum over pairs of |second derivative| T_i T_j, with bounds on the second derivatives over
+    the whole box. With q = e - r sin(theta) and h = sqrt(l^2 - q^2), x = r cos(theta) + h, those of h are h_qq = -l^2 /
+    h^3, h_ll = -q^2 / h^3, h_lq = l q / h^3; |q| is bounded by |q_0| + T_e + T_r + r T_theta, l and r by their limits,
+    |sin| and |cos| by 1.
     """
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -81,7 +81,7 @@ def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
     sine = np.minimum(1.0, np.abs(np.sin(angles)) + t[3])
     cosine = np.minimum(1.0, np.abs(np.cos(angles)) + t[3])
     h_q, h_qq, h_ll, h_lq = q / h, l * l / h**3, q * q / h**3, l * q / h**3
-    # The crank moves q by sin, the offset by 1, the crank angle by r cos: first derivatives of q times the limits.
+    # The crank changes q by sin, the offset by 1, the crank angle by r cos: first derivatives of q times the limits.
     q_step = sine * t[0] + t[2] + r * cosine * t[3]
     of_q = h_qq * q_step**2 + 2.0 * h_lq * q_step * t[1] + h_ll * t[1] ** 2
     of_angle = 2.0 * (sine + h_q * cosine) * t[0] * t[3] + (r * cosine + h_q * r * sine) * t[3] ** 2

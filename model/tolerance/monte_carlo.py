@@ -1,7 +1,7 @@
 """Monte Carlo simulation of the slider position: many machines, each with errors drawn at random.
 
-Nothing is linearised: every machine's own slider position is compared with that of the nominal linkage. Over the whole
-cycle a machine keeps its errors, including those of the crank angle and the contact points of its pins.
+Nothing is linearised: every machine's own slider position is compared with that of the nominal linkage. A machine keeps
+its errors over the whole cycle, including those of the crank angle and the contact points in its pins.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from .sources import counted_angles, limits, source_influences
 from .spreads import Draw, Spreads
 
 CHUNK = 1024
-"""Machines at a time: each chunk has its own random stream, so that runs of any length begin alike."""
-_MOST = 100_000_000  # greatest number of stored errors: 0.8 GB
+"""Machines per chunk: each chunk has its own random stream, so that runs of any length begin alike."""
+_MOST = 100_000_000  # maximum number of stored errors: 0.8 GB
 
 
 @dataclass(frozen=True)
 class Simulation:
     """Errors of n simulated machines.
 
-    crank_angle: (m,), rad. errors: (n, m), m: slider position less the nominal one, along +x.
-    greatest: (n,), m: size of the greatest error over the counted part of the cycle, at sampled angles.
-    A machine whose linkage does not rotate fully has NaN throughout; `stuck` counts such machines.
+    crank_angle: (m,), rad. errors: (n, m), m: slider position minus the nominal position, along +x. greatest: (n,), m:
+    maximum magnitude of the error over the part of the cycle that counts, at sampled angles. A machine whose linkage
+    does not rotate fully has NaN throughout; `stuck` counts these machines.
     """
 
     crank_angle: Array
@@ -54,7 +54,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Yield:
-    """Fraction of machines within a limit, and its interval at the given confidence."""
+    """Fraction of machines within a limit, with its interval at the given confidence."""
 
     share: float
     low: float
@@ -76,12 +76,12 @@ def simulate(
     progress: Callable[[int, int], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Simulation:
-    """Return the errors of `samples` machines at crank angles (m,), rad, and each one's greatest error over the cycle.
+    """Return errors of `samples` machines at crank angles (m,), rad, and each machine's maximum over the cycle.
 
-    angles: samples per turn for the greatest error, concentrated near locking. They miss at most (pi / angles)^2 / 2, a
+    angles: samples per turn for the maximum error, concentrated near locking. They miss at most (pi / angles)^2 / 2, a
     fraction 3e-4, of a smooth curve, less than the scatter of the simulation. progress: function called with the counts
-    of finished and all machines. cancelled: function called between chunks; if true, the machines so far are returned.
-    The same seed gives the same machines. Raises `InputError` for arguments out of range.
+    of finished and of all machines. cancelled: function called between chunks; if it returns true, the machines so far
+    are returned. The same seed gives the same machines. Raises `InputError` for arguments that are out of range.
     """
     linkage = single(mechanism, linkage)
     spreads = Spreads() if spreads is None else spreads
@@ -123,7 +123,7 @@ def _require_integer(name: str, value: object, *, least: int) -> None:
 
 
 def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
-    """Return the slider positions (n, m) of machines; NaN for those that do not rotate fully."""
+    """Return the slider positions (n, m) of machines; NaN for machines that do not rotate fully."""
     r, l = (linkage.crank + drawn.crank)[:, None], (linkage.rod + drawn.rod)[:, None]
     e = (linkage.offset + drawn.offset)[:, None]
     x, y = drawn.pin_x[:, None], drawn.pin_y[:, None]
@@ -140,8 +140,8 @@ def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
 def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.0, 95.0, 99.865)) -> Summary:
     """Return mean, standard deviation and percentiles of a sample (n,), ignoring stuck machines (NaN).
 
-    Percentiles 0.135 and 99.865 % are three standard deviations of a normal distribution. Raises `InputError` if fewer
-    than two machines are left.
+    The percentiles 0.135 and 99.865 % are three standard deviations of a normal distribution. Raises `InputError` if
+    fewer than two machines remain.
     """
     sample = np.asarray(values, dtype=np.float64)
     turning = sample[np.isfinite(sample)]
@@ -155,7 +155,7 @@ def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.
 def yield_within(
     errors: ArrayLike, limit: float, *, confidence: float = 0.95, method: Literal["exact", "wilson"] = "exact"
 ) -> Yield:
-    """Return the fraction of errors (n,) of at most the limit in size, m, with its confidence interval.
+    """Return the fraction of errors (n,) with magnitudes up to the limit, m, and its confidence interval.
 
     method: "exact" (Clopper and Pearson, Biometrika 26, 1934, pp. 404-413) or "wilson" (Wilson's score interval, JASA
     22, 1927, pp. 209-212), by `scipy.stats.binomtest`. A machine that is stuck (NaN) is not within the limit.

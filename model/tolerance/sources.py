@@ -1,4 +1,4 @@
-"""Sources of a position error: every dimension, the crank angle and every clearance as one source each."""
+"""Sources of a position error: each dimension, the crank angle and each clearance are one source."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _TURN = 2.0 * math.pi
 
 
 def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return the limit of each source, (8,), m; the crank angle's in rad."""
+    """Return the limit of each source, (8,), m; that of the crank angle in rad."""
     linkage, t = one_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
         tolerance.limit(float(length))
@@ -40,7 +40,7 @@ def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
 def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
     """Return the slider displacement per unit of each source, (8, m), m/m and m/rad, at crank angles (m,), rad.
 
-    A pin's clearance acts as an error of the rod, that of the guide as an error of the offset: see `position_error`.
+    A pin's clearance acts as an error in the rod, that of the guide as an error in the offset: see `position_error`.
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     i = single(mechanism, linkage).error_influences(angles)
@@ -48,10 +48,10 @@ def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: Array
 
 
 def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
-    """Return least and greatest crank, rod, offset (m) and deviation of the crank angle (rad), (4, 2).
+    """Return the minimum and maximum of crank, rod, offset (m) and crank angle deviation (rad), (4, 2).
 
-    Clearances widen the rod (pins) and the offset (guide). Raises `AssemblyError` unless every linkage in the box
-    rotates fully, `InputError` if the crank angle may be off by half a turn.
+    Clearances widen the range of the rod (pins) and of the offset (guide). Raises `AssemblyError` unless every linkage
+    in the box rotates fully, `InputError` if the crank angle may be off by half a turn.
     """
     linkage, limits_of_sources = single(mechanism, linkage), limits(mechanism, linkage)
     half = np.add(limits_of_sources[:4], [0.0, limits_of_sources[PINS].sum(), limits_of_sources[GUIDE], 0.0])
@@ -74,8 +74,8 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
 def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
     """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
 
-    count: angles per turn, concentrated where the linkage comes close to locking. The ends of a part are among its
-    angles; the whole cycle is one part that ends one turn after its start.
+    count: angles per turn, concentrated where the linkage is close to locking. The ends of a part are among its angles;
+    the whole cycle is one part that ends one turn after its start.
     """
     linkage, window = single(mechanism, linkage), mechanism.tolerances.window
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
@@ -93,7 +93,7 @@ def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLE
     near, far = (float(x) for x in linkage.dead_centres)
 
     def angle_at_fraction(fraction: float, first: float, span: float) -> float:
-        """Crank angle, from `first` on, where the slider is at a fraction of the stroke within one stroke."""
+        """Crank angle, from `first` on, at which the slider has covered a fraction of one stroke."""
         if fraction in (0.0, 1.0):
             return first + (span if (fraction == 1.0) == (first == inner) else 0.0)
         angles = (crank_angle_at(near + fraction * (far - near), r, l, e, second) for second in (False, True))

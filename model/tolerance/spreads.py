@@ -1,4 +1,4 @@
-"""Distributions of errors within their limits: the distributions that a Monte Carlo simulation draws from."""
+"""Distributions of errors within their limits, from which a Monte Carlo simulation draws."""
 
 from __future__ import annotations
 
@@ -43,11 +43,12 @@ def error_distribution(shape: Shape = "normal", *, sigmas: float = 3.0) -> Any:
 class Spreads:
     """The distributions of all sources; errors of different sources are independent.
 
-    crank, rod, offset, crank_angle: distributions in units of the limit, from `error_distribution` or any frozen one of
-    `scipy.stats`. contact: position of a pin in its clearance c. "along the rod": pressed to either side with equal
-    probability by the force in the rod (variance of its addition to the rod: c^2). "any direction": in contact, in a
-    uniformly distributed direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its area (c^2 / 4).
-    The slider touches either side of its guide (c^2), or with "anywhere" is uniform between them (c^2 / 3).
+    crank, rod, offset, crank_angle: distributions in units of the limit, from `error_distribution` or any frozen
+    distribution of `scipy.stats`. contact: position of a pin in its clearance c. "along the rod": pressed to either
+    side with equal probability by the force in the rod (variance of its addition to the rod: c^2). "any direction": in
+    contact, in a uniformly distributed direction (c^2 / 2). "anywhere" within the clearance circle, uniform over its
+    area (c^2 / 4). The slider touches either side of its guide (c^2) or, with "anywhere", is uniform between them (c^2
+    / 3).
     """
 
     crank: Any = field(default_factory=error_distribution)
@@ -67,7 +68,7 @@ class Spreads:
 
     @property
     def variances(self) -> Array:
-        """Variance of each source, (8,), in units of its squared limit; for a pin, the part along the rod."""
+        """Variance of each source, (8,), in units of its squared limit; for a pin, the component along the rod."""
         pin, guide = {"along the rod": (1.0, 1.0), "any direction": (0.5, 1.0), "anywhere": (0.25, 1.0 / 3.0)}[
             self.contact
         ]

@@ -18,9 +18,9 @@ _DOUBLINGS = 40
 
 
 def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float) -> float:
-    """Return the size of the speed, rad/s; see `Runner.balanced_speed`.
+    """Return the magnitude of the speed, rad/s; see `Runner.balanced_speed`.
 
-    motor: the drive's torque. near: size of the mechanism's speed, rad/s.
+    motor: the drive's torque. near: magnitude of the mechanism's speed, rad/s.
     """
     from scipy.optimize import brentq
 
@@ -72,12 +72,12 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
 
 
 def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
-    """Return the mean friction torque against the rotation, N m, at a constant speed of this size, rad/s."""
+    """Return the mean friction torque against the rotation, N m, at a constant speed of this magnitude, rad/s."""
     return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
 
 
 def _mean_friction_by_speed(turn: PeriodicTurn, top: float) -> Callable[[Array | float], Array | float]:
-    """Return the mean friction torque, N m, at speeds up to the greatest, rad/s."""
+    """Return the mean friction torque, N m, at speeds up to the maximum, rad/s."""
     if not turn.equation.rubs:
         return lambda speed: 0.0
     from scipy.interpolate import CubicSpline

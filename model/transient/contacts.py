@@ -1,6 +1,6 @@
-"""Crank angles at which a guide's force changes sides in a motion.
+"""Crank angles at which a guide force changes sides during a motion.
 
-They depend on the motion. Two within one spacing of the points, where the force is almost zero, are ignored.
+They depend on the motion. Two changes within one spacing of the points, where the force is almost zero, are ignored.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Kinetic and potential energy of the mechanism, from the speeds and heights of its bodies.
 
-Nothing here is used to move the mechanism: the energy balance of a simulation compares these with the work done, so
-that it checks the equation of motion as well as its integration.
+Nothing here is used to move the mechanism. The energy balance of a simulation compares these energies with the work
+done, so it checks the equation of motion as well as its integration.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from ..machine.design import Design
 
 @analytic
 def moving_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
-    """Return J of the kinetic energy J w^2 / 2, kg m^2.
+    """Return J in the kinetic energy J w^2 / 2, kg m^2.
 
-    Crank about its pivot; rod by the speed of the crank pin, its turning phi', and its first moment S about the pin:
+    Crank about its pivot; rod from the speed of the crank pin, its rotation phi', and its first moment S about the pin:
     m_rod r^2 + 2 phi' r (sin S_y + cos S_x) + I_A phi'^2; slider with added masses (m_s + m_a) x'^2.
     """
     sx = d.rod_along * m.l_cos - d.rod_across * m.l_sin

@@ -1,16 +1,16 @@
-"""Running under a constant torque by the energy integral: exact where no load depends on the speed.
+"""Motion under a constant torque by the energy integral: exact if no load depends on the speed.
 
-With K = (J + J_drive) w^2 / 2 the speed leaves the equation of motion, dK / d(theta) = T - C. The torque of a periodic
-turn is the mean of C, and with W, the integral of T - C counted from its least value,
+With K = (J + J_drive) w^2 / 2 the speed disappears from the equation of motion, dK / d(theta) = T - C. The torque for a
+periodic turn is the mean of C. With W, the integral of T - C counted from its minimum,
 
     K(theta) = K_least + W(theta),        period = integral of sqrt((J + J_drive) / 2 K) d(theta).
 
 One unknown is left for the mean speed: K_least > 0. No load jumps over the crank angle, so W rises smoothly from its
-least value, and the period grows without bound as K_least falls to 0. Every mean speed therefore has a solution,
-however close the crank comes to stopping.
+minimum, and the period grows without bound as K_least falls to 0. Every mean speed therefore has a solution, however
+close the crank comes to stopping.
 
-Loads D w and E w^2, and friction, are evaluated along the latest motion, starting with constant speed; the result is
-then a first guess.
+Loads D w and E w^2, and friction, are evaluated along the latest motion, starting at constant speed; the result is then
+a first guess.
 """
 
 from __future__ import annotations
@@ -28,21 +28,22 @@ if TYPE_CHECKING:
     from .turn import Guess, PeriodicTurn
 
 _STOPS = 1e-12
-"""Least fraction of the energies at work that differs from zero: a millionth of the greatest speed."""
+"""Smallest fraction of the energies involved that differs from zero: a millionth of the maximum speed."""
 _NEAR = 1e-2
-"""Fraction of the range of W within which several least values may each bring the crank close to stopping."""
+"""Fraction of the range of W within which each of several minima may bring the crank close to stopping."""
 _ROUNDS, _CONVERGED = 60, 1e-6
-"""Number of re-evaluations of viscous loads and friction, and the relative change of speed that ends them."""
+"""Number of re-evaluations of viscous loads and friction, and the relative change in speed that ends them."""
 _GRADES = 10
-"""Panels on either side of a least value, each a quarter of the last: down to a millionth of a radian."""
+"""Panels on either side of a minimum, each a quarter of the previous one: down to a millionth of a radian."""
 
 
 @dataclass(frozen=True)
 class Coasting:
-    """A turn by the energy integral.
+    """A turn found by the energy integral.
 
-    load: C, viscous loads and friction on the nodes, N m. guess: start of Newton's iteration; None if the loads do not
-    settle. stops: whether the crank is slower than can be resolved, even with the least K_least, which guess then has.
+    load: C, viscous loads and friction at the nodes, N m. guess: start of Newton's method; None if the loads do not
+    settle. stops: whether the crank is slower than can be resolved, even with the minimum K_least, which guess then
+    has.
     """
 
     load: Array
@@ -51,7 +52,9 @@ class Coasting:
 
 
 def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
-    """Return the periodic turn by the energy integral. inertia: drive's, kg m^2. speed: size of the mean, rad/s.
+    """Return the periodic turn found by the energy integral.
+
+    inertia: that of the drive, kg m^2. speed: magnitude of the mean, rad/s.
 
     Between nodes the energy must not fall below zero: see `cut_at_energy_minima`.
     """
@@ -65,23 +68,23 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
             return Coasting(load, guess, stops)
         rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
         change = np.sqrt(2.0 * guess[0]) - pace
-        pace = pace + 0.5 * change  # a full step overshoots where the drag is strong
+        pace = pace + 0.5 * change  # a full step overshoots if the drag is strong
         if np.abs(change).max() <= _CONVERGED * pace.max():
             return Coasting(load, guess, stops)
     return Coasting(load, None, stops)
 
 
 def cut_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
-    """Return the turn with panels that end where W is least; load: on the nodes, N m."""
+    """Return the turn with panels that end at the minimum of W; load: values at the nodes, N m."""
     surplus = turn.way * (turn.mean(load) - load)
     least = [turn.low[p] + place * turn.width[p] for p, place, rises in turn.zeros(surplus) if rises]
     return turn.cut(np.array(least))
 
 
 def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
-    """Return the turn with ever finer panels on both sides of the least values of W.
+    """Return the turn with ever finer panels on both sides of the minima of W.
 
-    turn: from `cut_at_energy_minima`. load: on the nodes, N m.
+    turn: from `cut_at_energy_minima`. load: values at the nodes, N m.
     """
     starts, _ = turn.integral(turn.mean(load) - load)
     least = turn.low[starts - starts.min() <= _NEAR * np.ptp(starts)]
@@ -90,7 +93,7 @@ def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
 
 
 def _running_under_load(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> tuple[Guess, bool]:
-    """Return the running under a load, N m on the nodes, and whether its crank stops."""
+    """Return the motion under a load, N m at the nodes, and whether its crank stops."""
     from scipy.optimize import brentq
 
     starts, nodes = turn.integral(turn.mean(load) - load)

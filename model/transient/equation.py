@@ -4,13 +4,13 @@ The drive torque is affine in the crank's acceleration, and quadratic in its spe
 
     T = J(theta) a + (J'(theta) / 2 + E(theta)) w^2 + C(theta) + D(theta) w,
 
-where J is the moving inertia, C gravity and every load independent of speed, D the viscous loads, and E the loads that
-grow with the square of the speed. Each term is the torque of `dynamics.forces` for a motion and a load that leave only
+where J is the moving inertia, C gravity and all speed-independent loads, D the viscous loads, and E the loads that grow
+with the square of the speed. Each term is the torque from `dynamics.forces` for a motion and a load that leave only
 this term. Nothing is derived a second time, and no term is a difference of large numbers. With friction, these terms
-are those of the frictionless machine; `Span.with_friction` then gives the torque that the motion takes.
+are those of the frictionless machine; `Span.with_friction` then gives the torque that the motion requires.
 
-C depends on the slider's direction, hence on the direction of rotation. It is smooth only between *breakpoints*: dead
-centres and knots of load tables. In a `Stretch` the crank turns one way between two of them.
+C depends on the slider's direction, and hence on the direction of rotation. It is smooth only between *breakpoints*:
+dead centres and knots of load tables. In a `Stretch` the crank turns in one direction between two breakpoints.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from .friction_torque import CylinderFriction, FrictionState, Senses, jamming_er
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12
-"""rad; breakpoints closer together are one."""
+"""rad; breakpoints closer together count as one."""
 _STILL, _SPIN, _PUSH, _BARE, _SQUARE = range(5)
 _SPEED_POWERS = {_SPIN: 1, _PUSH: 1, _BARE: 1, _SQUARE: 2}  # power of the speed in the loads that each column keeps
 
@@ -62,8 +62,7 @@ class Terms:
     """The terms of the equation of motion at crank angles (n,).
 
     inertia: J, kg m^2. spin: J'/2, kg m^2. static: C, N m. drag: D, N m s.
-    square: E, N m s^2.
-    load: torque on the crank from loads independent of speed, N m; part of -C.
+    square: E, N m s^2. load: torque on the crank from speed-independent loads, N m; part of -C.
     """
 
     inertia: Array
@@ -119,9 +118,9 @@ def _fill_terms(
 
 
 class Span:
-    """A part of the cycle, from `low` to `high`, rad, on which every term is smooth.
+    """A part of the cycle, from `low` to `high`, rad, in which every term is smooth.
 
-    The crank passes it one way, +1 or -1."""
+    The crank passes through it in one direction, +1 or -1."""
 
     low: float
     high: float
@@ -138,10 +137,10 @@ class Span:
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
-        """Return accelerations (n,), rad/s^2, with friction, and torque and heat of the motion with them.
+        """Return accelerations (n,), rad/s^2, with friction, and the torque and heat of that motion.
 
         torque: motor torque on the crank, N m. inertia: inertia of the drive, kg m^2. guess: start of the iteration.
-        Raises `InputError` where friction may jam the crank, so that no single acceleration follows.
+        Raises `InputError` if friction may jam the crank, so that the acceleration is not unique.
         """
         raise NotImplementedError
 
@@ -164,24 +163,24 @@ class Equation:
     rubs: bool = False
 
     def stretch(self, index: int, way: float) -> Span:
-        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond the cycle."""
+        """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         raise NotImplementedError
 
     def turn(self, way: float) -> list[Span]:
-        """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or not."""
+        """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or clockwise."""
         order = range(len(self.breakpoints))
         return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
 
     def height_energy(self, crank_angle: Array) -> Array:
-        """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""
+        """Return the potential energy of gravity, J, counted from the crank pivot; same shape as the crank angle."""
         raise NotImplementedError
 
     def inertia(self, crank_angle: Array) -> Array:
-        """Return the moving inertia, kg m^2; shape of the crank angle."""
+        """Return the moving inertia, kg m^2; same shape as the crank angle."""
         raise NotImplementedError
 
     def least_inertia(self, crank_angle: Array) -> Array:
-        """Return the least inertia that friction leaves, kg m^2 (`with_friction`); shape of the crank angle."""
+        """Return the minimum inertia that friction leaves, kg m^2 (`with_friction`); same shape as the crank angle."""
         raise NotImplementedError
 
     def require_inertia(self, added: float) -> None:
@@ -203,7 +202,7 @@ class Equation:
 
 
 class Stretch(Span):
-    """The crank turning one way between two breakpoints, `low` and `high`, rad; way: +1 or -1."""
+    """The crank turning in one direction between two breakpoints, `low` and `high`, rad; way: +1 or -1."""
 
     def __init__(self, equation: CrankEquation, low: float, high: float, way: float) -> None:
         self.low, self.high, self.way = low, high, way
@@ -223,7 +222,7 @@ class Stretch(Span):
             self._rubbing = CylinderFriction(*arguments)
 
     def terms_at(self, crank_angle: Array) -> Terms:
-        """Return the terms at crank angles (n,), rad; beyond the ends the loads continue as within."""
+        """Return the terms at crank angles (n,), rad; beyond the ends the loads continue as inside."""
         out = np.empty((6, len(crank_angle)))
         _fill_terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
         return Terms(*out)
@@ -235,16 +234,16 @@ class Stretch(Span):
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
-        """Return accelerations with friction, and torque and heat with them, (n,)."""
+        """Return accelerations with friction, and the resulting torque and heat, (n,)."""
         return self._rubbing.accelerate(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
 
 
 class CrankEquation(Equation):
-    """The equation of motion of one fully turning linkage.
+    """The equation of motion of one fully rotating linkage.
 
-    marks: further crank angles to use as breakpoints, rad. breakpoints: (n,), ascending in [0, 2 pi), rad. direction:
-    +1 or -1, direction in which the motor turns the crank, given by the sign of the mechanism's speed. Raises
-    AssemblyError if the linkage does not rotate fully, InputError where friction locks it.
+    marks: additional crank angles to use as breakpoints, rad. breakpoints: (n,), ascending in [0, 2 pi), rad.
+    direction: +1 or -1, direction in which the motor turns the crank, given by the sign of the mechanism's speed.
+    Raises AssemblyError if the linkage does not rotate fully, InputError if friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
@@ -283,7 +282,7 @@ class CrankEquation(Equation):
         return np.asarray(angles[is_distinct] if len(angles) > 1 else angles)
 
     def stretch(self, index: int, way: float) -> Stretch:
-        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond 2 pi."""
+        """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond 2 pi."""
         if (index, way) not in self._stretches:
             low = float(self.breakpoints[index])
             last = index + 1 == len(self.breakpoints)
@@ -292,13 +291,13 @@ class CrankEquation(Equation):
         return self._stretches[index, way]
 
     def inertia(self, crank_angle: Array) -> Array:
-        """Return the moving inertia, kg m^2, from the kinetic energy of the bodies; shape of the crank angle."""
+        """Return the moving inertia, kg m^2, from the kinetic energy of the bodies; same shape as the crank angle."""
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         return np.asarray(moving_inertia(sine, cosine, design_motion(sine, cosine, d), d))
 
     def least_inertia(self, crank_angle: Array) -> Array:
-        """Return the least inertia that friction leaves, kg m^2; shape of the crank angle."""
+        """Return the minimum inertia that friction leaves, kg m^2; same shape as the crank angle."""
         d = design_at(self.block, _PUSH)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         m, mu = design_motion(sine, cosine, d), d.guide_friction
@@ -306,7 +305,7 @@ class CrankEquation(Equation):
         return inertia
 
     def height_energy(self, crank_angle: Array) -> Array:
-        """Return the potential energy of gravity, J, counted from the crank pivot; shape of the crank angle."""
+        """Return the potential energy of gravity, J, counted from the crank pivot; same shape as the crank angle."""
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         return np.asarray(height_energy(sine, cosine, design_motion(sine, cosine, d), d))

@@ -1,14 +1,15 @@
-"""The flywheel for a desired coefficient of speed fluctuation: classical estimate, then exact value.
+"""The flywheel for a target coefficient of speed fluctuation: classical estimate, then exact value.
 
 Classical (e.g. Norton, Design of Machinery, 5th ed., section 11.11): with the torque T(theta) that a constant speed w
-needs, and the greatest change dE of the energy, the integral of mean T - T, between two angles of the turn,
+needs, and the maximum change dE in the energy, the integral of mean T - T, between two angles in the turn,
 
     J = dE / (delta w^2),    delta = (w_max - w_min) / w_mean.
 
-It holds to first order in delta: T is the torque at constant speed, and the mechanism's own inertia is neglected next
-to J. A root search on steady running, with the speed from the equation of motion, gives the exact J. w_mean is 2 pi
-over the time of a turn, not the middle of w_max and w_min: a crank that nearly stops has any delta above 1, without
-bound. The search uses 1 / delta, which is nearly linear in J, and 0 where the crank does not complete the turn.
+It holds to first order in delta: T is the torque at constant speed, and the mechanism's own inertia is neglected
+compared with J. A root search on steady running, with the speed from the equation of motion, gives the exact J. w_mean
+is 2 pi divided by the time of a turn rather than the middle of w_max and w_min: for a crank that nearly stops, delta
+may have any value above 1. The search uses 1 / delta, which is nearly linear in J, and 0 if the crank does not complete
+the turn.
 """
 
 from __future__ import annotations
@@ -26,15 +27,15 @@ from ..machine.mechanism import Mechanism
 from .steady import Runner, SteadyRunning
 
 _WIDEST = 60
-"""Number of times that the greatest trial flywheel is enlarged."""
+"""Number of times that the largest trial flywheel is enlarged."""
 _BETWEEN = 12
-"""Trial flywheels between none and a sufficient one: the least is sought, and a larger one need not run more
+"""Trial flywheels between none and a sufficient one: the smallest is sought, and a larger one need not run more
 steadily."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FlywheelDesign:
-    """A flywheel on the crank shaft.
+    """A flywheel on the crankshaft.
 
     inertia: kg m^2; 0 if no flywheel is needed. estimate: inertia by the classical method, kg m^2. target: coefficient
     of speed fluctuation. running: steady running with the flywheel. drive: motor with the flywheel.
@@ -48,18 +49,18 @@ class FlywheelDesign:
 
     @property
     def needed(self) -> bool:
-        """Whether the machine without a flywheel runs less evenly than desired."""
+        """Whether the machine without a flywheel runs less evenly than required."""
         return self.inertia > 0.0
 
 
 def design_flywheel(
     mechanism: Mechanism, linkage: Linkage, fluctuation: float, drive: Drive | None = None
 ) -> FlywheelDesign:
-    """Return the least flywheel that keeps the coefficient of speed fluctuation within the target.
+    """Return the smallest flywheel that keeps the coefficient of speed fluctuation within the target.
 
-    drive: motor and flywheel, by default the mechanism's own; its flywheel is replaced. Without a drive, the motor has
-    the constant torque that keeps the mechanism's speed as the mean one. Raises `InputError` for a fluctuation that is
-    not between 0 and 1 (from 1 on the crank may stop within the turn), and where no steady running exists.
+    drive: motor and flywheel, by default those of the mechanism; its flywheel is replaced. Without a drive, the motor
+    has the constant torque that maintains the mechanism's speed as the mean. Raises `InputError` for a fluctuation that
+    is not between 0 and 1 (from 1 on the crank may stop within the turn), and if no steady running exists.
     """
     from scipy.optimize import brentq
 
@@ -74,7 +75,7 @@ def design_flywheel(
 
     @cache
     def surplus(flywheel: float) -> float:
-        """Return 1 / delta, 0 where the crank does not complete the turn, less its target."""
+        """Return 1 / delta minus its target; 1 / delta is 0 if the crank does not complete the turn."""
         try:
             delta = run(flywheel).fluctuation
         except InputError:

@@ -1,16 +1,16 @@
-"""Forward dynamics: how the crank moves under a motor and the loads, from rest or from a state.
+"""Forward dynamics: how the crank moves under a motor and the loads, from rest or from a given state.
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J includes the drive's inertia; with friction in the joints, `accelerated` gives the acceleration. Integrated over time
-by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary Differential
-Equations I, 2nd ed. 1993, II.5), stretch by stretch: no step crosses a dead centre at which a load changes, a knot of a
-table, or a standstill. The work of motor and loads, and the heat of friction, are integrated with it. Where a guide's
-force changes sides the acceleration has a kink, not a jump: the step-size control resolves it, as the energy balance
-confirms.
+J includes the drive's inertia; with friction in the joints, `accelerated` gives the acceleration. The equation is
+integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary
+Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch. No step crosses a dead centre at which a load
+changes, a knot of a table, or a standstill. The work of motor and loads, and the friction heat, are integrated with it.
+Where a guide force changes sides, the acceleration has a kink rather than a jump: the step-size control resolves it, as
+the energy balance confirms.
 
 At standstill the loads for both directions of rotation are evaluated. The crank starts in the direction in which motor
-and loads leave an accelerating torque. Otherwise it stands still for good, since motor and loads depend only on angle
+and loads leave an accelerating torque. Otherwise it stands still for good, because motor and loads depend only on angle
 and speed.
 """
 
@@ -50,7 +50,7 @@ class State:
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a simulation: time, s, of at most `duration`; turns made, backward ones negative; speed, rad/s."""
+    """Progress of a simulation: time, s, of at most `duration`; turns made, backward turns negative; speed, rad/s."""
 
     time: float
     duration: float
@@ -62,7 +62,7 @@ Stop = Literal["edge", "standstill", "table", "time"]
 
 
 def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
-    """Return the drive, by default the mechanism's own. Raises `InputError` if there is neither."""
+    """Return the drive, by default the mechanism's own. Raises `InputError` if there is no drive at all."""
     chosen = mechanism.drive if drive is None else drive
     if chosen is None:
         raise InputError("a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
@@ -83,17 +83,17 @@ def simulate(
     progress: Callable[[Progress], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Transient:
-    """Return the motion of one fully turning linkage under a motor.
+    """Return the motion of one fully rotating linkage under a motor.
 
-    drive: motor and flywheel, by default the mechanism's own. The motor turns the crank in the direction given by the
-    sign of the mechanism's speed. Several cylinders move as one shaft. In a cycle of two turns, angles below 360 deg
-    belong to the first. duration: time limit, s. turns: number of turns, either way, after which the motion ends.
-    steady: relative change of speed over a cycle below which the motion ends. tolerance: relative tolerance of the
-    integration. samples: least number of points per turn in the result. progress: function called after every stretch.
-    cancelled: function called as often; if true, the motion so far is returned.
+    drive: motor and flywheel, by default those of the mechanism. The motor turns the crank in the direction given by
+    the sign of the mechanism's speed. Several cylinders move as one shaft. In a two-turn cycle, angles below 360 deg
+    belong to the first turn. duration: time limit, s. turns: number of turns, in either direction, after which the
+    motion ends. steady: relative change in speed over a cycle below which the motion ends. tolerance: relative
+    tolerance of the integration. samples: minimum number of points per turn in the result. progress: function called
+    after every stretch. cancelled: function called as often; if it returns true, the motion so far is returned.
 
-    The result's `verdict` says why the motion ended. Raises `InputError` for values out of range and where nothing
-    resists an acceleration, `AssemblyError` if the linkage does not rotate fully.
+    The result's `verdict` says why the motion ended. Raises `InputError` for values out of range and if nothing resists
+    an acceleration, `AssemblyError` if the linkage does not rotate fully.
     """
     drive = drive_of(mechanism, drive)
     _require_options(duration, turns, steady, tolerance, samples)
@@ -131,7 +131,7 @@ def _require_options(duration: float, turns: int | None, steady: float | None, t
 
 
 class _Run:
-    """A simulation under way. The crank angle is kept within a cycle: `index` of the stretch, `local`, and `turn`.
+    """A simulation in progress. The crank angle is kept within a cycle: `index` of the stretch, `local`, and `turn`.
 
     marks: breakpoints a whole number of turns from the start.
     """
@@ -187,7 +187,7 @@ class _Run:
 
     @property
     def angle(self) -> float:
-        """The crank angle, rad, turns counted."""
+        """The crank angle, rad, including full turns."""
         return self.local + self.period * self.turn
 
     def advance(self) -> Verdict | None:
@@ -219,7 +219,7 @@ class _Run:
         return np.array([self.local, self.speed, *self.works])
 
     def _lift(self, wrapped: bool) -> None:
-        """Count the local angle from the cycle before if the crank went back over the first breakpoint."""
+        """Count the local angle from the previous cycle if the crank went back over the first breakpoint."""
         if wrapped:
             self.turn, self.local = self.turn - 1, self.local + self.period
 

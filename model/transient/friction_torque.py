@@ -1,8 +1,8 @@
 """Torque and heat for a crank at any speed and acceleration, with friction in all joints.
 
-Joint forces contain inertia terms, so friction makes the torque T(a) of an acceleration a piecewise smooth instead of
-affine. Each of the sizes |A|, |B|, |P| and |N| in the equations of `dynamics.rubbing` has a slope of at most one. With
-these slopes arbitrary, y = B_y eliminated, and primes for the two derivatives,
+Joint forces contain inertia terms. Friction therefore makes the torque T(a) for an acceleration a piecewise smooth
+rather than affine. Each of the magnitudes |A|, |B|, |P| and |N| in the equations of `dynamics.rubbing` has a slope of
+at most one. With these slopes arbitrary, y = B_y eliminated, and primes for the two derivatives,
 
     dT/da = T_a - T_y h_a / h_y,
 
@@ -12,10 +12,10 @@ these slopes arbitrary, y = B_y eliminated, and primes for the two derivatives,
     T_a = couple_a + r (cos A_ay - sin A_ax) + rho_A |A_a| + rho_O |P_a|,
 
 where every rho stands for itself times a number from -1 to 1, nu for mu times such a number, and q = sqrt(1 + mu^2).
-T_y / h_y is monotone in nu, so the least value is at nu = mu or nu = -mu. Where this value plus the drive's inertia is
+T_y / h_y is monotone in nu, so its minimum is at nu = mu or nu = -mu. If this minimum plus the drive's inertia is
 positive, every motor torque has exactly one acceleration: the root of T_motor - J_drive a - T(a). By that bound, every
-a gives a bracket of the root. Newton's iteration, halving the bracket where it would leave it, converges, even across
-the kinks where the guide's force changes sides.
+a gives a bracket for the root. Newton's method, with bisection whenever it would leave the bracket, converges even
+across the kinks where the guide force changes sides.
 """
 
 from __future__ import annotations
@@ -39,16 +39,17 @@ from ..machine.raw import Loads
 from ..signals.signals import design_motion
 
 ITERATIONS = 100
-"""Greatest number of steps of Newton's iteration."""
+"""Maximum number of Newton steps."""
 _CONVERGED, _ROUNDING = 1e-15, 1e-9
-"""Steps that end it: below the first value, or below the second and not much smaller than the last, hence rounding."""
+"""Step sizes that end the iteration: below the first value, or below the second and not much smaller than the previous
+step, which indicates rounding errors."""
 _STEP = 1e-170
-"""Imaginary step whose square is zero: where no force acts, its size must not be the root of a negative number."""
+"""Imaginary step whose square is zero: where no force acts, its magnitude must not be the root of a negative number."""
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
 class Senses(NamedTuple):
-    """Signs within a span, each +1 or -1: of the crank speed, the slider's velocity along x, the rod's turning."""
+    """Signs within a span, each +1 or -1: of the crank speed, of the slider velocity along x, of the rod's rotation."""
 
     turn: float
     slide: float
@@ -59,8 +60,8 @@ class FrictionState(NamedTuple):
     """State of motion at crank angles (n,), with friction.
 
     torque: torque on the crank, N m, without the drive's inertia. by_acceleration: its derivative, kg m^2. by_speed:
-    its derivative, N m s, if requested. least: lower bound of by_acceleration at any acceleration. heat: friction power
-    of all joints, W. guides: forces of the guides on their sliders, N, (cylinders, n).
+    its derivative, N m s, if requested. least: lower bound on by_acceleration at any acceleration. heat: friction power
+    in all joints, W. guides: forces from the guides on their sliders, N, (cylinders, n).
     """
 
     torque: Array
@@ -73,7 +74,7 @@ class FrictionState(NamedTuple):
 
 @analytic
 def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> Any:
-    """Return the least dT/da, kg m^2, on one side of the guide, where friction does not lock.
+    """Return the minimum of dT/da, kg m^2, on one side of the guide, if friction does not lock the linkage.
 
     push: the design at speed 0 and acceleration 1, without gravity. mu: the guide's friction coefficient, or its
     negative.
@@ -97,15 +98,18 @@ def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> A
 
 @analytic
 def has_converged(step: Any, last: Any) -> bool:
-    """Return whether the iteration has converged. step, last: this step and the previous one over the acceleration."""
+    """Return whether the iteration has converged.
+
+    step, last: this step and the previous one divided by the acceleration.
+    """
     return bool(step <= _CONVERGED or (step <= _ROUNDING and step >= 0.5 * last))
 
 
 @analytic
 def next_acceleration(a: Any, excess: Any, slope: Any, least: Any, low: Any, high: Any) -> Any:
-    """Return the next acceleration of Newton's iteration, and the bracket of its root.
+    """Return the next acceleration in Newton's method, and the bracket of its root.
 
-    excess: motor torque less the torque that the motion takes at a, N m. slope, least: slope of the latter and its
+    excess: motor torque minus the torque that the motion requires at a, N m. slope, least: slope of the latter and its
     lower bound, with the drive's inertia.
     """
     bound = a + excess / least
@@ -133,7 +137,10 @@ class _SpanCase(NamedTuple):
 
 
 class _Motor(NamedTuple):
-    """A motor. torques: (n,), N m. inertia: of the drive, kg m^2. step_limit: greatest number of steps to solve."""
+    """A motor.
+
+    torques: (n,), N m. inertia: that of the drive, kg m^2. step_limit: maximum number of steps for solving.
+    """
 
     torques: Row
     inertia: float
@@ -142,7 +149,7 @@ class _Motor(NamedTuple):
 
 @analytic
 def _heat_of(f: Any, m: Motion, d: Any) -> float:
-    """Return the friction heat per angle that the crank turns, J, from the forces in all joints."""
+    """Return the friction heat per crank angle, J, from the forces in all joints."""
     pivot = d.crank_pivot_circle.real * math.hypot(f.pivot_x.real, f.pivot_y.real)
     in_crank = d.crank_pin_circle.real * math.hypot(f.crank_pin_x.real, f.crank_pin_y.real)
     in_slider = d.slider_pin_circle.real * math.hypot(f.slider_pin_x.real, f.slider_pin_y.real)
@@ -154,7 +161,7 @@ def _heat_of(f: Any, m: Motion, d: Any) -> float:
 def _fill_friction_states(
     case: _SpanCase, angles: Row, speeds: Row, accelerations: Row, motor: _Motor, by_speed: bool, out: Table
 ) -> None:
-    """Fill the rows of `out` (6, n): those of `FrictionState`, in its order.
+    """Fill the rows of `out` (6, n): those of `FrictionState`, in order.
 
     accelerations: solved for, in place, under the motor, unless its number of steps is 0.
     """
@@ -217,7 +224,7 @@ class CylinderFriction:
         self._case = _SpanCase(stepped, block, push, loads, outward, senses, piece, shift)
 
     def state_at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
-        """Return torque and heat of a motion (n,)."""
+        """Return torque and heat for a motion (n,)."""
         return self._fill(crank_angle, speed, acceleration, _Motor(np.empty(0), 0.0, 0), by_speed=True)
 
     def accelerate(
@@ -239,13 +246,16 @@ class CylinderFriction:
 
 
 def require_inertia_left(angle: Array, inertia: Array) -> None:
-    """Raise `InputError` where friction may jam a crank. angle: rad. inertia: inertia that friction leaves, kg m^2."""
+    """Raise `InputError` if friction may jam a crank. angle: rad. inertia: inertia that friction leaves, kg m^2."""
     if not (inertia > 0.0).all():
         raise jamming_error(angle, inertia)
 
 
 def jamming_error(angle: Array, inertia: Array) -> InputError:
-    """Return the error for a crank that friction may jam where least inertia remains; see `require_inertia_left`."""
+    """Return the error for a crank that friction may jam where the least inertia remains.
+
+    See `require_inertia_left`.
+    """
     worst = int(np.argmin(np.where(np.isnan(inertia), -np.inf, inertia)))
     return InputError(
         "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "
@@ -256,7 +266,7 @@ def jamming_error(angle: Array, inertia: Array) -> InputError:
 
 
 def sum_cylinders(parts: list[FrictionState]) -> FrictionState:
-    """Return the state of a shaft from those of its cylinders."""
+    """Return the state of a shaft from the states of its cylinders."""
     guides = np.concatenate([part.guides for part in parts])
     torque, by_acceleration, by_speed, least, heat = np.sum([part[:-1] for part in parts], axis=0)
     return FrictionState(torque, by_acceleration, by_speed, least, heat, guides)

@@ -1,7 +1,8 @@
 """A crank with prescribed motion: the drive required at every instant.
 
-The motion is given over crank angle, for a crank that always turns one way, or over time, for any motion. Tables are
-interpolated by cubic splines, so that the acceleration is continuous; periodic over crank angle, not-a-knot over time.
+The motion is given over the crank angle, for a crank that always turns in one direction, or over time, for any motion.
+Tables are interpolated by cubic splines, so that the acceleration is continuous; the splines are periodic over the
+crank angle, not-a-knot over time.
 """
 
 from __future__ import annotations
@@ -25,16 +26,17 @@ from .equation import TURN
 Function = Callable[[Array], ArrayLike]
 
 _CLOSE = 1e-4
-"""Greatest error of a stated derivative against its function's slope, as a fraction of the greatest: finds mistakes."""
+"""Maximum difference between a stated derivative and its function's slope, as a fraction of the maximum slope: reveals
+mistakes."""
 _STEP = 1e-4
 """Step of the differences that check it, as a fraction of the distance between points."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PrescribedMotion:
-    """The crank's motion at n instants and the drive it needs, SI and radians.
+    """The crank's motion at n instants and the drive that it needs, SI and radians.
 
-    time: (n,), s. power: power of the drive torque, W. curves: slider motion, load, drive torque and reactions (n,)
+    time: (n,), s. power: power of the drive torque, W. curves: slider motion, load, drive torque and reactions, (n,)
     each.
     """
 
@@ -71,7 +73,7 @@ class SpeedOverAngle:
 class SpeedOverTime:
     """Crank speed, rad/s, as a function of time, s. acceleration: its derivative, rad/s^2.
 
-    angle: the crank angle, rad; integrated from the speed if None, starting with 0 at the first instant.
+    angle: the crank angle, rad; if None, it is integrated from the speed, starting with 0 at the first instant.
     """
 
     speed: Function
@@ -98,10 +100,10 @@ def over_angle(
     start: float = 0.0,
     samples: int = 720,
 ) -> PrescribedMotion:
-    """Return the motion over crank angle, counting time from the angle `start`, rad.
+    """Return the motion over the crank angle, counting time from the angle `start`, rad.
 
-    dt = d(theta) / w, acceleration = w dw/d(theta). The sign of the speed, which must not change, is the direction.
-    samples: points of each turn. Raises `InputError` for a speed that is not finite, is zero or changes its sign.
+    dt = d(theta) / w, acceleration = w dw/d(theta). The sign of the speed, which must not change, gives the direction.
+    samples: points in each turn. Raises `InputError` for a speed that is not finite, is zero or changes its sign.
     """
     if not (0.0 < turns < math.inf and math.isfinite(start)):
         raise InputError(f"turns must be positive, and the start finite; got {turns:g} turns from {start:g} rad")
@@ -126,8 +128,8 @@ def over_angle(
 def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike) -> PrescribedMotion:
     """Return the motion at increasing times (n,), s.
 
-    The loads follow the sign of the speed. Where the speed is exactly zero, they follow the direction in which the
-    crank starts, given by the sign of the acceleration. Raises `InputError` for values that are not finite, and for an
+    The loads follow the sign of the speed. If the speed is exactly zero, they follow the direction in which the crank
+    starts, given by the sign of the acceleration. Raises `InputError` for values that are not finite, and for an
     acceleration that is not the slope of the speed.
     """
     time = np.atleast_1d(np.asarray(times, dtype=np.float64))
@@ -192,7 +194,7 @@ def _bounded_spline(spline: Any, at: Array) -> Function:
     """Return a spline that raises an error beyond its table."""
 
     def bounded(time: Array) -> Array:
-        # Differences that check a slope reach beyond the ends by a millionth of the span.
+        # Differences that check a slope extend beyond the ends by a millionth of the span.
         margin = 1e-5 * (at[-1] - at[0])
         if np.any(time < at[0] - margin) or np.any(time > at[-1] + margin):
             raise InputError(
@@ -218,7 +220,7 @@ def _require_slope(function: Function, slope: Function, at: Array) -> None:
     middle, slopes = _function_values("speed", function, at), _function_values("slope", slope, at)
     after = (_function_values("speed", function, at + step) - middle) / step
     before = (middle - _function_values("speed", function, at - step)) / step
-    # On a kink, the slope of either side is accepted, and any value in between.
+    # At a kink, the slope of either side is accepted, and any value in between.
     off = np.maximum(slopes - np.maximum(before, after), np.minimum(before, after) - slopes)
     if float(off.max()) > _CLOSE * max(float(np.abs(slopes).max()), float(np.abs(after).max()), 1e-6):
         worst = int(np.argmax(off))

@@ -1,4 +1,4 @@
-"""Result of a forward simulation: the motion over time, and the energy balance that tests it."""
+"""Result of a forward simulation: the motion over time, and the energy balance that checks it."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ assert set(_SAID) == set(get_args(Verdict))
 
 @dataclass(frozen=True, kw_only=True)
 class Transient:
-    """Motion of the crank over time, arrays (n,), SI and radians; closest where the crank turns fast.
+    """Motion of the crank over time, arrays (n,), SI and radians; points are denser where the crank turns fast.
 
     verdict: reason for the end. turned_back: times at which the crank reversed, s. angle: crank angle including full
-    turns, rad. motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism takes;
-    flywheel and rotor take the rest. power: motor power, W. kinetic, potential: energies of mechanism and drive, and of
-    gravity, J. motor_work, load_work: work since the start by the motor and on the loads, springs included, J.
-    friction_work: heat of the joints since the start, J.
+    turns, rad. motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism
+    absorbs; flywheel and rotor absorb the rest. power: motor power, W. kinetic, potential: energies of mechanism and
+    drive, and of gravity, J. motor_work, load_work: work since the start by the motor and on the loads, springs
+    included, J. friction_work: heat from the joints since the start, J.
     """
 
     verdict: Verdict
@@ -68,9 +68,9 @@ class Transient:
 
     @property
     def imbalance(self) -> float:
-        """Greatest energy balance error, as a fraction of the greatest energy or work; 0 if all are 0.
+        """Maximum energy balance error, as a fraction of the maximum energy or work; 0 if all are 0.
 
-        Kinetic energy gained + potential gained - (work of the motor - work done on the loads - heat of friction).
+        Kinetic energy gained + potential energy gained - (work of the motor - work done on the loads - friction heat).
         """
         stored = self.kinetic - self.kinetic[0] + self.potential - self.potential[0]
         error = np.abs(stored - self.motor_work + self.load_work + self.friction_work).max()
@@ -88,9 +88,9 @@ class Transient:
         return slice(first, None) if np.all(speeds > 0.0) or np.all(speeds < 0.0) else None
 
     def fluctuation(self) -> float | None:
-        """Return (greatest - least speed) / mean speed over the last whole turn; None if there is none.
+        """Return (maximum - minimum speed) / mean speed over the last whole turn; None if there is no such turn.
 
-        The mean is over time, 2 pi / period. Extremes are those of the points: more samples are more accurate.
+        The mean is over time, 2 pi / period. Extremes are those at the points; more samples are more accurate.
         """
         turn = self.last_turn()
         if turn is None:
@@ -109,7 +109,7 @@ class Recorder:
         self._parts: list[Array] = []
 
     def add(self, stretch: Span, turn: int, solution: Any) -> None:
-        """Add the solution within a stretch; add its first point only if it is the first of all."""
+        """Add the solution within a stretch; add its first point only if it is the very first."""
         count = np.ceil(np.abs(np.diff(solution.y[0])) * (self._samples / TURN)).astype(int)
         times = [
             np.linspace(start, end, max(1, inner), endpoint=False)
@@ -119,7 +119,7 @@ class Recorder:
         self._take(stretch, turn, time, solution.sol(time))
 
     def add_single_state(self, stretch: Span, turn: int, time: float, y: Array) -> None:
-        """Add a single state, if there is no other."""
+        """Add a single state if there is no other."""
         if not self._parts:
             self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 

@@ -1,7 +1,7 @@
-"""The equation of motion of a crankshaft, for several cylinders or a cycle of two turns.
+"""Equation of motion of a crankshaft, for several cylinders or a two-turn cycle.
 
-Each cylinder is a separate machine at its crank angle, and a cycle of two turns is two machines (`machine.two_turns`).
-Moving inertia, and every term of the torque, add up.
+Each cylinder is a separate machine at its crank angle, and a two-turn cycle is two machines (`machine.two_turns`). The
+moving inertias, and every term of the torque, add up.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from .friction_torque import (
 
 
 class ShaftStretch(Span):
-    """The shaft turning one way between two breakpoints, `low` and `high`, rad: a stretch of each cylinder.
+    """The shaft turning in one direction between two breakpoints, `low` and `high`, rad: a stretch of each cylinder.
 
-    parts: stretches, each with the lead of its crank angle over the shaft's, rad.
+    parts: stretches, each with the lead of its crank angle over the shaft angle, rad.
     """
 
     def __init__(self, low: float, high: float, way: float, parts: list[tuple[Stretch, float]]) -> None:
@@ -43,7 +43,7 @@ class ShaftStretch(Span):
         return Terms(*(np.sum(column, axis=0) for column in columns))
 
     def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
-        """Return torque and heat with friction of all cylinders, (n,)."""
+        """Return torque and heat with friction for all cylinders, (n,)."""
         return sum_cylinders(
             [stretch.with_friction(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts]
         )
@@ -51,7 +51,7 @@ class ShaftStretch(Span):
     def accelerated(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
-        """Return accelerations with friction, and torque and heat of all cylinders with them, (n,)."""
+        """Return accelerations with friction, and the resulting torque and heat for all cylinders, (n,)."""
         accelerations, last = np.array(guess), math.inf
         low, high = np.full(accelerations.shape, -np.inf), np.full(accelerations.shape, np.inf)
         for _ in range(ITERATIONS):
@@ -70,10 +70,10 @@ class ShaftStretch(Span):
 
 
 class ShaftEquation(Equation):
-    """The equation of motion of all cylinders of one linkage each, over a turn or two.
+    """The equation of motion of all cylinders with the same linkage, over one or two turns.
 
-    marks: further shaft angles to use as breakpoints, rad.
-    Raises AssemblyError if the linkage does not rotate fully, InputError where friction locks it.
+    marks: additional shaft angles to use as breakpoints, rad. Raises AssemblyError if the linkage does not rotate
+    fully, InputError if friction locks it.
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
@@ -107,7 +107,7 @@ class ShaftEquation(Equation):
         self._stretches: dict[tuple[int, float], ShaftStretch] = {}
 
     def stretch(self, index: int, way: float) -> Span:
-        """Return the stretch from breakpoint `index` to the next, the last stretch reaching beyond the cycle."""
+        """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         if (index, way) not in self._stretches:
             ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
             self._stretches[index, way] = self._stretch(ends[index], ends[index + 1], way)
@@ -127,25 +127,25 @@ class ShaftEquation(Equation):
         return ShaftStretch(low, high, way, parts)
 
     def inertia(self, crank_angle: Array) -> Array:
-        """Return the moving inertia of all cylinders, kg m^2; shape of the crank angle."""
+        """Return the moving inertia of all cylinders, kg m^2; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
         return np.asarray(sum(equations[0].inertia(crank_angle + member.lead) for member, equations in parts))
 
     def least_inertia(self, crank_angle: Array) -> Array:
-        """Return the least inertia that friction leaves of all cylinders, kg m^2; shape of the crank angle."""
+        """Return the minimum inertia that friction leaves for all cylinders, kg m^2; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
         return np.asarray(sum(equations[0].least_inertia(crank_angle + member.lead) for member, equations in parts))
 
     def height_energy(self, crank_angle: Array) -> Array:
-        """Return the potential energy of gravity of all cylinders, J; shape of the crank angle."""
+        """Return the potential energy of gravity of all cylinders, J; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
         return np.asarray(sum(equations[0].height_energy(crank_angle + member.lead) for member, equations in parts))
 
 
 def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:
-    """Return the equation of motion for a machine's crank, or for its shaft with cylinders or two turns.
+    """Return the equation of motion for a machine's crank, or for its shaft with several cylinders or two turns.
 
-    marks: further crank angles to use as breakpoints, rad.
+    marks: additional crank angles to use as breakpoints, rad.
     """
     cylinders = 1 if mechanism.arrangement is None else len(mechanism.arrangement.phases)
     several = cylinders > 1 or cycle_turns(mechanism) > 1

@@ -29,7 +29,7 @@ from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, panels_of, peak_of
 
-_PIECES = 12  # least number of panels in a turn
+_PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 360
 _TIME = 2  # row with the time per crank angle
 _SQUARES = ("pivot_force", "crank_pin_force", "slider_pin_force", "shaking_force")
@@ -40,7 +40,7 @@ _SIZES = ("torque", "power", "guide_force", "slider_speed", "slider_acceleration
 class SpeedProfileCurves:
     """Crank speed, rad/s, and acceleration, rad/s^2, over the crank angle (n,), and the curves of the cycle there.
 
-    named_curves: curves (n,) by name, SI: forces of the joints by their size, shaking force and moment, power.
+    named_curves: curves (n,) by name, SI: magnitudes of the joint forces, shaking force and moment, power.
     """
 
     speed: Array
@@ -53,8 +53,8 @@ class SpeedProfileCurves:
 class SpeedProfileCycle:
     """Numbers over a turn, SI.
 
-    period: time of a turn, s. mean_speed: mean over time, rad/s. fluctuation: range of speed over the mean speed.
-    peaks: greatest magnitudes by name. mean_torque: mean over the crank angle, N m. rms_torque: RMS value over time, N
+    period: time of a turn, s. mean_speed: mean over time, rad/s. fluctuation: range of the speed divided by its mean.
+    peaks: maximum magnitudes by name. mean_torque: mean over the crank angle, N m. rms_torque: RMS value over time, N
     m. work: work of the torque, J.
     """
 
@@ -76,7 +76,7 @@ class SpeedProfileCycle:
 
 
 class CrankMotion(NamedTuple):
-    """A crank speed over the crank angle besides the machine's own.
+    """A crank speed over the crank angle that replaces the machine's own.
 
     speed_at: function of crank angles (n,), rad, that returns crank speed, rad/s, and acceleration, rad/s^2.
     knots: crank angles (k,), rad, at which they are not analytic.
@@ -89,7 +89,7 @@ class CrankMotion(NamedTuple):
 def speed_profile_curves(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, motion: CrankMotion | None = None
 ) -> SpeedProfileCurves:
-    """Return the curves of one fully turning linkage at crank angles (n,), rad. motion: instead of the machine's."""
+    """Return the curves of one fully rotating linkage at crank angles (n,), rad. motion: replaces the machine's."""
     speed, acceleration = crank_speed(mechanism, crank_angle) if motion is None else motion.speed_at(crank_angle)
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
@@ -109,10 +109,10 @@ def speed_profile_curves(
 
 
 def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMotion | None = None) -> SpeedProfileCycle:
-    """Return the numbers of one fully turning linkage over a turn; of a cycle of two turns, per turn.
+    """Return the statistics of one fully rotating linkage over a turn; for a two-turn cycle, per turn.
 
-    motion: crank motion instead of the machine's own, in its direction.
-    Raises `InputError` for a machine at rest or under a constant acceleration, and where friction locks the linkage.
+    motion: crank motion that replaces the machine's own, in its direction. Raises `InputError` for a machine at rest or
+    under a constant acceleration, and if friction locks the linkage.
     """
     linkage = single(mechanism, linkage)
     if not mechanism.speed or (mechanism.acceleration and mechanism.speed_profile is None):
@@ -161,6 +161,6 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
 
 
 def _size(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
-    """Return the greatest size of both extremes."""
+    """Return the larger magnitude of both extremes."""
     top = peak_of(extremes, turns * TURN)
     return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))

@@ -1,4 +1,4 @@
-"""Steady running: the speed repeats after a turn. Solved directly, not by simulating until it settles."""
+"""Steady running: the speed repeats after a turn. It is solved directly rather than by simulating until it settles."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ from .forward import drive_of
 from .shaft import equation_of
 from .turn import Guess, PeriodicTurn, Profile, Torque
 
-_ROUNDING = 1e-13  # fraction of greatest torque times cycle angle: a smaller change of energy is rounding error
+_ROUNDING = 1e-13  # fraction of maximum torque times cycle angle: a smaller change in energy is a rounding error
 
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyRunning:
-    """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of speed included.
+    """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of the speed included.
 
-    crank_angle: from the first breakpoint on, falling if the crank turns clockwise. motor_torque: motor torque on the
-    crank, N m, counter-clockwise. torque: part that the mechanism takes. mean_speed: 2 pi / period, with its sign.
-    work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory: fraction
-    of a small change of w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing depends
-    on it). turns: turns per cycle.
+    crank_angle: from the first breakpoint on, decreasing if the crank turns clockwise. motor_torque: motor torque on
+    the crank, N m, counter-clockwise. torque: part that the mechanism absorbs. mean_speed: 2 pi / period, with its
+    sign. work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory:
+    fraction of a small change in w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing
+    depends on it). turns: turns per cycle.
     """
 
     crank_angle: Array
@@ -53,7 +53,7 @@ class SteadyRunning:
 
     @property
     def fluctuation(self) -> float:
-        """Coefficient of speed fluctuation: (greatest - least speed) / mean speed."""
+        """Coefficient of speed fluctuation: (maximum - minimum speed) / mean speed."""
         return float(self.speed.max() - self.speed.min()) / abs(self.mean_speed)
 
 
@@ -88,7 +88,7 @@ class Runner:
         return running
 
     def constant(self, inertia: float) -> SteadyRunning:
-        """Return the steady running under the constant torque that keeps the mechanism's speed as the mean one.
+        """Return the steady running under the constant torque that maintains the mechanism's speed as the mean.
 
         inertia: inertia of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result.
         Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `speeds`).
@@ -120,9 +120,9 @@ class Runner:
         return _steady_result(turn, profile, _no_motor, inertia)
 
     def speeds(self, inertia: float) -> tuple[float, float]:
-        """Return the least and the greatest speed, rad/s, under the constant torque that keeps the mean one.
+        """Return the minimum and maximum speed, rad/s, under the constant torque that maintains the mean speed.
 
-        The least speed is 0 where the crank nearly stops: below a millionth of the greatest. inertia: see `constant`.
+        The minimum speed is 0 if the crank nearly stops: below a millionth of the maximum. inertia: see `constant`.
         Raises `InputError` if the inertia is zero at some crank angle, so that speeds are undefined, or if no steady
         running is found with viscous loads or friction.
         """
@@ -141,15 +141,15 @@ class Runner:
         return float(np.abs(running.speed).min()), float(np.abs(running.speed).max())
 
     def balanced_speed(self, drive: Drive) -> float:
-        """Return the size of the constant speed, rad/s, at which motor and loads balance over a turn.
+        """Return the magnitude of the constant speed, rad/s, at which motor and loads balance over a turn.
 
-        Only a stable speed counts: at higher speed the loads exceed the motor. Of several, the nearest to the
-        mechanism's speed, or the least if that is 0. Raises `InputError` where there is none.
+        Only a stable speed counts: at a higher speed the loads exceed the motor. Among several, the one closest to the
+        mechanism's speed counts, or the lowest if that speed is 0. Raises `InputError` if there is none.
         """
         return balanced_speed(self.turn, drive, self._motor(drive), self.speed)
 
     def energy_change(self, speed: float) -> float:
-        """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: rad/s, its size."""
+        """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: magnitude, rad/s."""
         turn, pace = self.turn.rubbing_at(speed), np.array(self.turn.way * speed)
         torque = turn.terms.torque(pace, 0.0) + turn.friction(pace, 0.0)
         starts, nodes = turn.integral(turn.mean(torque) - torque)
@@ -158,7 +158,7 @@ class Runner:
         return change if change > rounding else 0.0
 
     def _motor(self, drive: Drive) -> Torque:
-        """Return the drive's torque; beyond a table it keeps the last value, so that an iteration may stray."""
+        """Return the drive's torque; beyond a table it keeps the last value, so that an iteration may go there."""
         way, (slowest, fastest) = self.turn.way, speed_range(drive)
 
         def motor(speed: Array) -> tuple[Array, Array]:
@@ -199,7 +199,7 @@ def _steady_result(turn: PeriodicTurn, profile: Profile, motor: Torque, inertia:
 def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: float) -> Array:
     """Return angle, time, E and its derivative at starts, nodes and extremes of all panels, (4, count), in order.
 
-    The first point comes again at the end, a cycle later.
+    The first point is repeated at the end, a cycle later.
     """
     times, node_times = turn.integral(pace)
     first_rates = turn.at_edges(profile.rate)[:, 0]
@@ -225,8 +225,8 @@ def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: flo
 def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None = None) -> SteadyRunning:
     """Return the steady running under a motor, by default the mechanism's own drive.
 
-    Among several (a motor whose torque rises and falls with speed), the stable one nearest to the mechanism's speed.
-    Raises `InputError` where there is none: the motor is too weak, nothing limits the speed, or the torque table ends
-    too soon.
+    Among several (for a motor whose torque rises and falls with speed), the stable one closest to the mechanism's
+    speed. Raises `InputError` if there is none: the motor is too weak, nothing limits the speed, or the torque table
+    ends too soon.
     """
     return Runner(mechanism, linkage).running_under(drive_of(mechanism, drive))

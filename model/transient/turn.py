@@ -1,19 +1,19 @@
 """One cycle of steady running (one or two turns), solved as a boundary-value problem by collocation.
 
-With the crank angle as the variable and E = w^2 / 2 the equation of motion
+With the crank angle as the variable and E = w^2 / 2, the equation of motion
 
     dE / d(theta) = (T_motor - C - D w - J' E) / J,        E(theta + turn) = E(theta),
 
-is regular even where the crank nearly stops. The turn is cut into panels at the breakpoints and finer; on each, dE is
-a polynomial through the Gauss-Legendre nodes (a Gauss method; Hairer, Norsett and Wanner, Solving Ordinary
-Differential Equations I, 2nd ed. 1993, II.7). Newton's iteration is direct: each linearised panel maps one number, E
-at its start, to E at its end, and the chained maps close the turn.
+is regular even where the crank nearly stops. The turn is divided into panels at the breakpoints and more finely; on
+each, dE is a polynomial through the Gauss-Legendre nodes (a Gauss method; Hairer, Norsett and Wanner, Solving Ordinary
+Differential Equations I, 2nd ed. 1993, II.7). Newton's method is direct: each linearised panel maps one number, E at
+its start, to E at its end, and the chained maps close the turn.
 
-Where the crank nearly stops, the time per angle, 1 / sqrt(2 E), rises steeply. Panels whose last Legendre coefficients
-have not died out, neither at the nodes nor in the integral over the turn, are halved; the turn is then solved again.
-The integral matters where a load changes over a tiny distance: the rounding error of the slider's position then changes
-the load considerably, and halving does not reduce it. With friction, panels also end where a guide's force changes
-sides. These angles depend on the motion, so the turn is solved again until they settle.
+Where the crank nearly stops, the time per angle, 1 / sqrt(2 E), rises steeply. Panels are halved if their last Legendre
+coefficients have not died out, neither at the nodes nor in the integral over the turn; the turn is then solved again.
+The integral matters if a load changes over a tiny distance: the rounding error of the slider position then changes the
+load considerably, and halving does not reduce it. With friction, panels also end where a guide force changes sides.
+These angles depend on the motion, so the turn is solved again until they settle.
 """
 
 from __future__ import annotations
@@ -36,24 +36,24 @@ from .equation import TURN, Equation, Span, Terms
 _PANELS = 40
 _STEPS = 60
 _EXACT = 1e-13
-_RESOLVED = 1e-11  # greatest size of the last coefficients on a resolved panel, relative to the greatest value
-_NEGLIGIBLE = 1e-13  # error of one panel as a fraction of the integral over the turn: a smaller one is rounding
+_RESOLVED = 1e-11  # maximum of the last coefficients on a resolved panel, relative to the maximum value
+_NEGLIGIBLE = 1e-13  # error of one panel as a fraction of the integral over the turn: a smaller one is a rounding error
 _MOST = 4_000  # panels that halving may add: each needs a few matrices of 2 kB
-_HALVINGS = 24  # a panel of 1e-8 rad: a crank that comes to less than 1e-8 of its greatest speed stops
-_MOVES = 12  # greatest number of times that panels are moved to where guides change sides
-_MOVED = 1e-9  # rad; a kink nearer to a panel's end than its first node causes an error of the square of this
+_HALVINGS = 24  # a panel of 1e-8 rad: a crank that becomes slower than 1e-8 of its maximum speed stops
+_MOVES = 12  # maximum number of times that panels are moved to where guides change sides
+_MOVED = 1e-9  # rad; a kink closer to a panel's end than its first node causes an error of the square of this
 
 Torque = Callable[[Array], tuple[Array, Array]]
 """Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
 Guess = tuple[Array, Array, float]
-"""E on the nodes, (panels, nodes), and at the panels' starts, (panels,); a torque added to the motor's, N m."""
+"""E at the nodes, (panels, nodes), and at the panels' starts, (panels,); a torque added to the motor's, N m."""
 
 
 @dataclass(frozen=True)
 class Profile:
     """A solution: E, (panels, nodes), and at the panels' starts, (panels,); its derivative by angle at the nodes.
 
-    added: torque added to the motor's, N m. memory: fraction of a small change of E at the start that remains after a
+    added: torque added to the motor's, N m. memory: fraction of a small change in E at the start that remains after a
     turn.
     """
 
@@ -65,7 +65,7 @@ class Profile:
 
 
 def _legendre_sum(series: Array, x: float) -> float:
-    """Return the sum of a Legendre series by Clenshaw's recursion, as `legval` does, but faster, in plain numbers."""
+    """Return the sum of a Legendre series by Clenshaw's recursion, like `legval` but faster, in plain numbers."""
     numbers: list[float] = series.tolist()
     before, last = numbers[-2:]
     for degree in range(len(numbers) - 1, 1, -1):
@@ -75,10 +75,10 @@ def _legendre_sum(series: Array, x: float) -> float:
 
 
 class PeriodicTurn:
-    """Terms of the equation of motion on the nodes of a cycle, in the order of the crank's passage.
+    """Terms of the equation of motion at the nodes of a cycle, in the order in which the crank passes them.
 
     angle: (panels, nodes). width: angle turned in each panel, (panels,), negative clockwise. low: start of each panel.
-    cuts: further crank angles at which panels end, rad; contacts: angles where a guide changes sides, ascending.
+    cuts: additional crank angles at which panels end, rad; contacts: angles where a guide changes sides, ascending.
     spans: the parts of the cycle, each with its panels.
     """
 
@@ -117,17 +117,17 @@ class PeriodicTurn:
         self.terms = Terms(*(np.concatenate(column).reshape(self.angle.shape) for column in columns))
 
     def mean(self, values: Array) -> float:
-        """Return the mean over crank angle of values on the nodes."""
+        """Return the mean over the crank angle of values at the nodes."""
         return float(np.abs(self.width) @ (values @ WEIGHTS)) / self.equation.period
 
     def integral(self, values: Array) -> tuple[Array, Array]:
-        """Return the integral over crank angle from the start of the turn: at the panels' starts and on the nodes."""
+        """Return the integral over the crank angle from the start of the turn: at the panels' starts and the nodes."""
         panels = self.width * (values @ WEIGHTS)
         starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
         return starts, starts[:, None] + self.width[:, None] * (values @ INTEGRALS.T)
 
     def zeros(self, values: Array) -> list[tuple[int, float, bool]]:
-        """Return where values on the nodes cross zero: panel, place from 0 to 1, and whether they rise."""
+        """Return where values at the nodes cross zero: panel, position from 0 to 1, and whether they rise."""
         from scipy.optimize import brentq
 
         first, last = self.at_edges(values).T
@@ -139,12 +139,12 @@ class PeriodicTurn:
         return found
 
     def at_edges(self, values: Array) -> Array:
-        """Return values on the nodes continued to start and end of each panel, (panels, 2)."""
+        """Return values at the nodes extrapolated to start and end of each panel, (panels, 2)."""
         edges: Array = values @ FIT.T @ legendre.legvander([-1.0, 1.0], DEGREE).T
         return edges
 
     def value_and_integral(self, values: Array, panel: int, place: float) -> tuple[float, float]:
-        """Return values within a panel, at a place from 0 to 1, and their integral from its start."""
+        """Return values within a panel, at a position from 0 to 1, and their integral from its start."""
         series, x = FIT @ values[panel], 2.0 * float(place) - 1.0
         integral = float(self.width[panel]) * _legendre_sum(INTEGRATED @ series, x)
         return _legendre_sum(series, x), integral
@@ -181,7 +181,7 @@ class PeriodicTurn:
         return self.equation.rubs or self.terms.speed_dependent
 
     def friction(self, speed: Array, rate: Array | float) -> Array:
-        """Return the torque on the nodes, N m, that friction adds at speeds, rad/s, and accelerations, rad/s^2."""
+        """Return the torque at the nodes, N m, that friction adds at speeds, rad/s, and accelerations, rad/s^2."""
         torque = np.zeros(self.angle.shape)
         if not self.equation.rubs:
             return torque
@@ -193,12 +193,15 @@ class PeriodicTurn:
         return torque - frictionless
 
     def rubbing_at(self, speed: float) -> PeriodicTurn:
-        """Return the turn with panels that end where guides change sides at a constant speed of this size, rad/s."""
+        """Return the turn with panels that end where guides change sides at a constant speed.
+
+        speed: its magnitude, rad/s.
+        """
         energy, start, rate = self.even(speed)
         return (self.moved(energy, start, np.full(energy.shape, rate)) if self.equation.rubs else None) or self
 
     def even(self, speed: float) -> Guess:
-        """Return the first guess: a constant speed of this size, rad/s."""
+        """Return the first guess: a constant speed of this magnitude, rad/s."""
         return np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2), 0.0
 
     def resolved(
@@ -211,7 +214,7 @@ class PeriodicTurn:
     ) -> tuple[PeriodicTurn, Profile] | None:
         """Return the periodic turn on sufficiently fine panels; None if no turn without a stop is found.
 
-        guess: start of Newton's iteration for a turn; None ends the search. Other arguments: see `solve`. Raises
+        guess: start of Newton's method for a turn; None ends the search. Other arguments: see `solve`. Raises
         `InputError` if the motion is still not resolved after halving has added `_MOST` panels.
         """
         turn, moves = self, _MOVES if self.equation.rubs else 0
@@ -237,14 +240,14 @@ class PeriodicTurn:
         return None
 
     def cut(self, angles: Array) -> PeriodicTurn:
-        """Return the same turn with panels that also end at further crank angles, (n,), rad."""
+        """Return the same turn with panels that also end at additional crank angles, (n,), rad."""
         cuts = (*self.cuts, *(float(angle) for angle in angles))
         return PeriodicTurn(self.equation, self.dimensions, cuts, self.contacts)
 
     def moved(self, energy: Array, start: Array, rate: Array) -> PeriodicTurn | None:
-        """Return the turn with panels that end where guides change sides in a motion; None if they already do.
+        """Return the turn with panels that end where guides change sides during a motion; None if they already do.
 
-        energy, rate: E and its derivative on the nodes. start: E at the panels' starts.
+        energy, rate: E and its derivative at the nodes. start: E at the panels' starts.
         """
         contacts_found: list[float] = []
         ends = self.low + self.width
@@ -279,8 +282,8 @@ class PeriodicTurn:
     def solve(self, motor: Torque, inertia: float, guess: Guess, *, mean_speed: float | None = None) -> Profile | None:
         """Return the periodic turn; None if no turn without a stop is found.
 
-        inertia: inertia of the drive, kg m^2. guess: start of Newton's iteration. mean_speed: desired 2 pi / period,
-        rad/s, if given; a constant torque is added to reach it.
+        inertia: inertia of the drive, kg m^2. guess: start of Newton's method. mean_speed: desired 2 pi / period,
+        rad/s; if given, a constant torque is added to reach it.
         """
         energy, start, added = guess
         last = math.inf
@@ -289,7 +292,7 @@ class PeriodicTurn:
             system = np.eye(DEGREE + 1) - self.width[:, None, None] * INTEGRALS * by_energy[:, None, :]
             integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ INTEGRALS.T)
             sides = np.stack([start[:, None] + integrals[0] - energy, np.ones(energy.shape), integrals[1]], axis=-1)
-            moved = np.linalg.solve(system, sides)  # E on the nodes: residual, by E at the start, by the torque
+            moved = np.linalg.solve(system, sides)  # E at the nodes: residual, by E at the start, by the torque
             passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", WEIGHTS, by_energy, moved)
             jump = start + self.width * (rate @ WEIGHTS) - np.roll(start, -1) + passed[:, 0]
             chain = _chain_panels(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS))
@@ -320,9 +323,9 @@ class PeriodicTurn:
 
 
 def _chain_panels(jump: Array, growth: Array, torque: Array) -> Array:
-    """Return the change of E at each panel's start and at the end, (panels + 1, 3).
+    """Return the change in E at each panel's start and at the end, (panels + 1, 3).
 
-    Its constant part, its part by the change at the first start, and its part by the added torque.
+    Its constant part, its part due to the change at the first start, and its part due to the added torque.
     """
     chain = np.empty((len(jump) + 1, 3))
     chain[0] = 0.0, 1.0, 0.0

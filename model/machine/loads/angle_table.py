@@ -169,14 +169,14 @@ class AngleTable(Load):
 
     @property
     def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
-        """The forces in the stroke in which they act; None over the cycle, as angles do not identify strokes."""
+        """The forces in the stroke in which they act; None over the whole cycle, as angles do not identify strokes."""
         if self.during == "cycle":
             return None
         return (self.forces, (0.0,)) if self.during == "outward stroke" else ((0.0,), self.forces)
 
     @property
     def effect(self) -> str:
-        """Effect on its stroke, or on either motion over the cycle."""
+        """Effect on its stroke or, over the whole cycle, on motion in either direction."""
         return effect_by_direction(self.forces, SLIDES, "motion") if self.push is None else super().effect
 
     @property

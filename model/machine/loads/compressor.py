@@ -12,7 +12,7 @@ Medium = Literal["gas", "liquid"]
 
 
 class Compressor(Cylinder):
-    """A cylinder with intake at `low` and delivery at `high` pressure through valves that open without loss.
+    """A cylinder that draws in at `low` and delivers at `high` pressure, through valves that open without loss.
 
     Gas left in the clearance expands before the suction valve opens. A machine that never delivers raises an error if
     its clearance is a ratio; with a clearance volume, delivery depends on the design (`volumetric_efficiency`).

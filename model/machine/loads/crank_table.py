@@ -14,9 +14,9 @@ from .load_text import TURNS, effect_by_direction, sized
 
 @dataclass(frozen=True, kw_only=True)
 class CrankTable(AngleTable):
-    """A torque on the crank tabulated over crank angle, interpolated linearly and periodically.
+    """A torque on the crank tabulated over the crank angle, interpolated linearly and periodically.
 
-    forces: torques, N m, positive counter-clockwise. The other fields are as in `AngleTable`; it acts throughout the
+    forces: torques, N m, positive counter-clockwise. The other fields are those of `AngleTable`; it acts throughout the
     cycle.
     """
 
@@ -24,27 +24,27 @@ class CrankTable(AngleTable):
     tabulated: ClassVar = ("torques", "N m")
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return factors of one for both strokes."""
+        """Return unit factors for both strokes."""
         return (1.0, 1.0, 0.0, 0.0)
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return the work between knots, which cancels where the mean torque is zero."""
+        """Return the work between knots, which cancels if the mean torque is zero."""
         angles, torques = self.knots()
         pairs = zip(pairwise(angles), pairwise(torques), strict=True)
         return {CrankTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return zero: it loads neither stroke."""
+        """Return zero, because it loads neither stroke."""
         return 0.0
 
     @property
     def size(self) -> str:
-        """The least and the greatest torque."""
+        """The minimum and maximum torque."""
         return f"{sized(self.forces, 'N m', TURNS)} on the crank"
 
     @property
     def effect(self) -> str:
-        """Effect on a rotation in either sense."""
+        """Effect on rotation in either direction."""
         return effect_by_direction(self.forces, TURNS, "rotation")
 
 

@@ -1,4 +1,4 @@
-"""A torque on the crank besides the drive's: constant, opposing every motion, or from a spring to the frame."""
+"""A torque on the crank besides that of the drive: constant, opposing every motion, or from a spring to the frame."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from .load_text import TURNS, effect_by_direction, sized, spring_effect
 class CrankTorque(Load):
     """A torque on the crank, N m: torque - resistance sgn(w) - crank_stiffness (theta - free_angle).
 
-    torque: positive counter-clockwise. resistance: torque against every motion (Coulomb, of known size).
+    torque: positive counter-clockwise. resistance: torque against every motion (Coulomb, of known magnitude).
     crank_stiffness: stiffness of a spring between crank and frame, N m/rad. free_angle: rad; the angle continues beyond
-    a turn, so only a crank that swings can have a spring.
+    a turn, so only a swinging crank can have a spring.
     """
 
     torque: float = 0.0
@@ -42,7 +42,7 @@ class CrankTorque(Load):
         require_numbers(self, "crank_stiffness", phrase="the stiffness of a spring on the crank", least=0.0)
 
     def numbers(self) -> tuple[float, ...]:
-        """Return the numbers of `slots` after factors of one."""
+        """Return the numbers in `slots`, after unit factors."""
         return (1.0, 1.0, self.torque, self.resistance, self.crank_stiffness, self.free_angle)
 
     @property
@@ -66,12 +66,12 @@ class CrankTorque(Load):
 
     @property
     def text(self) -> str:
-        """Each torque and the spring with its effect."""
+        """Each torque and the spring, with its effect."""
         return "; ".join(f"{size}, {effect}" for size, effect in self._parts) or self.size
 
     @property
     def _parts(self) -> list[tuple[str, str]]:
-        """Sizes and effects of the torques and the spring."""
+        """Magnitudes and effects of the torques and the spring."""
         parts = []
         if self.torque:
             size = f"{sized((self.torque,), 'N m', TURNS)} on the crank"

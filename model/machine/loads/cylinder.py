@@ -1,4 +1,4 @@
-"""A cylinder whose piston is the slider: gas on one side, a back pressure on the other."""
+"""A cylinder whose piston is the slider: gas on one side, back pressure on the other."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ _LEAST_EXPONENT = 0.2
 
 
 def piston_area(bore: float, piston_rod: float) -> float:
-    """Return the area of a piston, m^2, with a rod on one side. Raises `InputError` for a rod of that size."""
+    """Return the area of a piston, m^2, with a piston rod on one side.
+
+    Raises `InputError` for a piston rod that leaves no area.
+    """
     if piston_rod >= bore:
         raise InputError(
             f"the piston rod must be thinner than the bore; got {1e3 * piston_rod:g} mm in a bore of "
@@ -32,13 +35,13 @@ def piston_area(bore: float, piston_rod: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder(Load):
-    """A cylinder with a cycle of two strokes: compression towards its head, expansion away from it. SI, absolute.
+    """A cylinder with a two-stroke cycle: compression towards its head, expansion away from it. SI, absolute.
 
-    bore, piston_rod: diameters, m; the piston's area is that of the bore less that of the rod. head: dead centre at
-    which the volume is least: gas beyond the outer one pushes inward. clearance: least volume over swept volume;
-    clearance_volume: additional volume, m^3. low: pressure at the start of compression, and least pressure of
-    expansion. high: pressure at the start of expansion, and greatest pressure of compression. compression_exponent,
-    expansion_exponent: n of p V^n = const; both zero for a liquid, whose pressure jumps at the dead centres.
+    bore, piston_rod: diameters, m; the piston area is that of the bore minus that of the rod. head: dead centre with
+    the minimum volume: gas beyond the outer one pushes inward. clearance: minimum volume divided by swept volume;
+    clearance_volume: additional volume, m^3. low: pressure at the start of compression, and minimum pressure in
+    expansion. high: pressure at the start of expansion, and maximum pressure in compression. compression_exponent,
+    expansion_exponent: n in p V^n = const; both zero for a liquid, whose pressure jumps at the dead centres.
     back_pressure: pressure on the other side of the piston.
     """
 
@@ -99,16 +102,16 @@ class Cylinder(Load):
         return piston_area(self.bore, self.piston_rod)
 
     def numbers(self) -> tuple[float, ...]:
-        """Return factors of one, then the numbers of `slots`."""
+        """Return unit factors, then the numbers in `slots`."""
         return (1.0, 1.0, *(getattr(self, name) for name in Cylinder.slots))
 
     @property
     def by_stroke(self) -> bool:
-        """True: gas expands in one stroke and is compressed in the other."""
+        """True, because gas expands in one stroke and is compressed in the other."""
         return True
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the work of gas and back pressure."""
+        """Return the work done by gas and back pressure."""
         inner = passage.distance.min(axis=1, keepdims=True)
         outer = passage.distance.max(axis=1, keepdims=True)
         at, stroke = 0.5 * (passage.distance[:, 1:] + passage.distance[:, :-1]), outer - inner
@@ -118,18 +121,18 @@ class Cylinder(Load):
         return passage.work(sign * self.area * (pressure - self.back_pressure))
 
     def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
-        """Return the pressure, Pa, with the piston z from its top, m; broadcasts."""
+        """Return the pressure, Pa, when the piston is z from its top, m; broadcasts."""
         if self.compression_exponent == 0.0:
             return (self.low if expanding else self.high) + 0.0 * z
         h = self.clearance * stroke + self.clearance_volume / self.area
-        with np.errstate(divide="ignore", invalid="ignore"):  # no clearance, at the top itself
+        with np.errstate(divide="ignore", invalid="ignore"):  # at the top itself without clearance
             if expanding:
                 return np.fmax(self.low, self.high * (h / (h + z)) ** self.expansion_exponent)
             return np.fmin(self.high, self.low * ((h + stroke) / (h + z)) ** self.compression_exponent)
 
     @property
     def size_text(self) -> str:
-        """Bore, clearance and head in a few words."""
+        """A short description of bore, clearance and head."""
         parts = [f"bore {1e3 * self.bore:.6g} mm"]
         parts += [f"piston rod {1e3 * self.piston_rod:.6g} mm"] if self.piston_rod else []
         parts += [f"clearance {100.0 * self.clearance:.6g} %"] if self.clearance or not self.clearance_volume else []
@@ -174,7 +177,7 @@ PRESSURES = (
     PISTON_ROD,
     BACK_PRESSURE,
 )
-"""Entries in a table of pressures, in addition to their places."""
+"""Entries in a table of pressures, besides the locations."""
 
 
 def piston_forces(
@@ -186,9 +189,9 @@ def piston_forces(
     back_pressure: float,
     head: Head,
 ) -> tuple[float, ...]:
-    """Return the forces, N outward, of pressures on a piston, less the back pressure on its other side.
+    """Return the forces, N outward, that pressures exert on a piston, less the back pressure on its other side.
 
-    places: one place for each pressure. Raises `InputError` for more or fewer, and as `piston_area` does.
+    places: one location for each pressure. Raises `InputError` for more or fewer locations, and as `piston_area` does.
     """
     if len(places) != len(pressures):
         raise InputError(

@@ -18,7 +18,7 @@ def _force(position: Any, velocity: Any, way: Any, first: Any, second: Any) -> A
 
 @dataclass(frozen=True, kw_only=True)
 class Drag(Load):
-    """A resistance from turbulent flow: force = -drag v |v|, v the slider's velocity, N. drag: N s^2/m^2.
+    """A resistance due to turbulent flow: force = -drag v |v|, with v the slider velocity, N. drag: N s^2/m^2.
 
     Within a stroke it is -drag v^2 or +drag v^2, which is smooth; at the dead centres its second derivative jumps.
     """
@@ -35,12 +35,12 @@ class Drag(Load):
         require_numbers(self, "drag")
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return the coefficient after factors of one."""
+        """Return the coefficient, after unit factors."""
         return (1.0, 1.0, self.drag, 0.0)
 
     @property
     def by_stroke(self) -> bool:
-        """True: the formula of one stroke is the negative of that of the other."""
+        """True, because the formula for one stroke is the negative of that for the other."""
         return True
 
     @property

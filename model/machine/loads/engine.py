@@ -1,4 +1,4 @@
-"""Ideal engine cycles of two and of four strokes, burning at constant volume or at limited pressure."""
+"""Ideal two-stroke and four-stroke engine cycles, with combustion at constant volume or at limited pressure."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ...kernel.arithmetic import analytic, inverse, power
 from .cylinder import BACK_PRESSURE, BORE, EXPONENTS, HEAD, PISTON_ROD, Cylinder
 from .load import CYCLE, CycleAngle, Enters, Entry, Load, Passage, Table
 
-_TYPED = 5e-6  # relative rounding of a pressure written with six digits
+_TYPED = 5e-6  # relative rounding error of a pressure written with six digits
 
 
 @analytic
 def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
-    """Return the fraction of the stroke over which gas burns at its peak pressure, high.
+    """Return the fraction of the stroke over which gas burns at its peak pressure `high`.
 
-    Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is added at constant volume, from the pressure p_2 at
-    the end of compression. The rest expands the gas by (kappa - 1) / (kappa p_h) times that heat.
+    Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is added at constant volume, starting from the pressure
+    p_2 at the end of compression. The remaining heat expands the gas by (kappa - 1) / (kappa p_h) times that heat.
     """
     compressed = low * power((1.0 + clearance) * inverse(clearance), exponent)
     return (heat * (kappa - 1.0) - (high - compressed) * clearance) * inverse(kappa * high)
@@ -31,7 +31,8 @@ def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any,
 class Engine(Cylinder):
     """A cylinder that fills at `low` pressure, compresses, and burns instantly at the top to `high` pressure.
 
-    The gas expands in the next stroke. At the other dead centre it is exchanged instantly: two strokes form a cycle.
+    The gas expands in the next stroke. At the other dead centre the gas is exchanged instantly, so two strokes form a
+    cycle.
     """
 
     def __post_init__(self) -> None:
@@ -92,7 +93,7 @@ class Engine(Cylinder):
 
 @dataclass(frozen=True, kw_only=True)
 class LimitedPressure(Engine):
-    """An engine with a dual cycle: it burns at the top up to `high` pressure, then at that pressure.
+    """An engine with a dual cycle: it burns at the top up to `high` pressure, then continues at that pressure.
 
     heat: heat released per swept volume, J/m^3. heat_capacity_ratio: heat capacity ratio of the burning gas. Without a
     pressure rise at the top, this is the Diesel cycle.
@@ -143,11 +144,11 @@ class LimitedPressure(Engine):
         return float(self.high * (burnt / (1.0 + self.clearance)) ** self.expansion_exponent)
 
     def numbers(self) -> tuple[float, ...]:
-        """Return the numbers of a cylinder, heat and heat capacity ratio."""
+        """Return the numbers of a cylinder, plus heat and heat capacity ratio."""
         return (*super().numbers(), self.heat, self.heat_capacity_ratio)
 
     def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
-        """Return the pressure, Pa, with the piston z from its top, m; broadcasts."""
+        """Return the pressure, Pa, when the piston is z from its top, m; broadcasts."""
         h = self.clearance * stroke
         if not expanding:
             return self.low * ((h + stroke) / (h + z)) ** self.compression_exponent
@@ -162,10 +163,10 @@ class LimitedPressure(Engine):
 
 @dataclass(frozen=True, kw_only=True)
 class FourStroke(Engine):
-    """A cylinder that compresses and burns in one turn, as `Engine`, and exchanges its gas in the next.
+    """A cylinder that compresses and burns in one turn, like `Engine`, and exchanges its gas in the next.
 
-    The piston pushes out at the `exhaust` pressure, Pa, and draws in at `low`. A turn begins at the dead centre away
-    from the head; compression and expansion are in the first turn.
+    The piston pushes gas out at the `exhaust` pressure, Pa, and draws it in at `low`. A turn begins at the dead centre
+    away from the head; compression and expansion are in the first turn.
     """
 
     exhaust: float
@@ -173,7 +174,7 @@ class FourStroke(Engine):
     slots: ClassVar = {**Cylinder.slots, "exhaust": Cylinder.slots["high"]}
     tables: ClassVar = ()
     working: ClassVar[type[Engine]] = Engine
-    """The cycle of two strokes of turn 1."""
+    """The two-stroke cycle of turn 1."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -190,14 +191,14 @@ class FourStroke(Engine):
         return "inner dead centre" if self.head == "outer dead centre" else "outer dead centre"
 
     def on_turn(self, turn: int) -> Load:
-        """Return the two-stroke cycle of turn 1, or the gas exchange of turn 2, each stroke at constant pressure."""
+        """Return the two-stroke cycle of turn 1, or the gas exchange of turn 2, at constant pressure in each stroke."""
         if turn == 1:
             return self.working(**{field.name: getattr(self, field.name) for field in fields(self.working)})
         values = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
         return Cylinder(**values | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
-        """Return its name; the exhaust pressure is the high one of turn 2, which has neither peak nor exponents."""
+        """Return its name; the exhaust pressure is the `high` of turn 2, which has neither peak nor exponents."""
         if turn == 1:
             return None if name == "exhaust" else name
         if name in ("high", "compression_exponent", "expansion_exponent", "heat", "heat_capacity_ratio"):
@@ -205,7 +206,7 @@ class FourStroke(Engine):
         return "high" if name == "exhaust" else name
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the mean work of both turns."""
+        """Return the mean work over both turns."""
         return 0.5 * (self.on_turn(1).stroke_work(passage) + self.on_turn(2).stroke_work(passage))
 
     @property
@@ -216,7 +217,7 @@ class FourStroke(Engine):
 
 @dataclass(frozen=True, kw_only=True)
 class FourStrokeLimitedPressure(FourStroke, LimitedPressure):
-    """A cylinder of four strokes that burns as `LimitedPressure`."""
+    """A four-stroke cylinder that burns like `LimitedPressure`."""
 
     slots: ClassVar = {**FourStroke.slots, **LimitedPressure.slots}
     working: ClassVar = LimitedPressure
@@ -240,7 +241,7 @@ def _built(
     if not (peak_pressure > 0.0 or heat > 0.0):
         raise InputError("an engine cycle has a peak pressure, heat or both; got neither; give peak_pressure or heat")
     compressed = intake * compression_ratio**compression_exponent
-    # An ideal gas at constant volume takes the heat (p_h - p_end) V_c / (k - 1); V_c is V_s / (ratio - 1).
+    # An ideal gas at constant volume absorbs the heat (p_h - p_end) V_c / (k - 1); V_c is V_s / (ratio - 1).
     added = heat * (heat_capacity_ratio - 1.0) * (compression_ratio - 1.0)
     size |= {
         "low": intake,

@@ -1,7 +1,7 @@
-"""A load on slider or crank: everything that kernels, job files, the page and summaries need from it.
+"""A load on slider or crank: everything that kernels, job files, the page and summaries need to know about it.
 
-A kind of load is a module of this package with a frozen dataclass that derives from `Load`. It declares how it enters
-the kernels: as one of the shapes that are summed before a sweep (`Enters`), or by its own `formula`.
+A kind of load is a module in this package with a frozen dataclass that derives from `Load`. It declares how it enters
+the kernels: in one of the forms that are summed before a sweep (`Enters`), or through its own `formula`.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ Formula = Callable[[Any, Any, Any, Any, Any], Any]
 
 
 class Enters(IntEnum):
-    """The way in which a kind of load enters the kernels; also the order of kinds in lists.
+    """How a kind of load enters the kernels; this is also the order of kinds in lists.
 
-    Stroke forces, springs, viscous loads and added masses are summed for each design before a sweep: any number of them
-    costs as much as one. Tables and cylinders create breakpoints. All others are evaluated one by one: forces with a
-    formula, and torques on the crank, which affect only the drive torque.
+    Stroke forces, springs, viscous loads and added masses are summed for each design before a sweep, so any number of
+    them costs as much as one. Tables and cylinders create breakpoints. All others are evaluated one by one: forces with
+    a formula, and torques on the crank, which affect only the drive torque.
     """
 
     STROKE_FORCE = 0
@@ -48,7 +48,7 @@ class Enters(IntEnum):
 
 
 class Passage(NamedTuple):
-    """A stroke of n designs in m steps.
+    """A stroke of n designs, divided into m steps.
 
     outward: whether it is the outward stroke. angle: crank angles in the middle of each step, (n, m), rad. distance:
     distance of the slider from the crank pivot along its line at the ends of the steps, (n, m + 1), m.
@@ -59,13 +59,13 @@ class Passage(NamedTuple):
     distance: Array
 
     def work(self, force: Any) -> Array:
-        """Return the work (n,), J, of a force in the middle of each step, N outward."""
+        """Return the work (n,), J, of a force given in the middle of each step, N outward."""
         return np.asarray(np.sum(force * np.diff(self.distance, axis=1), axis=1))
 
 
 @dataclass(frozen=True)
 class StrokePart:
-    """A part of a stroke: the whole of it, or the first or last length, m."""
+    """Part of a stroke: the whole stroke, or its first or last `length`, m."""
 
     part: Literal["whole", "first", "last"] = "whole"
     length: float = 0.0
@@ -93,11 +93,11 @@ class Entry:
 
 @dataclass(frozen=True)
 class Table:
-    """A table [[load]] of a job file, identified by its key.
+    """A [[load]] table in a job file, identified by its key.
 
     title: title in the form's list. help: help text, one sentence. initial: initial values in the form. build: function
-    that builds the load from SI values by name. motion: motion of the crank to which it applies (full rotation or
-    swing); "" for either.
+    that builds the load from SI values by name. motion: crank motion to which it applies (full rotation or swing); ""
+    for either.
     """
 
     key: str
@@ -132,14 +132,13 @@ class Table:
 class Load:
     """A load on the slider along its line, positive outward, or on the crank, positive counter-clockwise.
 
-    enters: see `Enters`. formula: force of position (m outward of the crank pivot), velocity (m/s outward), way (1
-    while the slider moves outward, -1 inward) and the load's own two numbers; zero where both numbers are zero;
-    `analytic`, without branches on its arguments. speed_power: power of the crank speed to which the formula is
-    proportional. on_crank: whether it is a torque on the
-    crank. every_corner: whether its varying numbers must be valid at every combination of their bounds, not only all at
-    the lower and all at the upper ones. sizes: fields that are all zero if the load is zero throughout; none for a load
-    that never is. slots: place in the load's numbers and SI unit of each field that designs can vary. tables: its
-    tables in job files.
+    enters: see `Enters`. formula: force as a function of position (m outward of the crank pivot), velocity (m/s
+    outward), way (1 while the slider moves outward, -1 inward) and the load's own two numbers; zero if both numbers are
+    zero; `analytic`, without branches on its arguments. speed_power: power of the crank speed to which the formula is
+    proportional. on_crank: whether it is a torque on the crank. every_corner: whether its variables must be valid at
+    every combination of their bounds, rather than only with all at the lower or all at the upper bounds. sizes: fields
+    that are all zero if the load is zero throughout; empty for a load that is never zero. slots: place in the load's
+    numbers and SI unit for each field that designs can vary. tables: its tables in job files.
     """
 
     enters: ClassVar[Enters]
@@ -161,9 +160,9 @@ class Load:
         return not self.sizes or any(np.any(getattr(self, name)) for name in self.sizes)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Return the knots of the load's table, and the forces there; empty without a table.
+        """Return the knots of the load's table and the forces at the knots; empty without a table.
 
-        Two knots at one place are a step: the first has the force before it, the second the force after it.
+        Two knots at one location are a step: the first has the force before it, the second the force after it.
         """
         return (), ()
 
@@ -174,17 +173,17 @@ class Load:
 
     @property
     def turns(self) -> bool:
-        """Whether the knots are crank angles that are counted in the sense of rotation."""
+        """Whether the knots are crank angles counted in the sense of rotation."""
         return False
 
     @property
     def winds(self) -> bool:
-        """Whether the load differs after a turn of the crank; only a crank that swings can have it."""
+        """Whether the load does not repeat after one crank turn; only a swinging crank can have it."""
         return False
 
     @property
     def cycle_turns(self) -> int:
-        """Turns of the crank after which the load repeats."""
+        """Number of crank turns after which the load repeats."""
         return 1
 
     def on_turn(self, turn: int) -> Load:
@@ -193,16 +192,16 @@ class Load:
 
     @property
     def cycle_datum(self) -> str:
-        """Zero of a cycle of two turns: zero crank angle or a dead centre."""
+        """Zero of a two-turn cycle: zero crank angle or a dead centre."""
         return str(getattr(self, "datum", "zero crank angle"))
 
     def number_on_turn(self, name: str, turn: int) -> str | None:
-        """Return the name of one of its numbers in `on_turn`; None if that turn does not have it."""
+        """Return the name that one of its numbers has in `on_turn`; None if that turn does not have it."""
         return name
 
     @property
     def is_conservative(self) -> bool:
-        """Whether it gives back over a cycle what it takes: a force by position alone, or a mass."""
+        """Whether it returns over a cycle what it absorbs: a force that depends on position alone, or a mass."""
         return False
 
     @property
@@ -217,7 +216,7 @@ class Load:
         return first != second
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return sizes of work over a turn by key; works under one key may cancel.
+        """Return magnitudes of the work over a turn by key; works under one key may cancel.
 
         moving: whether the crank turns; at rest, speed-dependent loads are zero.
         """
@@ -225,7 +224,7 @@ class Load:
         return {type(self).__name__: (1.0,)} if takes else {}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the work (n,), J, that shows which stroke is loaded.
+        """Return the work (n,), J, that decides which stroke is loaded.
 
         Zero for a load that returns it in the other stroke, or that always resists.
         """
@@ -238,12 +237,15 @@ class Load:
 
     @property
     def size(self) -> str:
-        """Its size and sign in a few words."""
+        """Its magnitude and sign as a short text."""
         raise NotImplementedError
 
     @property
     def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
-        """Possible forces in the outward and inward strokes, N outward; None if they depend on more than the stroke."""
+        """Possible forces in the outward and the inward stroke, N outward.
+
+        None if they depend on more than the stroke.
+        """
         return None
 
     @property
@@ -267,7 +269,7 @@ class Load:
 
     @property
     def text(self) -> str:
-        """The load in a sentence: size and sign, effect, range."""
+        """The load in a sentence: magnitude and sign, effect, range."""
         return ", ".join(filter(None, (self.size, self.effect, self.range)))
 
 
@@ -276,7 +278,7 @@ def _listed(names: set[str]) -> str:
 
 
 def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
-    """Return the function that builds a load from its table's values. fields: keys with other names."""
+    """Return the function that builds a load from its table's values. fields: keys whose fields have other names."""
     keys = {field: key for key, field in fields.items()}
 
     def build(**values: Any) -> Load:
@@ -288,20 +290,20 @@ def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
 
 
 def points(name: str, kind: str, description: str, *example: str) -> Entry:
-    """Return the key of a table's increasing coordinates; two equal ones are a step."""
+    """Return the key of a table's increasing coordinates, in which two equal ones are a step."""
     return Entry(name, kind, description, list(example), several=True, increasing=True)
 
 
 def require_word(name: str, value: object, words: object) -> None:
-    """Raise an error unless the value is one of the words of a `Literal`."""
+    """Raise an error unless the value is one of the words in a `Literal`."""
     if value not in get_args(words):
         raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
 
 
 def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *, values: str = "forces") -> None:
-    """Raise `InputError` for a table that decreases, has three points at one place or fewer than two in total.
+    """Raise `InputError` for a table that decreases, has three points at one location or fewer than two in total.
 
-    Its numbers must be finite. argument, values: names of both columns, for the message.
+    The numbers must be finite. argument, values: names of both columns, for the message.
     """
     if len(at) != len(forces) or len(at) < 2:
         raise InputError(
@@ -315,7 +317,10 @@ def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *
 
 
 def out_of_order(at: Sequence[float]) -> int | None:
-    """Return the first index of a point below the one before it, or the third at one place, else None."""
+    """Return the index of the first point that lies below its predecessor or is the third at one location.
+
+    None if there is no such point.
+    """
     for n in range(1, len(at)):
         if at[n] < at[n - 1] or (n > 1 and at[n] == at[n - 2]):
             return n
@@ -323,14 +328,14 @@ def out_of_order(at: Sequence[float]) -> int | None:
 
 
 def order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
-    """Return the rule that point n of a table breaks, with point n and the one before it as typed."""
+    """Return the rule that point n in a table breaks, with this point and its predecessor as typed."""
     if at[n] < at[n - 1]:
         return f"must increase; got {point} after {before}; sort the table"
     return f"must increase, but for two at a step; got {point} three times; keep the values before and after the step"
 
 
 def has_step(at: Sequence[float]) -> bool:
-    """Whether two points of a table are at one place."""
+    """Whether two points in a table are at one location."""
     return any(after == before for before, after in itertools.pairwise(at))
 
 

@@ -1,4 +1,4 @@
-"""A load in words: sizes, signs, effects and ranges, which `Load.text` puts together."""
+"""A load in words: magnitudes, signs, effects and ranges, which `Load.text` combines."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _SEPARATORS = re.compile(r"([ ,;()]+)")
 
 
 def range_text(low: str, high: str) -> str:
-    """Return one text for both ends of a range: "200 to 400 N" where only numbers differ.
+    """Return one text for both ends of a range: "200 to 400 N" if only numbers differ.
 
-    Other differences are shown side by side.
+    Texts that differ otherwise are shown side by side.
     """
     words = [_SEPARATORS.split(text) for text in (low, high)]
     pairs = list(zip(*words, strict=False))
@@ -35,7 +35,10 @@ def range_text(low: str, high: str) -> str:
 
 
 def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
-    """Return sizes and directions: "350 N outward", "up to 600 N inward". ways: words for positive and negative."""
+    """Return magnitudes and directions: "350 N outward", "up to 600 N inward".
+
+    ways: words for positive and negative.
+    """
     low, high = min(forces := tuple(forces)), max(forces)
     if low < 0.0 < high:
         return f"{-low:.6g} {unit} {ways[1]} to {high:.6g} {unit} {ways[0]}"
@@ -47,7 +50,7 @@ def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
 
 
 def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
-    """Return the forces of a table without zeros at its ends that a step separates from the others."""
+    """Return the forces in a table without zeros at its ends that a step separates from the others."""
     first = int(forces[0] == 0.0 and at[0] == at[1])
     last = int(forces[-1] == 0.0 and at[-1] == at[-2])
     return forces[first : len(forces) - last] or forces
@@ -62,7 +65,7 @@ def effect_in_strokes(outward: Sequence[float], inward: Sequence[float]) -> str:
 
 
 def effect_by_direction(forces: Sequence[float], ways: Ways, motion: str) -> str:
-    """Return the effect of forces on a motion in either direction. motion: "motion" or "rotation"."""
+    """Return the effect of forces on motion in either direction. motion: "motion" or "rotation"."""
     low, high = min(forces), max(forces)
     if low < 0.0 < high:
         return "helps or resists by crank angle"
@@ -71,7 +74,7 @@ def effect_by_direction(forces: Sequence[float], ways: Ways, motion: str) -> str
 
 
 def spring_effect(stiffness: float) -> str:
-    """Return the effect of a spring on a motion away from its free position, and back."""
+    """Return the effect of a spring on motion away from its free position, and back."""
     away, back = ("resists", "helps") if stiffness >= 0.0 else ("helps", "resists")
     return f"{away} motion away from there and {back} motion back, no net work over a cycle"
 
@@ -104,7 +107,7 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
 
 
 def range_of_angles(angles: Sequence[float], datum: str, cycle: str) -> str:
-    """Return the range of a table over crank angle, rad from its datum, and the cycle after which it repeats."""
+    """Return the range of a table over the crank angle, rad from its datum, and the cycle after which it repeats."""
     low, high = (f"{math.degrees(end):.6g}" for end in (angles[0], angles[-1]))
     after = "of crank angle" if datum == "zero crank angle" else f"after the {datum}"
     return f"from {low} to {high} deg {after}; periodic over {cycle}"

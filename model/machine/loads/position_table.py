@@ -32,10 +32,10 @@ from .load_text import range_of_positions, sized, without_steps_from_zero
 
 @dataclass(frozen=True, kw_only=True)
 class PositionTable(Load):
-    """A force tabulated over slider position, interpolated linearly, constant beyond the ends of the table.
+    """A force tabulated over the slider position, interpolated linearly, constant beyond the ends of the table.
 
-    positions: increasing, two equal ones where the force steps, m, from the datum; distances from a dead centre are
-    zero or more. forces: N, positive outward. during: strokes in which the force acts. drives: see `Load`.
+    positions: increasing, with two equal ones where the force steps, m, from the datum; distances from a dead centre
+    are zero or more. forces: N, positive outward. during: strokes in which the force acts. drives: see `Load`.
     """
 
     positions: tuple[float, ...]
@@ -60,7 +60,7 @@ class PositionTable(Load):
             )
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return factors of one in the strokes in which the force acts."""
+        """Return unit factors for the strokes in which the force acts."""
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
     def knots(self) -> tuple[Sequence[float], Sequence[float]]:
@@ -69,7 +69,7 @@ class PositionTable(Load):
 
     @property
     def steps(self) -> bool:
-        """Whether the force steps at a position."""
+        """Whether the force steps at any position."""
         return has_step(self.positions)
 
     @property
@@ -78,13 +78,13 @@ class PositionTable(Load):
         return self.during == "cycle"
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return one for a table of one stroke, which the same table in the other stroke cancels."""
+        """Return one for a table in one stroke, which the same table in the other stroke cancels."""
         if self.during == "cycle":
             return {}
         return {(self.datum, self.positions, self.forces): (1.0 if self.during == "outward stroke" else -1.0,)}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return the work of a table of one stroke; a table over the cycle returns what it takes."""
+        """Return the work of a table in one stroke; a table over the whole cycle returns what it absorbs."""
         if self.during != ("outward stroke" if passage.outward else "inward stroke"):
             return 0.0
         at, distance = 0.5 * (passage.distance[:, 1:] + passage.distance[:, :-1]), passage.distance
@@ -96,7 +96,7 @@ class PositionTable(Load):
 
     @property
     def size(self) -> str:
-        """The least and the greatest force."""
+        """The minimum and maximum force."""
         return sized(without_steps_from_zero(self.positions, self.forces))
 
     @property

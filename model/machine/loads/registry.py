@@ -1,4 +1,4 @@
-"""Every kind of load that a module of this package declares, and the compiled choice among their formulas."""
+"""Every kind of load declared by a module in this package, and the compiled choice among their formulas."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def code_of(kind: type[Load]) -> int:
 
 
 def _combined_formula() -> Any:
-    """Return the combined formula of all kinds that have one: arguments are the code, then those of `Load.formula`.
+    """Return the combined formula for all kinds that have one: arguments are the code, then those of `Load.formula`.
 
-    It is composed when kernels are compiled and inlined into them, without a call at run time.
+    It is composed when kernels are compiled and is inlined into them, without a call at run time.
     """
 
     @analytic

@@ -14,8 +14,8 @@ from .load_text import spring_effect
 class Spring(Load):
     """A linear spring: force = -stiffness (position - free_position), N, position counted outward from the datum.
 
-    stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre both the
-    position and the restoring force count inward: the spring is the same, only its rest point moves.
+    stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre, both the
+    position and the restoring force count inward: the spring is the same, and only its rest point moves.
     """
 
     stiffness: float
@@ -31,7 +31,7 @@ class Spring(Load):
         require_word("datum", self.datum, Datum)
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return stiffness and free position after factors of one."""
+        """Return stiffness and free position, after unit factors."""
         return (1.0, 1.0, self.stiffness, self.free_position)
 
     @property
@@ -41,7 +41,7 @@ class Spring(Load):
 
     @property
     def effect(self) -> str:
-        """Effect on a motion away from its free position, and back."""
+        """Effect on motion away from its free position, and back."""
         return spring_effect(self.stiffness)
 
     @property

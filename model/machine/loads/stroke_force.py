@@ -18,7 +18,7 @@ class StrokeForce(Load):
     """A force that is constant within each stroke, N, positive outward.
 
     Equal values make a constant force; `outward=-F, inward=0` resists the outward stroke only;
-    `outward=-F, inward=F` always opposes the motion (Coulomb, of given size). drives: see `Load`.
+    `outward=-F, inward=F` always opposes the motion (Coulomb, of given magnitude). drives: see `Load`.
     """
 
     outward: float
@@ -38,20 +38,20 @@ class StrokeForce(Load):
 
     @property
     def is_conservative(self) -> bool:
-        """Whether the two strokes have one force."""
+        """Whether both strokes have the same force."""
         return self.outward == self.inward
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
-        """Return the force of the outward stroke and the negated one of the inward stroke."""
+        """Return the force in the outward stroke and the negated force in the inward stroke."""
         return {StrokeForce: (self.outward, -self.inward)}
 
     def stroke_work(self, passage: Passage) -> Any:
-        """Return force times stroke."""
+        """Return the force times the stroke."""
         return passage.work(self.outward if passage.outward else self.inward)
 
     @property
     def size(self) -> str:
-        """The forces, without direction where they are equal along the motion."""
+        """The forces, without direction if they are equal along the motion."""
         if self.outward == -self.inward:
             return f"{abs(self.outward):.6g} N"
         forces = {force: sized((force,)) for force in (self.outward, self.inward) if force}

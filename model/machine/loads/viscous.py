@@ -25,7 +25,7 @@ class Viscous(Load):
         require_numbers(self, "coefficient")
 
     def numbers(self) -> tuple[float, float, float, float]:
-        """Return the coefficient after factors of one."""
+        """Return the coefficient, after unit factors."""
         return (1.0, 1.0, self.coefficient, 0.0)
 
     def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
