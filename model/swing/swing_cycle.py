@@ -81,8 +81,7 @@ class SwingCycle:
 
     @cached_property
     def _zoomed_curves(self) -> dict[tuple[bool, float, float], SwingCurves]:
-        """Curves between two fractions of the time, cached by stroke and fractions, because extremes of many curves
-        coincide."""
+        """Curves between two fractions of the time, cached by stroke and fractions: many extremes coincide."""
         return {}
 
     def _extreme(self, name: str, back: bool, rank: np.ufunc, count: int = 1) -> SwingPoint:
