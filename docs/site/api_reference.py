@@ -13,13 +13,13 @@ _METHODS = ("get", "post", "put", "patch", "delete")
 
 
 def api_reference() -> str:
-    """Return the page: operations by subject, then the shapes of requests and answers."""
+    """Return the page: operations by subject, then the shapes of requests and responses."""
     description = _description()
     lines = [
         "# HTTP API\n",
-        f"Every operation of version {description['info']['version']}, from the description that the service gives at "
-        "`/api/v1/openapi.json`. [API](../api.md) walks through it with examples. Requests carry the token as "
-        "`Authorization: Bearer TOKEN`; refusals are problem documents (RFC 9457).\n",
+        f"Every operation of version {description['info']['version']}, as described by the service at "
+        "`/api/v1/openapi.json`. [API](../api.md) shows examples. Requests carry the token as "
+        "`Authorization: Bearer TOKEN`; errors are problem documents (RFC 9457).\n",
     ]
     operations = [
         (method, path, operation)
@@ -59,7 +59,7 @@ def _operation(method: str, path: str, operation: Mapping[str, Any]) -> Iterator
     body = operation.get("requestBody", {}).get("content", {})
     if body:
         yield f"Body: {_content(body)}.\n"
-    yield "| status | answer |\n|---|---|"
+    yield "| status | response |\n|---|---|"
     for status, answer in sorted(operation["responses"].items()):
         shown = _content(answer.get("content", {}))
         yield f"| {status} | {cell(answer['description'])}{f': {cell(shown)}' if shown else ''} |"

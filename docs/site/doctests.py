@@ -16,7 +16,7 @@ def with_code(docstring: str) -> str:
 
 
 class Doctests(griffe.Extension):
-    """Puts a fence around the examples of every object that has some."""
+    """Puts a fence around the examples in docstrings."""
 
     def on_object(self, *, obj: griffe.Object, **_: Any) -> None:
         """Change the docstring of an object."""

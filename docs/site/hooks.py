@@ -1,4 +1,4 @@
-"""Hooks of the documentation site: pages that are generated, links that lead out of docs/, formulas as MathML."""
+"""Hooks for the documentation site: generated pages, links that lead out of docs/, formulas as MathML."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from docs.site.quantity_reference import quantity_reference
 
 ROOT = Path(__file__).resolve().parents[2]
 _MOVED = {"README.md": "index.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md"}
-"""Pages that lie at the top of the repository, by where they are in the site."""
+"""Pages at the top of the repository, by their place in the site."""
 _REPLACED = {"commands.md#quantities": "reference/quantities.md"}
-"""Links that the site replaces by its reference, which the repository does not have."""
+"""Links that the site replaces with its reference pages, which the repository does not have."""
 _FOLDERS = ("model", "objectives", "optimise")
 _LINK = re.compile(r"\[([^\]]*)\]\((?!https?://|#)([^)\s#]+)(#[^)\s]*)?\)")
 _FORMULA = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 
 
 def pages() -> dict[str, Callable[[], str]]:
-    """Return what makes each page that is not in docs/, by its place in the site."""
+    """Return the function that makes each page that is not in docs/, by its place in the site."""
     return {
         **{place: partial(_at_the_top, name) for name, place in _MOVED.items()},
         **{f"notebooks/{file.stem}.md": partial(notebook_page, file) for file in notebook_files()},
@@ -42,7 +42,7 @@ def pages() -> dict[str, Callable[[], str]]:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are generated, and the pictures of the notebooks."""
+    """Add the generated pages and the pictures in the notebooks."""
     for place, made in pages().items():
         files.append(File.generated(config, place, content=made()))
     for notebook in notebook_files():
@@ -52,7 +52,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, **_: object) -> str:
-    """Return the text of a page with links into the sources turned into links to the reference of their modules."""
+    """Return the text of a page in which links to source files point to the reference of the module."""
     return _LINK.sub(_inside, markdown)
 
 
@@ -66,7 +66,7 @@ def on_page_content(content: str, **_: object) -> str:
 
 
 def _at_the_top(name: str) -> str:
-    """Return a page of the top of the repository with its links as from docs/."""
+    """Return a page from the top of the repository with links relative to docs/."""
     text = (ROOT / name).read_text(encoding="utf-8")
     return _LINK.sub(lambda found: f"[{found[1]}]({_from_docs(found[2])}{found[3] or ''})", text)
 
@@ -76,7 +76,7 @@ def _from_docs(target: str) -> str:
 
 
 def _inside(found: re.Match[str]) -> str:
-    """Return a link to the site's reference or to another page of the site, or its text where there is no page."""
+    """Return a link to the site's reference or to another page of the site, or its text if there is no such page."""
     text, target, place = found.groups()
     if reference := _REPLACED.get(target + (place or "")):
         return f"[{text}]({reference})"

@@ -1,4 +1,4 @@
-"""The reference of job files as Markdown, from their JSON schema: by the tables of a job, each with an example."""
+"""Reference for job files as Markdown, from their JSON schema: each table in a job, with an example."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from slidercrank.optimise.job import job_schema
 
 
 def job_reference() -> str:
-    """Return the page: the tables of a job, then the parts that they are made of."""
+    """Return the page: the tables in a job, then their parts."""
     schema = job_schema()
     shapes, required = schema["$defs"], schema["required"]
     titles = headings(schema)
@@ -39,7 +39,7 @@ def job_reference() -> str:
 
 
 def headings(schema: Schema) -> dict[str, str]:
-    """Return a heading for each named shape: where a job has it, in the order of the job, bounds and targets last."""
+    """Return a heading for each named shape: its place in a job, in job order, with bounds and targets last."""
     places: dict[str, list[str]] = {}
     for path, ref in _places(schema):
         places.setdefault(ref, []).append(path)
@@ -60,7 +60,7 @@ def headings(schema: Schema) -> dict[str, str]:
 
 
 def _examples(schema: Schema) -> Iterator[tuple[str, str]]:
-    """Yield the name of each shape of a table at the top that has an example, with that as TOML."""
+    """Yield the name of each top-level table shape that has an example, and the example as TOML."""
     for name, field in schema["properties"].items():
         references = list(dict.fromkeys(_references(field)))
         for ref in references:
@@ -75,7 +75,7 @@ def _examples(schema: Schema) -> Iterator[tuple[str, str]]:
 
 
 def _places(schema: Schema) -> Iterator[tuple[str, str]]:
-    """Yield where a job has each named shape, and its name; tables at the top first, then what is in them."""
+    """Yield the place of each named shape in a job, and its name; top-level tables first, then their contents."""
     queue = [
         (_head(name, field), ref)
         for name, field in schema["properties"].items()

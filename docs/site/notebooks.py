@@ -1,4 +1,4 @@
-"""The notebooks of docs/notebooks as pages of the documentation site: text, code, and the outputs that they hold."""
+"""The notebooks of docs/notebooks as pages of the documentation site: text, code and stored outputs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "notebooks"
 
 
 def notebook_files() -> list[Path]:
-    """Return the notebooks in their order."""
+    """Return the notebooks in order."""
     return sorted(FOLDER.glob("*.ipynb"))
 
 
@@ -34,7 +34,7 @@ def notebook_page(file: Path) -> str:
 
 
 def notebook_pictures(file: Path) -> dict[str, bytes]:
-    """Return the pictures of a notebook by their names beside its page."""
+    """Return the pictures in a notebook by their file names beside its page."""
     return {
         _picture(file, number): base64.b64decode(output["data"]["image/png"])
         for number, cell in enumerate(_cells(file))
@@ -49,7 +49,7 @@ def _cells(file: Path) -> list[dict[str, Any]]:
 
 
 def _outputs(file: Path, number: int, cell: dict[str, Any]) -> list[str]:
-    """Return what a cell printed and drew, as Markdown."""
+    """Return the printed output and the figure of a cell as Markdown."""
     blocks = []
     for output in cell["outputs"]:
         if "text" in output:
@@ -60,5 +60,5 @@ def _outputs(file: Path, number: int, cell: dict[str, Any]) -> list[str]:
 
 
 def _picture(file: Path, number: int) -> str:
-    """Return the file name of the figure of a cell."""
+    """Return the file name of a cell's figure."""
     return f"{file.stem}_{number}.png"

@@ -1,4 +1,4 @@
-"""The reference of the Python interface as Markdown, with the objects whose docstrings are to be put in."""
+"""Reference for the Python interface as Markdown, with the objects whose docstrings it includes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 
 def front_door_reference() -> str:
-    """Return the page of the public names: `import slidercrank` is all that a user needs."""
-    parts = ["# Python\n\n`import slidercrank` gives these names. What is not among them may move at any time.\n"]
+    """Return the page on the public names: `import slidercrank` is all that a user needs."""
+    parts = ["# Python\n\n`import slidercrank` provides these names. Other names may change at any time.\n"]
     for name in slidercrank.__all__:
         home = _home(getattr(slidercrank, name))
         if home is not None:
@@ -21,7 +21,7 @@ def front_door_reference() -> str:
 
 
 def folder_reference(top: str) -> str:
-    """Return the page of one of the folders at the top: every module with its docstrings."""
+    """Return the page on one top-level folder: every module with its docstrings."""
     said = (import_module(f"slidercrank.{top}").__doc__ or "").strip()
     parts = [f"# {top}\n\n{said}\n"]
     for file in sorted((_ROOT / top).rglob("*.py")):
@@ -32,6 +32,6 @@ def folder_reference(top: str) -> str:
 
 
 def _home(found: object) -> str | None:
-    """Return where a public name is defined; None for a plain value."""
+    """Return the place where a public name is defined; None for a plain value."""
     module, name = getattr(found, "__module__", None), getattr(found, "__qualname__", None)
     return f"{module}.{name}" if module and name else None

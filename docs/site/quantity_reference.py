@@ -1,4 +1,4 @@
-"""The reference of quantities as Markdown, from what each quantity says of itself."""
+"""Reference for quantities as Markdown, from the description in each quantity."""
 
 from __future__ import annotations
 
@@ -11,26 +11,27 @@ from slidercrank.objectives.registry import FACTS
 
 _INTRODUCTION = """# Quantities
 
-Every quantity may be an objective or stand in a constraint of a [job](../jobs.md), and is a column of the front. This
-page is made from the quantities themselves; `slidercrank.quantities()` has the same in Python. Formulas use the symbols
-of [theory.md](../theory.md): crank r, connecting rod l, offset e, crank angle theta, slider position x, speed omega.
+Every quantity may be an objective or a constraint in a [job](../jobs.md), and is a column of the front. This
+page is generated from the quantities themselves; `slidercrank.quantities()` gives the same in Python. Formulas use the
+symbols of [theory.md](../theory.md): crank r, connecting rod l, offset e, crank angle theta, slider position x, speed
+omega.
 
 ![The linkage with its signs: crank angle, offset, slider position, transmission angle](../sketch.svg)
 
-"Needs" names what a job must have, and what the quantity is without it: undefined, zero, or equal to another one. Peaks
-are peaks over the continuous crank angle. A quantity is never negative unless its sign is explained. Quantities that
-need `[motion]` belong to a crank that swings, those that need `[target_motion]` to a
+"Needs" states what a job must have, and the value of the quantity without it: undefined, zero, or equal to another one.
+Peaks are peaks over the continuous crank angle. A quantity is never negative unless its sign is explained. Quantities
+that need `[motion]` belong to a crank that swings; those that need `[target_motion]` belong to a
 [desired motion](../jobs.md#a-desired-motion).
 """
 _TABLES = {"motion": '[motion] kind = "swing"', "target_motion": "[target_motion]"}
 _WITHOUT = {"undefined": "undefined without it", "zero": "zero without it", "equal": "equal to `{instead}` without it"}
 _VALUE = r'[a-z_]+ = (?:\{[^}]*\}|"[^"]*"|[\d.]+)'
 _JOB = re.compile(rf"\[+[a-z_.]+\]+(?: {_VALUE}(?:, {_VALUE})*)?")
-"""A piece of a job within a sentence: a table, with keys and values."""
+"""Part of a job within a sentence: a table, with keys and values."""
 
 
 def quantity_reference() -> str:
-    """Return the page: a table of all quantities of a group, then a section for each."""
+    """Return the page: for each group, a table of its quantities and then a section for each."""
     parts = [_INTRODUCTION]
     for group in Group:
         members = [quantity for quantity in FACTS.values() if quantity.group is group]
@@ -53,7 +54,7 @@ def section(quantity: Quantity) -> str:
         "Formula": f"`{quantity.formula}`",
         "Unit": f"{units(quantity)}; column `{quantity.field}`",
         "Sign": "may be negative" if quantity.signed else "",
-        "Good side": {"low": "low", "high": "high", "": "none"}[quantity.better],
+        "Better": {"low": "low", "high": "high", "": "none"}[quantity.better],
         "Needs": required,
         "Default": _floor(quantity),
         "Allowable": f"the {quantity.allowed_by}" if quantity.allowed_by else "",
@@ -66,20 +67,20 @@ def section(quantity: Quantity) -> str:
 
 
 def units(quantity: Quantity) -> str:
-    """Return the metric unit of a quantity, with the inch one if it differs."""
+    """Return the metric unit of a quantity, with the inch unit if it differs."""
     metric, inch = quantity.kind.metric.symbol, quantity.kind.inch
     return f"{metric} ({inch.symbol})" if inch is not None and inch.symbol != metric else metric or "none"
 
 
 def requirement(quantity: Quantity) -> str:
-    """Return a line of a job's constraints with a usual value, on the side that a requirement asks for."""
+    """Return a line for a job's constraints with a usual value, on the side that a requirement limits."""
     side = {"low": "max", "high": "min", "": "equals"}[quantity.better]
     usual = quantity.usual
     return f"{quantity.name} = {{ {side} = {usual if isinstance(usual, float) else chr(34) + usual + chr(34)} }}"
 
 
 def needs(quantity: Quantity) -> Iterator[str]:
-    """Yield what a job must have for a quantity, with the remedy and what the quantity is without."""
+    """Yield the needs of a quantity in a job, with the remedy and the value of the quantity without them."""
     if quantity.table:
         yield f"`{_TABLES[quantity.table]}`"
     for need in quantity.needs:

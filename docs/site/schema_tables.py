@@ -1,4 +1,4 @@
-"""Tables of the fields of a JSON schema, as Markdown."""
+"""Tables of the fields in a JSON schema, as Markdown."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 Schema = Mapping[str, Any]
 Titles = Mapping[str, str]
-"""Headings of named schemas; one that is missing has its name."""
+"""Headings of named schemas; a schema without an entry has its name as heading."""
 _LONGEST = 80  # characters of an example
 
 
@@ -21,7 +21,7 @@ def definitions(shapes: Mapping[str, Schema], level: int) -> Iterator[str]:
 
 
 def described(schema: Schema, titles: Titles = MappingProxyType({})) -> Iterator[str]:
-    """Yield what a schema says of itself, and the table of its fields."""
+    """Yield the description of a schema and the table of its fields."""
     if schema.get("description"):
         yield f"{schema['description'].strip()}\n"
     fields: Mapping[str, Schema] = schema.get("properties", {})
@@ -46,7 +46,7 @@ def meaning(field: Schema) -> str:
 
 
 def kind(schema: Schema, titles: Titles = MappingProxyType({})) -> str:
-    """Return in words which values a schema takes."""
+    """Return in words which values a schema accepts."""
     if "$ref" in schema:
         name = schema["$ref"].rsplit("/", 1)[1]
         return f"[{titles.get(name, name)}](#{name.lower()})"
@@ -71,5 +71,5 @@ def kind(schema: Schema, titles: Titles = MappingProxyType({})) -> str:
 
 
 def cell(text: str) -> str:
-    """Return a text for a cell of a table."""
+    """Return text for a table cell."""
     return " ".join(text.split()).replace("|", "\\|")
