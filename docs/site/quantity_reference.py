@@ -54,7 +54,7 @@ def section(quantity: Quantity) -> str:
         "Formula": f"`{quantity.formula}`",
         "Unit": f"{units(quantity)}; column `{quantity.field}`",
         "Sign": "may be negative" if quantity.signed else "",
-        "Better": {"low": "low", "high": "high", "": "none"}[quantity.better],
+        "Better": {"low": "lower", "high": "higher", "": "neither"}[quantity.better],
         "Needs": required,
         "Default": _floor(quantity),
         "Allowable": f"the {quantity.allowed_by}" if quantity.allowed_by else "",
