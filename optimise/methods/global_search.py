@@ -185,12 +185,12 @@ _global = partial(Method, family="global", objectives="one", budget=50_000, uses
 DIFFERENTIAL_EVOLUTION = _global(
     name="differential_evolution",
     title="Differential evolution",
-    help="A population of scipy that moves by differences of its members; the best is improved by SLSQP.",
+    help="SciPy's population search, which moves members by their differences; SLSQP improves the best one.",
     search=differential_evolution,
 )
 SHGO = _global(
     name="shgo",
     title="SHGO",
-    help="Simplicial homology of scipy: finds the basins of the objective; each is descended by SLSQP.",
+    help="SciPy's simplicial homology: finds the basins of the objective and descends into each with SLSQP.",
     search=shgo,
 )

@@ -201,13 +201,13 @@ _gradient = partial(Method, family="gradient", objectives="one", budget=20_000, 
 SLSQP = _gradient(
     name="slsqp",
     title="SLSQP",
-    help="Sequential least squares programming of scipy from many starts; peaks are rows of the epigraph form.",
+    help="SciPy's sequential least-squares programming from many starts; peaks are rows of the epigraph form.",
     search=partial(search_from_starts, solve=by_slsqp, starts=24),
 )
 TRUST_CONSTR = _gradient(
     name="trust_constr",
     title="trust-constr",
-    help="Interior-point method of scipy from a few starts; peaks are rows of the epigraph form.",
+    help="SciPy's interior-point method from a few starts; peaks are rows of the epigraph form.",
     search=partial(search_from_starts, solve=by_trust_constr, starts=8),
     equalities=False,
 )

@@ -100,14 +100,14 @@ _genetic_method = partial(Method, family="evolutionary", budget=20_000, uses=("o
 NSGA2 = _genetic_method(
     name="nsga2",
     title="NSGA-II",
-    help="Genetic algorithm by Optuna's operators whose population is kept diverse by crowding distance.",
+    help="Genetic algorithm with Optuna's operators; crowding distance keeps the population diverse.",
     objectives="any",
     search=nsga2,
 )
 NSGA3 = _genetic_method(
     name="nsga3",
     title="NSGA-III",
-    help="Genetic algorithm by Optuna's operators whose population is kept diverse by reference directions.",
+    help="Genetic algorithm with Optuna's operators; reference directions keep the population diverse.",
     objectives="several",
     search=nsga3,
 )

@@ -60,13 +60,13 @@ _baseline = partial(Method, family="sampling", objectives="any", budget=20_000, 
 RANDOM = _baseline(
     name="random",
     title="Random points",
-    help="Uniformly random points, a baseline that every other method must beat.",
+    help="Uniformly random points: a baseline that every other method should beat.",
     search=random,
 )
 SOBOL = _baseline(
     name="sobol",
     title="Sobol points",
-    help="One scrambled Sobol sequence, a baseline that every other method must beat.",
+    help="One scrambled Sobol sequence: a baseline that every other method should beat.",
     search=sobol,
     uses=("scipy",),
 )

@@ -265,7 +265,7 @@ _scalarisation = partial(Method, family="scalarisation", objectives="several", b
 EPSILON_CONSTRAINT = _scalarisation(
     name="epsilon_constraint",
     title="Epsilon-constraint",
-    help="Minimises the first objective with ceilings on all others, on a grid of ceilings.",
+    help="Minimises the first objective with upper limits on all others, over a grid of limits.",
     search=partial(scalarised, aims=epsilon_constraint),
 )
 CHEBYSHEV = _scalarisation(
@@ -277,6 +277,6 @@ CHEBYSHEV = _scalarisation(
 NBI = _scalarisation(
     name="nbi",
     title="Normal-boundary intersection",
-    help="Goes as far as designs can along the normal of the plane through the single optima.",
+    help="Moves as far as possible along the normal to the plane through the optima of the single objectives.",
     search=partial(scalarised, aims=nbi),
 )

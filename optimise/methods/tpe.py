@@ -44,7 +44,7 @@ def tpe(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 TPE = Method(
     name="tpe",
     title="TPE",
-    help="Proposes by Optuna designs that are likelier to be good, from densities fitted to all evaluated ones.",
+    help="Proposes promising designs with Optuna, from densities fitted to all evaluated designs.",
     family="model-based",
     objectives="any",
     search=tpe,
