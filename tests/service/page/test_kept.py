@@ -74,6 +74,11 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     told = (one["name"], one["note"], one["star"], one["decided"], one["reason"], one["outside"])
     table = page.locator(".kept .scroll")
     assert table.evaluate("node => node.scrollWidth <= node.clientWidth"), "the shortlist fits at 1280 px"
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert table.evaluate("node => node.scrollWidth <= node.clientWidth"), "and on a phone"
+    expect(line.locator("[data-key=time_ratio]")).to_have_css("display", "flex")  # a line of its own, with its title
+    require_accessible(page)
+    page.set_viewport_size({"width": 1280, "height": 900})
     reason = page.get_by_label("Why, or why not, Long rod")
     assert reason.evaluate("node => node.scrollHeight <= node.clientHeight + 1"), "all of the reason is in sight"
     assert told == ("Long rod", "from stock", True, True, "the rod is in stock", ["rod_mm"])

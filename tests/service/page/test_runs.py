@@ -339,3 +339,18 @@ def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) ->
     store.delete(2)
     gone = open_page(store, "#/compare?jobs=1,2", expected=("404",))
     expect(gone.get_by_text("Run 2 no longer exists.")).to_be_visible()
+
+
+def test_back_gives_the_focus_back_to_what_led_away(open_page: Open, solved: Solved) -> None:
+    page = open_page(solved.store, reduced_motion="reduce")
+    led = page.locator(f".run a.name[href='#/jobs/{solved.number}']")
+    led.press("Enter")
+    second = page.locator("table.designs tbody a[href*='/designs/2']").first
+    second.press("Enter")
+    expect(page.get_by_role("heading", level=1)).to_contain_text("Design 2")
+    page.go_back()
+    expect(second).to_be_focused()
+    page.go_back()
+    expect(led).to_be_focused()
+    page.go_forward()
+    expect(second).to_be_focused()

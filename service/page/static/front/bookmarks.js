@@ -4,9 +4,10 @@ import { link } from "../lib/address.js";
 import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
-import { apiSystem, text, unitOf, withUnit } from "../lib/numbers.js";
+import { apiSystem, text, unitOf } from "../lib/numbers.js";
 import { searchButton } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
+import { headed } from "./columns.js";
 import { LENGTHS } from "./linkages.js";
 import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
@@ -182,7 +183,7 @@ export function bookmarksPanel(explorer) {
             h(
               "span",
               { "data-key": key, "data-value": String(cells[key]) },
-              text(cells[key], "mm", 5),
+              text(cells[key], "mm", 4),
             ),
           ]),
           ` ${unitOf("mm")}`,
@@ -190,12 +191,15 @@ export function bookmarksPanel(explorer) {
         one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"),
         one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement"),
       ),
-      data.objectives.map(({ column, unit }) =>
-        numberCell(column, cells[column], withUnit(cells[column], unit, 5)),
-      ),
+      data.objectives.map((objective) => {
+        const { column, unit } = objective;
+        const cell = numberCell(column, cells[column], text(cells[column], unit, 5));
+        cell.dataset.title = headed(objective);
+        return cell;
+      }),
       h(
         "td",
-        {},
+        { "data-title": "decided" },
         h("input", {
           type: "radio",
           name: "decided",
@@ -243,7 +247,7 @@ export function bookmarksPanel(explorer) {
     const heads = [
       unseen("Star"),
       "design",
-      ...data.objectives.map(({ title }) => title),
+      ...data.objectives.map(headed),
       "decided",
       "because, or why not",
       unseen("Search near, drop"),

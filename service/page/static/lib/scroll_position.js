@@ -1,4 +1,6 @@
-/** Where the reader is in a view, down the page: kept with its entry in the history, and found again by back, forward and reload. */
+/** Where the reader is in a view, down the page and with the focus: kept with its entry in the history, found again by back, forward and reload. */
+
+import { byId } from "./dom.js";
 
 const PAUSE = 150; // ms after the last movement
 const PATIENCE = 20_000; // ms that a view has to become as long as it was
@@ -8,10 +10,18 @@ const QUIET = 2_000; // ms without a change of its length, after which it is tak
 let timer;
 let looking = false; // for a place: what moves meanwhile is not the reader
 
-/** Note the place in this entry of the history. */
-function note() {
+/** Note the place in this entry of the history. @param {Record<string, string | null>} [more] */
+function note(more) {
   clearTimeout(timer);
-  if (!looking) history.replaceState({ ...history.state, top: Math.round(scrollY) }, "");
+  if (!looking) history.replaceState({ ...history.state, top: Math.round(scrollY), ...more }, "");
+}
+
+/** Return a selector for what is used in a view, to find it when the view is drawn again; null without one. @param {EventTarget | null} target */
+function selectorOf(target) {
+  const node =
+    target instanceof Element ? target.closest("#main :is([id], a[href], [aria-label])") : null;
+  const name = ["id", "href", "aria-label"].find((attribute) => node?.hasAttribute(attribute));
+  return name ? `[${name}="${CSS.escape(node?.getAttribute(name) ?? "")}"]` : null;
 }
 
 /** Keep the place from now on; what leads elsewhere notes it before. */
@@ -26,18 +36,27 @@ export function rememberScroll() {
     { passive: true },
   );
   for (const name of ["click", "keydown"])
-    document.addEventListener(name, () => timer && note(), { capture: true });
+    document.addEventListener(
+      name,
+      (event) => {
+        // Enter leads elsewhere without a click in a chart. Other keys are many, and browsers count the notes.
+        const leads = !(event instanceof KeyboardEvent) || event.key === "Enter";
+        if (leads) note({ focus: selectorOf(event.target) });
+        else if (timer) note();
+      },
+      { capture: true },
+    );
 }
 
 /**
- * Begin a view; the function that is returned goes to the place where it was left, as soon as it is long enough for that, or to its
- * beginning. The reader who moves meanwhile is left alone.
+ * Begin a view; the function that is returned goes to the place where it was left and gives back the focus, as soon as the view is long
+ * enough for that, or to its beginning. The reader who moves meanwhile is left alone.
  * @param {AbortSignal} signal of the view
  */
 export function restoreScroll(signal) {
   clearTimeout(timer);
   looking = true;
-  const top = Number(history.state?.top ?? 0);
+  const { top = 0, focus = null } = history.state ?? {};
   const until = performance.now() + PATIENCE;
   const ended = new AbortController();
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -48,10 +67,16 @@ export function restoreScroll(signal) {
     ended.abort();
     longer.disconnect();
   };
+  const refocus = () => {
+    const node = focus && document.querySelector(focus);
+    if (node && [document.body, byId("main")].includes(document.activeElement))
+      node.focus({ preventScroll: true });
+    return node || !focus;
+  };
   const reach = () => {
     window.scrollTo(0, top);
     clearTimeout(whole);
-    if (top === 0 || performance.now() > until) end();
+    if ((refocus() && top === 0) || performance.now() > until) end();
     else if (Math.abs(scrollY - top) <= 1) whole = setTimeout(end, QUIET);
   };
   const longer = new ResizeObserver(reach);
