@@ -312,8 +312,11 @@ def quote(value: object) -> str:
 def closest(word: str, words: Iterable[str]) -> str | None:
     """Return the word that a misspelt one probably means; None if none is close."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
-    near = difflib.get_close_matches(word.casefold()[:_LONGEST], by_fold, n=1, cutoff=0.6)
-    near = near or sorted((folded for folded in by_fold if word.casefold() in folded.split("_")), key=len)
+    typed = word.casefold()[:_LONGEST]
+    ratios = {folded: difflib.SequenceMatcher(None, typed, folded).ratio() for folded in by_fold}
+    near = [folded for folded, ratio in ratios.items() if ratio >= max(0.6, *ratios.values())]
+    near = near or sorted((folded for folded in by_fold if typed in folded.split("_")), key=len)
+    near = near or [folded for folded in by_fold if len(typed) > 2 and folded.startswith(typed)]
     return by_fold[near[0]] if near else None
 
 
@@ -367,6 +370,8 @@ def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
         except InputError as error:  # of another kind
             raise InputError(str(error).replace(quote(point), quote(text))) from None
         raise InputError(f"write a decimal number, not a fraction; got {quote(text)}; write {quote(point)}")
+    if without_sign := re.fullmatch(r"\s*(?:±|\+/?-)\s*(\d.*)", text):
+        raise InputError(f"{rule} without a sign; got {quote(text)}; write {quote(without_sign[1])}")
     if match is None:
         raise InputError(f"{rule}: one number and one unit; got {quote(text)}; {write}")
     if _SPREAD.fullmatch(text.translate(_TYPESET).strip()):

@@ -9,6 +9,8 @@ from ...model.errors import InputError
 from ...objectives.units import closest, quote
 from .values import Part
 
+_FEW = 4  # kinds that a table may lack one key for, in a message
+
 
 @dataclass(frozen=True)
 class Kinds:
@@ -35,6 +37,9 @@ class Kinds:
             keys = ", ".join(quote(key).strip('"') for key in list(value)[:6]) or "no keys"
             near = [self.synonyms.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
             hint = next((f"; did you mean {key}?" for key in near if key), "")
+            lacking = [key for key, kind in self.parts.items() if value.keys() <= kind.model_fields.keys()]
+            if 0 < len(lacking) <= _FEW and value:
+                raise InputError(f"must also have {' or '.join(lacking)}; got {keys} alone")
             raise InputError(f"must be one of {self.choice}; got {keys}{hint}")
         if len(keys_present) > 1:
             raise InputError(f"must be of one kind; got {' and '.join(keys_present)}; {self.remedy}")

@@ -41,6 +41,7 @@ _PASSED = rf"({_TEXT}|#.*)|"
 """Complete texts and comments, which an edit leaves unchanged."""
 _COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
 _SEPARATORS = r"=,;:\[\]{}()#\"'"
+_FORMULA = r"[^\"'#=<>]*[^\W\d][^\"'#=<>]*"
 _VALUE = re.compile(
     rf"{_PASSED}(?<=[=\[,;{{])(\s*)([+-]?\d+,\d+(?![\d,])[^{_SEPARATORS}]*?|[^\s{_SEPARATORS}][^{_SEPARATORS}]*?)"
     r"(?=\s*(?:[,;\]})]|//|--|/\*|$))"
@@ -91,6 +92,8 @@ _EDITS: tuple[Edit, ...] = (
     _edit_code(r"^(\s*[\w.-]+)\s*\"\s*=\s*", r'\2 = "', _EQUALS),
     _edit_code(r"^(\s*[\w.-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
     _edit_code(r"([{,]\s*[\w-]+)\s+(?=[\"'\d+\[{-])", r"\2 = ", _EQUALS),
+    _edit_code(rf"^(\s*[\w.-]+)\s*=?\s*>=?\s*({_FORMULA})$", r'\2 = { min = "\3" }', _BELOW),
+    _edit_code(rf"^(\s*[\w.-]+)\s*=?\s*<=?\s*({_FORMULA})$", r'\2 = { max = "\3" }', _ABOVE),
     _edit_code(rf"=?\s*>=?\s*({_TEXT}|[\d.]+)", r" = { min = \2 }", _BELOW),
     _edit_code(rf"=?\s*<=?\s*({_TEXT}|[\d.]+)", r" = { max = \2 }", _ABOVE),
     _edit_code(r"(?<={)\s*>=?\s*", " min = ", _BELOW),
