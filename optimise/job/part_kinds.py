@@ -38,7 +38,7 @@ class Kinds:
             near = [self.synonyms.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
             hint = next((f"; did you mean {key}?" for key in near if key), "")
             lacking = [key for key, kind in self.parts.items() if value.keys() <= kind.model_fields.keys()]
-            if 0 < len(lacking) <= _FEW and value:
+            if value and 0 < len(lacking) <= min(_FEW, len(self.parts) - 1):
                 raise InputError(f"must also have {' or '.join(lacking)}; got {keys} alone")
             raise InputError(f"must be one of {self.choice}; got {keys}{hint}")
         if len(keys_present) > 1:

@@ -68,7 +68,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     # Loads
     (LOAD, 'viscos = "15 N s/m"', ["load #2", "got viscos", "did you mean viscous?"]),
     (LOAD, 'viscous = "15 N/m"', ["load #2.viscous", "is a stiffness", '"50 N s/m"']),
-    (LOAD, 'force = "5 N"', ["load #2", "{ force, opposes }", "got force"]),
+    (LOAD, 'force = "5 N"', ["load #2", "must also have opposes or helps or direction", "got force"]),
     (LOAD, 'force = "-5 N"\nopposes = "motion"', ["load #2.force", "positive", '"-5 N"']),
     (LOAD, 'force = "5 N"\nopposes = "outward"', ["load #2.opposes", 'did you mean "outward stroke"?']),
     (LOAD, LOAD + '\nstiffness = "5 N/m"', ["load #2", "of one kind", "its own [[load]]"]),
