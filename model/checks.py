@@ -9,7 +9,7 @@ from typing import get_args
 
 from .errors import InputError
 
-_REMEDY = "text with a unit belongs in the tables of a job"
+_REMEDY = "write text with a unit in the tables of a job"
 
 
 def require_numbers(
@@ -27,7 +27,7 @@ def require_numbers(
         try:
             right = value is None or (math.isfinite(value) and value >= least and value > above)
         except TypeError:
-            raise InputError(f"{number} must be a number, SI; got {value!r}; {_REMEDY}") from None
+            raise InputError(f"{number} must be a number in SI units; got {value!r}; {_REMEDY}") from None
         if not right:
             sign = "positive and " if above == 0.0 else "zero or more and " if least == 0.0 else ""
             raise InputError(f"{number} must be {sign}finite; got {value:g}{unit and f' {unit}'}")
@@ -39,7 +39,7 @@ def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") 
         try:
             finite = math.isfinite(value)
         except TypeError:
-            raise InputError(f"{subject} must be of numbers, SI; got {value!r}; {_REMEDY}") from None
+            raise InputError(f"{subject} must consist of numbers in SI units; got {value!r}; {_REMEDY}") from None
         if not finite:
             raise InputError(f"{subject} must be finite{suffix and f' {suffix}'}; got {value}")
 

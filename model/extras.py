@@ -33,7 +33,8 @@ class NamingExtra:
         extra = extra_of(error.name)
         if extra is not None:
             raise MissingExtra(
-                f'{self._use} the extra "{extra}", which is not installed; add it: pip install "slidercrank[{extra}]"',
+                f'{self._use} the extra "{extra}", which is not installed; install it: pip install '
+                f'"slidercrank[{extra}]"',
                 name=error.name,
             ) from None
 

@@ -108,5 +108,5 @@ def relative_error(approximate: Array, exact: Array) -> float:
 
 def _inertia_alone(mechanism: Mechanism) -> Mechanism:
     if mechanism.speed == 0.0:
-        raise InputError("the approximate models need a crank speed; got none; give one")
+        raise InputError("approximate models need a crank speed; got none; add one")
     return replace(mechanism, loads=(), gravity=(0.0, 0.0), acceleration=0.0, friction=Friction())

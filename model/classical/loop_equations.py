@@ -73,7 +73,7 @@ def solve_loop(
         start = (pin[0] + linkage.sign * l, 0.0 if linkage.sign > 0.0 else math.pi)
     x, phi = (np.broadcast_to(np.asarray(value, dtype=np.float64), theta.shape).copy() for value in start)
     if not (np.all(np.isfinite(x)) and np.all(np.isfinite(phi))):
-        raise InputError("the start of the iteration must be finite; give a slider position and a rod angle")
+        raise InputError("the starting point must be finite; give a slider position and a rod angle")
     iterations = np.zeros(theta.shape, dtype=np.int64)
     moving = np.ones(theta.shape, dtype=np.bool_)
     for _ in range(iteration_limit):
@@ -86,7 +86,7 @@ def solve_loop(
             break
     else:
         raise InputError(
-            f"the iteration must end within {iteration_limit} steps; got none at crank angle "
+            f"the iteration must converge within {iteration_limit} steps; it did not at crank angle "
             f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
         )
     first, second = _derivatives(theta, pin, l, phi, w, alpha)
@@ -124,8 +124,8 @@ def _solve(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
     singular = active & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
         raise InputError(
-            "the Jacobian must not be singular: the rod stood normal to the slider line; "
-            f"got it at crank angle {_first_degrees(singular, theta):.6g} deg; start with another rod angle"
+            "the Jacobian must not be singular, with the rod normal to the slider line; it is at crank angle "
+            f"{_first_degrees(singular, theta):.6g} deg; start with another rod angle"
         )
     step = np.zeros_like(right)
     step[active] = np.linalg.solve(jacobian[active], right[active][..., None])[..., 0]

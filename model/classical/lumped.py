@@ -45,9 +45,9 @@ def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
     share = 1.0 - mass_properties(mechanism.rod, length).centre / length
     if not 0.0 <= share <= 1.0:
         raise InputError(
-            "the mass centre of the rod must lie between its pins for two point masses; "
-            f"got {1e3 * length * (1.0 - share):g} mm from the crank pin of a rod of {1e3 * length:g} mm; "
-            "use the exact model"
+            "the two-mass model needs the rod's mass centre between the pins; got "
+            f"{1e3 * length * (1.0 - share):g} mm from the crank pin of a rod of {1e3 * length:g} mm; use the "
+            "exact model"
         )
     return share
 
@@ -60,7 +60,7 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
     """
     share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
     if not 0.0 <= share <= 1.0:
-        raise InputError(f"the share of the crank pin must be from 0 to 1; got {share:g}")
+        raise InputError(f"the crank pin's share of the mass must be from 0 to 1; got {share:g}")
     radius = float(linkage.crank)
     rod = mass_properties(mechanism.rod, float(linkage.rod)).mass
     crank, added = mass_properties(mechanism.crank, radius), share * rod

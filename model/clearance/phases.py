@@ -105,8 +105,8 @@ class Integrator:
                 return False
             if solver.step() is not None:
                 raise SlidercrankError(
-                    f"the steps of the integration must stay above rounding; got too short ones at {solver.t:g} s; "
-                    "make the tolerance coarser or the contact softer"
+                    f"the time steps must not fall below rounding error; they did at {solver.t:g} s; loosen the "
+                    "tolerance or soften the contact"
                 )
             interpolate = solver.dense_output()
             times = np.linspace(solver.t_old, solver.t, BETWEEN + 1)
@@ -114,9 +114,9 @@ class Integrator:
             depth = self._depth(states[:, 1:])
             if not depth.max() < self.system.bearing_radius:
                 raise SlidercrankError(
-                    "the contact must hold the journal in its bearing; "
-                    f"got a penetration beyond the bearing's radius, {1e3 * self.system.bearing_radius:g} mm, with a "
-                    f"stiffness of {self.system.stiffness:g} N/m^1.5; make the contact stiffer"
+                    "the contact must hold the journal in its bearing; got a penetration beyond the bearing radius "
+                    f"of {1e3 * self.system.bearing_radius:g} mm, with a stiffness of {self.system.stiffness:g} "
+                    "N/m^1.5; stiffen the contact"
                 )
             crossed = np.flatnonzero(sign * depth > 0.0)
             if len(crossed):

@@ -148,12 +148,12 @@ def simulate(
 
 def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, tolerance: float) -> None:
     if not mechanism.speed:
-        raise InputError("a joint with clearance is simulated over turns of the crank; got none; give a crank speed")
-    require_plain(mechanism, "the simulation of a loose joint")
-    require_frictionless(mechanism.friction, "the simulation of a loose joint (with its own friction)")
+        raise InputError("simulating a joint with clearance needs a crank speed; got none; add one")
+    require_plain(mechanism, "the simulation of a joint with clearance")
+    require_frictionless(mechanism.friction, "the simulation of a joint with clearance (with its own friction)")
     if not 0 <= discard < cycles:
         raise InputError(
-            f"cycles must be more than discard, and discard zero or more; got {cycles} and {discard}; add cycles"
+            f"cycles must exceed discard, and discard must not be negative; got {cycles} and {discard}; add cycles"
         )
     if not 1e-13 <= tolerance <= 1e-3:
         raise InputError(f"tolerance must be from 1e-13 to 1e-3; got {tolerance:g}; 1e-7 is usual")

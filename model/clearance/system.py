@@ -72,8 +72,8 @@ def build(
     # Effective inertia of the rod once the slider yields, at the rod angle with the strongest coupling.
     if system.m_xx * system.m_rod <= (1.0 + 1e-9) * abs(system.m_x_rod) ** 2:
         raise InputError(
-            f"rod and slider need masses that determine how they move when the {clearance.joint} is loose; "
-            f"got a rod of {d.rod_mass:g} kg and a slider of {d.slider_mass:g} kg; give both a mass"
+            f"rod and slider need masses to simulate clearance in the {clearance.joint}; got a rod of "
+            f"{d.rod_mass:g} kg and a slider of {d.slider_mass:g} kg; give both a mass"
         )
     return system, block, loads
 
@@ -83,15 +83,15 @@ def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Cleara
     linkage.require_full_rotation()
     if mechanism.acceleration:
         raise InputError(
-            "a joint with clearance needs a crank that turns steadily; "
-            f"got an acceleration of {mechanism.acceleration:g} rad/s^2; set it to zero"
+            "a joint with clearance needs a crank at constant speed; got an acceleration of "
+            f"{mechanism.acceleration:g} rad/s^2; set it to zero"
         )
     require_no_crank_load(mechanism, "a simulation of clearance")
     for load in mechanism.loads:
         if load.inertial:
             raise InputError(
-                f"a simulation of clearance takes forces on the slider; got {load.size}; "
-                "add that mass to the slider's, or leave that load out"
+                f"a simulation of clearance only takes forces on the slider; got {load.size}; add that mass to the "
+                "slider's, or leave that load out"
             )
     rod_margin = float(linkage.rod - linkage.crank - abs(linkage.offset))
     if clearance.radius >= 0.5 * rod_margin:

@@ -111,4 +111,4 @@ def _fingerprint(value: Any) -> str:
         return f"{value.__qualname__}{getattr(value, '_fields', '')}"
     if isinstance(value, (*_PLAIN, BuiltinFunctionType, np.generic, np.ufunc, enum.Enum)):
         return repr(value)
-    raise TypeError(f"a formula must use numbers, tuples, classes, modules and formulas; got {value!r}; name it anew")
+    raise TypeError(f"a formula may only use numbers, tuples, classes, modules and formulas; got {value!r}; replace it")

@@ -130,7 +130,9 @@ class _NoArrays(event.Listener):
         data = event.data
         is_native_lowering = data["name"].startswith("native_lowering") and not data["module"].startswith("numba")
         if is_native_lowering and "array(" in data["return_type"]:
-            raise TypeError(f"a formula must return no array; got one of {data['qualname']}; let the kernel make it")
+            raise TypeError(
+                f"a formula must not return an array; {data['qualname']} does; create the array in the kernel"
+            )
 
     def on_end(self, event: Any) -> None:
         """Do nothing."""

@@ -82,7 +82,7 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
         code = read(folder / name)
     if code is None:  # no process could be started, or nothing could be stored
         if folder in _refusing:
-            _log.warning(f"slidercrank compiles its formulas, now {source.name.rpartition('.')[2]}")
+            _log.warning(f"slidercrank is compiling its formulas: {source.name.rpartition('.')[2]}")
         code = source.compile()
         if not keep(folder / name, code):
             _refusing.add(folder)
@@ -174,7 +174,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
-                    _log.warning(f"slidercrank compiles its formulas: {far}; {before + _waits[-1]:.0f} s so far")
+                    _log.warning(f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far")
         time.sleep(_TICK)
         ask()
 
@@ -194,7 +194,7 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
 
 @cache
 def _report_compilation() -> None:
-    _log.warning("slidercrank compiles its formulas, once after installation")
+    _log.warning("slidercrank is compiling its formulas (only once after installation)")
 
 
 _waits: list[float] = []

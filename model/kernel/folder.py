@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 _log = logging.getLogger(__name__)
 
-_REMEDY = "name a folder that can be written in NUMBA_CACHE_DIR"
+_REMEDY = "set NUMBA_CACHE_DIR to a writable folder"
 
 
 class Chosen(NamedTuple):
@@ -49,7 +49,7 @@ def log_refused_folders() -> None:
     """Log once which locations were refused, if the folder is empty or missing. For processes that have to compile."""
     folder, empty, refused, _ = _chosen()
     if folder is None:
-        _log.warning(f"slidercrank compiles for a minute at every start: {refused}; {_REMEDY}")
+        _log.warning(f"slidercrank will compile for a minute at every start: {refused}; {_REMEDY}")
     elif empty and refused:
         _log.warning(
             f"slidercrank keeps compiled kernels in {folder.parent}: {refused}; to keep them longer, {_REMEDY}"
@@ -107,7 +107,7 @@ def _refusal(folder: Path) -> str | None:
     try:
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
         if place.parent == _temp_folder() and not _is_private(place.lstat(), {os.getuid()}):
-            return "is not a folder that this user alone can write"
+            return "is not a folder that only this user can write to"
         folder.mkdir(exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             return None

@@ -52,8 +52,8 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     missing = [name for name in code.calls if not llvm.address_of_symbol(name)]
     if missing:  # otherwise the engine would jump to an invalid address
         raise SlidercrankError(
-            f"compiled formulas must find all functions that they call; {', '.join(missing)} is not in this process; "
-            "install the versions of numba and llvmlite anew"
+            f"compiled formulas need all the functions that they call; {', '.join(missing)} is missing; reinstall "
+            "numba and llvmlite"
         )
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_llvm_entry(code, leaves)), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
@@ -93,7 +93,9 @@ def _llvm_entry(code: MachineCode, leaves: list[Leaf]) -> str:
         arguments += [("i64", read("i64", strides, 8 * side)) for side in range(leaf.dimensions)]
     types = tuple(kind for kind, _ in arguments)
     if types != code.arguments:
-        raise SlidercrankError(f"a kernel must take what it declares, {types}; got {code.arguments}; compile it anew")
+        raise SlidercrankError(
+            f"a kernel must take the types that it declares, {types}; got {code.arguments}; recompile it"
+        )
     argument_list = ", ".join(f"{kind} {value}" for kind, value in arguments)
     body = "\n  ".join(lines)
     return f"""

@@ -60,8 +60,8 @@ class TargetMotion:
         angles, positions = self.crank_angles, self.positions
         if len(angles) != len(positions) or len(angles) < 3:
             raise InputError(
-                "a target motion needs as many positions as crank angles, three at least; "
-                f"got {len(angles)} crank angles and {len(positions)} positions"
+                f"a target motion needs as many positions as crank angles, at least three; got {len(angles)} crank "
+                f"angles and {len(positions)} positions"
             )
         if not all(math.isfinite(value) for value in (*angles, *positions)):
             raise InputError("crank angles and positions of a target motion must be finite throughout")

@@ -63,9 +63,8 @@ def crank_solutions(
     )
     if slider_motion.acceleration is not None and slider_motion.velocity is None:
         raise InputError(
-            "a slider acceleration gives the crank's only together with the slider velocity; "
-            f"got acceleration {slider_motion.acceleration:g} m/s^2 alone; "
-            "give the velocity too, 0 for a slider at rest"
+            "a slider acceleration needs the slider velocity besides; got acceleration "
+            f"{slider_motion.acceleration:g} m/s^2 alone; add the velocity, 0 for a slider at rest"
         )
     distance, rounding = math.hypot(slider_motion.position, offset), ROUNDING * (crank + rod)
     to_outer, to_inner = crank + rod - distance, distance - abs(rod - crank)
@@ -73,8 +72,8 @@ def crank_solutions(
         raise _unreachable_position(linkage, slider_motion.position)
     if distance <= rounding:
         raise AssemblyError(
-            "a slider pin on the crank pivot leaves the crank free to turn; "
-            f"got position {1e3 * slider_motion.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
+            "the slider pin must not lie on the crank pivot, which leaves the crank angle undetermined; got "
+            f"position {1e3 * slider_motion.position:.9g} mm with rod = crank = {1e3 * crank:g} mm and no offset; "
             "move the position, or make rod and crank differ"
         )
     if min(to_outer, to_inner) <= rounding:
@@ -142,19 +141,19 @@ def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) ->
     if linkage.sign * (target.position - crank * math.cos(angle)) <= 0.0:
         raise _unreachable_position(linkage, target.position)
     m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
-    place = f"at the dead centre of position {1e3 * target.position:.9g} mm"
-    remedy = "or a position further away"
+    place = f"at the dead centre, position {1e3 * target.position:.9g} mm"
+    remedy = "or a position farther away"
     if target.velocity:
         raise InputError(
-            f"the slider velocity must be 0 {place}, where the slider stands still at any crank speed; "
-            f"got {target.velocity:g} m/s; give 0, {remedy}"
+            f"the slider velocity must be 0 {place}, where the slider is at rest at any crank speed; got "
+            f"{target.velocity:g} m/s; give 0, {remedy}"
         )
     # x' = 0 leaves a = x'' speed^2.
     if target.acceleration is not None and target.acceleration * float(m.x_2) < 0.0:
         sign = "negative" if m.x_2 < 0.0 else "positive"
         raise InputError(
-            f"the slider acceleration must be {sign} or 0 {place}, from which the slider can only return; "
-            f"got {target.acceleration:g} m/s^2; turn its sign, {remedy}"
+            f"the slider acceleration must be {sign} or 0 {place}, from which the slider can only return; got "
+            f"{target.acceleration:g} m/s^2; reverse its sign, {remedy}"
         )
     angle_in_turn = math.fmod(angle + 2.0 * math.pi, 2.0 * math.pi)
     return CrankSolution(angle_in_turn, None, None, None)
@@ -183,7 +182,7 @@ def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))
     if shape:
         raise InputError(
-            f"the inverse problem takes one linkage; got an array of shape {shape}; take one linkage at a time"
+            f"the inverse problem only takes one linkage at a time; got an array of shape {shape}; loop over it"
         )
     if any(np.iscomplexobj(size) for size in sizes):
         raise InputError("the inverse problem needs real dimensions; got complex ones; leave out the imaginary part")
@@ -193,5 +192,5 @@ def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
 def _require_number(name: str, value: ArrayLike) -> float:
     array = finite(name, value)
     if array.ndim:
-        raise InputError(f"{name} must be one number; got an array of shape {array.shape}; take one at a time")
+        raise InputError(f"{name} must be one number; got an array of shape {array.shape}; loop over it")
     return float(array)

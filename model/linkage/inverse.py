@@ -127,7 +127,7 @@ def crank_motion(
         x,
         dimensions,
         "slider positions must lie off the dead centres, where the crank motion is undetermined",
-        "request the crank angle alone, or a position further away",
+        "request only the crank angle, or choose a position farther away",
         kind=InputError,
     )
     theta = crank_angle_at(linkage, x, solution=solution)

@@ -281,7 +281,9 @@ class Linkage:
         self._require_one("a picture")
         theta = numbers(crank_angle, "a crank angle")
         if theta.ndim:
-            raise InputError(f"a picture shows one crank angle; got an array of shape {theta.shape}; take one of them")
+            raise InputError(
+                f"a picture can only show one crank angle; got an array of shape {theta.shape}; choose one"
+            )
         crank_angle = float(theta.real)
         m, crank = self._motion(np.asarray(crank_angle)), float(self.crank.real)
         ends = self.dead_centres if bool(self.rotates_fully) else (np.asarray(np.nan), np.asarray(np.nan))
@@ -294,7 +296,7 @@ class Linkage:
     def _require_one(self, subject: str) -> None:
         if np.ndim(self.rotates_fully):
             raise InputError(
-                f"{subject} shows one linkage; got an array of shape {np.shape(self.rotates_fully)}; take one of them"
+                f"{subject} can only show one linkage; got an array of shape {np.shape(self.rotates_fully)}; choose one"
             )
 
     def _motion(self, theta: Array) -> Motion:

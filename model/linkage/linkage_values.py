@@ -48,7 +48,7 @@ def numbers(value: ArrayLike, argument: str = "a crank angle, speed or accelerat
     try:
         array: Array = np.asarray(value, dtype=kind)
     except (TypeError, ValueError):
-        raise InputError(f"{argument} must be a number or an array of numbers, SI; got {value!r}") from None
+        raise InputError(f"{argument} must be a number or an array of numbers in SI units; got {value!r}") from None
     return array
 
 
@@ -70,12 +70,12 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
         raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
     for name, size in zip(("crank", "rod"), real, strict=False):
         if np.any(size <= 0.0):
-            raise InputError(f"{name} must be longer than zero; got {first_marked(size, size <= 0.0):g} m")
+            raise InputError(f"{name} must be above zero; got {first_marked(size, size <= 0.0):g} m")
     cannot_close = np.abs(real[2]) >= real[0] + real[1]
     if np.any(cannot_close):
         raise AssemblyError(
-            "the linkage closes at no crank angle: |offset| must be less than crank + rod; "
-            f"got {in_mm(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
+            "|offset| must be less than crank + rod, or the linkage cannot close; got "
+            f"{in_mm(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
         )
     rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
     if np.any(rounding):

@@ -28,7 +28,8 @@ def one_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """
     if np.ndim(linkage.rotates_fully):
         raise InputError(
-            f"one linkage at a time; got an array of shape {np.shape(linkage.rotates_fully)}; loop over it"
+            f"only one linkage is possible at a time; got an array of shape {np.shape(linkage.rotates_fully)}; "
+            "loop over it"
         )
     if linkage.branch != mechanism.branch:
         raise InputError(

@@ -55,15 +55,15 @@ def vary(
     0.01
     """
     if np.ndim(linkage.rotates_fully):
-        raise InputError(f"one linkage is needed; got an array of shape {np.shape(linkage.rotates_fully)}")
+        raise InputError(f"exactly one linkage is needed; got an array of shape {np.shape(linkage.rotates_fully)}")
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     dimensions = {"crank": float(linkage.crank), "rod": float(linkage.rod), "offset": float(linkage.offset)}
     varied = []
     for name, value in changes:
         if name not in dimensions:
-            raise InputError(f"a dimension is one of {', '.join(get_args(Dimension))}; got {name!r}")
+            raise InputError(f"a dimension must be one of {', '.join(get_args(Dimension))}; got {name!r}")
         if not math.isfinite(value):
-            raise InputError(f"the other value of the {name} must be finite; got {value}")
+            raise InputError(f"the changed value of the {name} must be finite; got {value}")
         changed = dimensions | {name: float(value)}
         changed_linkage = Linkage(changed["crank"], changed["rod"], changed["offset"], linkage.branch)
         varied.append(Variation(name, float(value), changed_linkage.at(angles, speed=speed, acceleration=acceleration)))

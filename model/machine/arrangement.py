@@ -37,13 +37,15 @@ class Arrangement:
             require_all_finite(f"{name} of cylinders", getattr(self, name))
         count = len(self.phases)
         if not 1 <= count <= MOST:
-            raise InputError(f"cylinders must be 1 to {MOST}; got {count} phases; give a phase for each cylinder")
+            raise InputError(
+                f"the number of cylinders must be 1 to {MOST}; got {count} phases; give a phase for each cylinder"
+            )
         for name in ("banks", "places"):
             number = len(getattr(self, name))
             if number not in (0, count):
                 raise InputError(
-                    f"{name} of cylinders must be as many as their phases; got {number} {name} and {count} phases; "
-                    f"give one for each cylinder, or leave out {name}"
+                    f"cylinders must have as many {name} as phases; got {number} {name} and {count} phases; give "
+                    f"one for each cylinder, or leave out {name}"
                 )
         for k in range(count):
             for i in range(k):
@@ -53,11 +55,11 @@ class Arrangement:
         """Raise an error if two cylinders have equal phase and bank at one position."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
-            bank_text = f", both in the bank of {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
+            bank_text = f", both in the bank at {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
             raise InputError(
-                f"cylinders at one place must differ in phase or bank; got {math.degrees(self.phases[i]):.6g} deg for "
-                f"cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{bank_text}; "
-                "change one of them, or give the places of all along the shaft"
+                f"cylinders at one place must differ in phase or bank; got {math.degrees(self.phases[i]):.6g} deg "
+                f"for cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{bank_text}; "
+                "change one of them, or give all their places along the shaft"
             )
 
     def bank(self, k: int) -> float:
@@ -89,6 +91,6 @@ def require_one_cylinder(arrangement: Arrangement | None, subject: str) -> None:
     """Raise `InputError` for several cylinders. subject: the analysis, as the subject of the message."""
     if arrangement is not None and len(arrangement.phases) > 1:
         raise InputError(
-            f"{subject} takes a machine of one cylinder; got {arrangement.text}; leave out cylinders for that of one, "
-            "or see analyse --show cylinders"
+            f"{subject} only takes a machine with one cylinder; got {arrangement.text}; leave out cylinders to "
+            "study a single one, or see analyse --show cylinders"
         )

@@ -11,8 +11,9 @@ def require_no_winding(mechanism: Mechanism) -> None:
     for load in mechanism.fullest.loads:
         if load.winds:
             raise InputError(
-                f"a spring on the crank winds up with every turn; got a crank that rotates fully with a {load.size}; "
-                'let the crank swing, [motion] kind = "swing", or give its torque over the crank angle'
+                "a spring on the crank would wind up with every turn; got a crank that rotates fully with a "
+                f'{load.size}; let the crank swing, [motion] kind = "swing", or give its torque over the crank '
+                "angle"
             )
 
 
@@ -20,4 +21,4 @@ def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
     """Raise an error for loads on the crank if an analysis supports only loads on the slider. subject: the analysis."""
     for load in mechanism.fullest.loads:
         if load.on_crank:
-            raise InputError(f"{subject} takes loads on the slider; got {load.size}; leave that load out")
+            raise InputError(f"{subject} only takes loads on the slider; got {load.size}; leave that load out")

@@ -59,9 +59,9 @@ class LinearMotor:
         """Return the line through a rated point (torque, N m, at speed, rad/s) and the no-load speed, rad/s."""
         if not (0.0 <= speed < no_load_speed < math.inf and 0.0 < torque < math.inf):
             raise InputError(
-                "a rated point needs a positive torque, and a speed below the no-load speed; "
-                f"got {torque:g} N m at {speed:g} rad/s, no load at {no_load_speed:g} rad/s; "
-                "give the no-load (synchronous) speed and the smaller speed under the rated load"
+                f"a rated point needs a positive torque and a speed below the no-load speed; got {torque:g} N m at "
+                f"{speed:g} rad/s, no-load speed {no_load_speed:g} rad/s; give the no-load (synchronous) speed and "
+                "the lower speed under the rated load"
             )
         return cls(stall_torque=torque * no_load_speed / (no_load_speed - speed), no_load_speed=no_load_speed)
 
@@ -89,8 +89,8 @@ class TorqueTable:
         keep_tuples(self, "speeds", "torques")
         if len(self.speeds) != len(self.torques) or len(self.speeds) < 2:
             raise InputError(
-                "a torque table needs as many torques as speeds, two at least; "
-                f"got {len(self.speeds)} speeds and {len(self.torques)} torques"
+                f"a torque table needs as many torques as speeds, at least two; got {len(self.speeds)} speeds and "
+                f"{len(self.torques)} torques"
             )
         require_all_finite("a torque table", (*self.speeds, *self.torques), "throughout")
         for before, after in pairwise(self.speeds):
@@ -101,8 +101,8 @@ class TorqueTable:
                 )
         if self.speeds[0] > 0.0:
             raise InputError(
-                "a torque table must start at standstill or below; "
-                f"got {self.speeds[0]:g} rad/s as its first speed; add the torque at speed 0"
+                f"the first speed in a torque table must be zero or negative; got {self.speeds[0]:g} rad/s; add "
+                "the torque at speed 0"
             )
 
     @cached_property
@@ -158,7 +158,7 @@ class Drive:
         for name in ("gear_efficiency", "braking_efficiency", "recovery"):
             value = getattr(self, name)
             if value is not None and value > 1.0:
-                raise InputError(f"{name} of a Drive must be at most 1; got {value:g}; no drive train returns more")
+                raise InputError(f"{name} of a Drive must be at most 1; got {value:g}; no drive train can return more")
         if self.copper_loss is not None and self.rated_torque is None:
             raise InputError(
                 "copper_loss is the heat at the rated torque of the motor; got no rated_torque; add it, or leave out "
@@ -180,12 +180,12 @@ class Drive:
         """The motor's torque over its speed. Raises `InputError` without a motor, and for a gear with losses."""
         if self.motor is None:
             raise InputError(
-                "a machine that runs under its motor needs the motor's torque; got a drive without one; add for "
-                'example [drive] motor = { stall_torque = "60 N m", no_load_speed = "400 rpm" }'
+                "a machine driven by its motor needs a motor torque; got a drive without one; add for example "
+                '[drive] motor = { stall_torque = "60 N m", no_load_speed = "400 rpm" }'
             )
         if self.is_lossy:
             raise InputError(
-                "a machine that runs under its motor takes a gear without losses; got a gear efficiency below 1; leave "
+                "a machine driven by its motor needs a gear without losses; got a gear efficiency below 1; leave "
                 "it out, and reduce the torque of the motor instead"
             )
         return self.motor

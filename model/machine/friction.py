@@ -61,5 +61,6 @@ def require_frictionless(friction: Friction, subject: str) -> None:
     """Raise an error for friction if an analysis ignores it. subject: the analysis, as the subject of a sentence."""
     if friction.acts:
         raise InputError(
-            f"{subject} takes joints and guide without friction; got friction that acts; leave [friction] out"
+            f"{subject} only takes joints and guide without friction; got friction that has an effect; leave "
+            "[friction] out"
         )

@@ -47,7 +47,7 @@ class Cylinder:
         if (self.closed_length is None) != (self.stroke is None):
             given = "no stroke" if self.stroke is None else "no closed length"
             raise InputError(
-                f"the lengths of a cylinder follow from closed length and stroke; got {given}; give both, or neither"
+                f"a cylinder needs both a closed length and a stroke, or neither; got {given}; give both, or neither"
             )
         if self.stroke is not None and self.closed_length is not None and self.stroke >= self.closed_length:
             raise InputError(
@@ -62,8 +62,8 @@ class Cylinder:
             )
         if self.supply_pressure is not None and self.bore is None:
             raise InputError(
-                "a supply pressure needs the bore of the cylinder; got "
-                f"{1e-5 * self.supply_pressure:.6g} bar and no bore; give the bore"
+                f"a supply pressure needs a cylinder bore; got {1e-5 * self.supply_pressure:.6g} bar and no bore; "
+                "give the bore"
             )
 
     @property
@@ -112,9 +112,9 @@ class Cylinder:
             return
         needed = _rounded_up(1e3 * self.rod * margin**-0.25)
         raise InputError(
-            f"the piston rod must not buckle: {1e3 * length:.6g} mm long between its pins, the cylinder carries "
-            f"{margin:.4g} times its push; got a piston rod of {1e3 * self.rod:.6g} mm; take one of {needed:.5g} mm or "
-            "more, or move a pivot"
+            f"the piston rod must not buckle: {1e3 * length:.6g} mm long between its pins, it carries {margin:.4g} "
+            f"times the push of the cylinder; got a piston rod of {1e3 * self.rod:.6g} mm; use at least "
+            f"{needed:.5g} mm, or move a pivot"
         )
 
     def buckling_margin(self, length: Array, push: Array) -> Array | None:

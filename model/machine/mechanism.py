@@ -55,7 +55,7 @@ class Window:
         require_word("during", self.during, During)
         if not 0.0 <= self.start < self.end <= 1.0:
             raise InputError(
-                "a part of the stroke needs 0 <= start < end <= 1, as fractions from the inner dead centre; "
+                "a part of the stroke must have 0 <= start < end <= 1, as fractions from the inner dead centre; "
                 f"got start {self.start:g}, end {self.end:g}"
             )
 
@@ -91,7 +91,7 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         if self.crank_angle.fraction:
-            raise InputError("a tolerance of the crank angle is an angle, not a share; give it in rad or deg")
+            raise InputError("a tolerance of the crank angle must be an angle, not a fraction; give it in rad or deg")
 
     @property
     def are_stated(self) -> bool:
@@ -156,19 +156,19 @@ class Mechanism:
         gravity: object = self.gravity
         if not isinstance(gravity, tuple) or len(gravity) != 2:
             raise InputError(
-                f"gravity must be its components along x and y, m/s^2; got {gravity!r}; write it like (0.0, -9.81)"
+                f"gravity must have components along x and y, in m/s^2; got {gravity!r}; write for example (0.0, -9.81)"
             )
         require_all_finite("gravity", gravity)
         require_word("branch", self.branch, Branch)
         loads: object = self.loads
         if not isinstance(loads, Sequence) or not all(isinstance(load, Load) for load in loads):
-            raise InputError(f"loads must be a tuple of loads; got {loads!r}; a job has them in its [[load]] tables")
+            raise InputError(f"loads must be a tuple of loads; got {loads!r}; in a job, write [[load]] tables")
         for name in ("speed", "acceleration", "slider_mass"):
             if getattr(self, name) is None:
-                raise InputError(f"{name} must be a number, SI; got None; leave it out for 0")
+                raise InputError(f"{name} must be a number in SI units; got None; leave it out for 0")
         if self.speed_profile is not None and self.acceleration:
             raise InputError(
-                "a speed that repeats with every turn has no constant acceleration besides; got "
+                "a speed that repeats every turn must not have a constant acceleration too; got "
                 f"{self.acceleration:g} rad/s^2 with a profile; leave out one of the two"
             )
         if self.varying:

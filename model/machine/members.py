@@ -53,8 +53,8 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
     arrangement = mechanism.arrangement
     if arrangement is None:
         raise InputError(
-            "several cylinders need to be stated; got none; add to the job for example "
-            '[mechanism] cylinders = { phases = ["0 deg", "180 deg"] }'
+            "this needs a machine with several cylinders; got none; add for example [mechanism] cylinders = { "
+            'phases = ["0 deg", "180 deg"] }'
         )
     cylinders = []
     x, y = mechanism.gravity
@@ -72,8 +72,8 @@ def require_plain(mechanism: Mechanism, subject: str) -> None:
     require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
         raise InputError(
-            f"{subject} takes a crank at constant speed; got a speed profile, {mechanism.speed_profile.text}; leave "
-            "speed_profile out for it"
+            f"{subject} needs a constant crank speed; got a speed profile, {mechanism.speed_profile.text}; leave "
+            "out speed_profile"
         )
 
 

@@ -93,7 +93,7 @@ def _slot_of(path: str) -> tuple[int, str]:
         slot, unit = _LOAD[load[2]]
         return Raw.END + LOAD_SLOTS * int(load[1]) + slot, unit
     if path not in _SLOTS:
-        raise InputError(f"no quantity depends smoothly on {path!r}, so it cannot vary; make it a choice instead")
+        raise InputError(f"{path!r} must not vary, as no quantity depends smoothly on it; make it a choice instead")
     return _SLOTS[path]
 
 
@@ -204,7 +204,7 @@ def require_width(mechanism: Mechanism, designs: Array) -> None:
     if designs.shape[1] != 3 + len(mechanism.varying):
         names = "".join(f", {item.name}" for item in mechanism.varying)
         raise InputError(
-            f"a design of this machine has {3 + len(mechanism.varying)} numbers: crank, rod, offset{names}; "
+            f"a design of this machine must have {3 + len(mechanism.varying)} numbers: crank, rod, offset{names}; "
             f"got {designs.shape[1]}"
         )
 

@@ -69,7 +69,8 @@ def raw_vector(mechanism: Mechanism) -> Array:
     if mechanism.varying:
         names = ", ".join(item.name for item in mechanism.varying)
         raise InputError(
-            f"this takes one machine; got one in which {names} varies; give mechanism.with_values(values) instead"
+            f"only a machine with fixed numbers is possible here; got one whose {names} varies; pass "
+            "mechanism.with_values(values)"
         )
     raw = [0.0] * (Raw.END + LOAD_SLOTS * len(mechanism.loads))  # faster to slice than an array
     raw[Raw.BRANCH] = mechanism.sign

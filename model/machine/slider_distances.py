@@ -35,7 +35,7 @@ class SliderDistances:
         distances = {
             f"meets its work {{}} before the {self.dead_centre} dead centre": self.touch,
             f"dwells within {{}} of the {self.dead_centre} dead centre": self.dwell,
-            "guide centre {} outward of the outer dead centre": self.guide,
+            "guide centre {} outward from the outer dead centre": self.guide,
         }
         stated = ((words, distance) for words, distance in distances.items() if distance is not None)
         return "".join(f", {words.format(f'{1e3 * distance:.6g} mm')}" for words, distance in stated)

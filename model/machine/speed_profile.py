@@ -42,8 +42,8 @@ class Harmonics:
         require_all_finite("harmonics of a speed", (*self.cosines, *self.sines))
         if not 1 <= max(len(self.cosines), len(self.sines)) <= _MOST:
             raise InputError(
-                f"a speed profile has 1 to {_MOST} harmonics; got {len(self.cosines)} cosines and {len(self.sines)} "
-                "sines; give some, or leave out the profile"
+                f"a speed profile must have 1 to {_MOST} harmonics; got {len(self.cosines)} cosines and "
+                f"{len(self.sines)} sines; correct them, or leave out the profile"
             )
         theta = np.linspace(0.0, _TURN, _SAMPLES * max(len(self.cosines), len(self.sines)), endpoint=False)
         _require_positive(theta, self.ratio(theta))
@@ -115,8 +115,8 @@ class SpeedTable:
         require_all_finite("a table of speeds", (*self.angles, *self.speeds), "throughout")
         if len(self.angles) != len(self.speeds) or len(self.angles) < _LEAST:
             raise InputError(
-                f"a table of speeds needs as many speeds as crank angles, {_LEAST} at least; got {len(self.angles)} "
-                f"crank angles and {len(self.speeds)} speeds; add what is missing"
+                f"a table of speeds needs as many speeds as crank angles, at least {_LEAST}; got "
+                f"{len(self.angles)} crank angles and {len(self.speeds)} speeds; add what is missing"
             )
         for before, after in pairwise(self.angles):
             if after <= before:
@@ -128,8 +128,8 @@ class SpeedTable:
         for angle, speed in zip(self.angles, self.speeds, strict=True):
             if not speed * self.speeds[0] > 0.0:
                 raise InputError(
-                    "a speed over the crank angle must not be zero or change its sign, because the crank could not "
-                    f"pass; got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
+                    "a speed over the crank angle must not be zero or change its sign, or the crank would stop; "
+                    f"got {_RPM * speed:.6g} rpm at {math.degrees(angle):.6g} deg; correct it"
                 )
         turns = self._spline.derivative().roots()  # gives NaN for an interval of constant speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
@@ -145,8 +145,8 @@ class SpeedTable:
                 remedy = "give one turn"
             elif step:
                 remedy = (
-                    f"its last point is the first one a turn later and differs by {_RPM * step:.6g} rpm, so that the "
-                    "profile does not close; correct one of the two and leave out the last"
+                    f"its last point, one turn after the first, differs from it by {_RPM * step:.6g} rpm, so that "
+                    "the profile does not close; make the two equal and leave out the last"
                 )
             raise InputError(
                 f"crank angles of a table of speeds must span less than 360 deg; got {math.degrees(span):.6g} deg; "
@@ -218,7 +218,7 @@ def _require_positive(theta: Array, ratio: Array) -> None:
     least = int(np.argmin(ratio))
     if not ratio[least] > 0.0:
         raise InputError(
-            "a speed over the crank angle must not be zero or change its sign, for the crank would never get past; got "
+            "a speed over the crank angle must not be zero or change its sign, or the crank would stop; got "
             f"{100.0 * ratio[least]:.4g} % of the mean at {math.degrees(theta[least]) % 360.0:.4g} deg; reduce the "
-            "harmonics, or add points to a table there"
+            "harmonics, or add points to the table there"
         )

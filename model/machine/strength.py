@@ -32,14 +32,12 @@ class Material:
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
             if not math.isfinite(value) or value <= 0.0:
-                raise InputError(
-                    f"a material must have a {name.replace('_', ' ')} of more than 0 and finite; got {value:g}"
-                )
+                raise InputError(f"a material's {name.replace('_', ' ')} must be positive and finite; got {value:g}")
         if not self.endurance <= self.yield_strength <= self.ultimate_strength:
             raise InputError(
-                "a material needs endurance <= yield strength <= ultimate strength; got "
-                f"{1e-6 * self.endurance:g}, {1e-6 * self.yield_strength:g} and {1e-6 * self.ultimate_strength:g} MPa; "
-                "swap those that were exchanged, or take the lower one for both"
+                "a material must have endurance strength <= yield strength <= ultimate strength; got "
+                f"{1e-6 * self.endurance:g}, {1e-6 * self.yield_strength:g} and {1e-6 * self.ultimate_strength:g} "
+                "MPa; swap them if they are exchanged, or use the lower value for both"
             )
 
 

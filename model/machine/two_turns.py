@@ -85,8 +85,8 @@ def _datum(mechanism: Mechanism) -> str:
     datums = {load.cycle_datum for load in mechanism.loads if load.cycle_turns > 1}
     if len(datums) != 1:
         raise InputError(
-            "loads with a cycle of 720 deg must count from one datum; got "
-            f"{' and '.join(sorted(datums)) or 'none'}; move the angles of one of them"
+            "loads with a cycle of 720 deg must all be measured from one datum; got "
+            f"{' and '.join(sorted(datums)) or 'none'}; convert the angles of one of them"
         )
     return datums.pop()
 
@@ -95,6 +95,6 @@ def require_one_turn(mechanism: Mechanism, subject: str) -> None:
     """Raise an error for a two-turn cycle if an analysis covers only one turn. subject: the analysis."""
     if cycle_turns(mechanism) > 1:
         raise InputError(
-            f"{subject} takes a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "
+            f"{subject} needs a cycle of 360 deg; got a load with one of 720 deg; leave that load out, or state it "
             "for one turn"
         )

@@ -33,10 +33,10 @@ class Varying:
         keep_tuples(self, "sets")
         if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
             raise InputError(
-                f"a range needs lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"
+                f"a range must have lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"
             )
         if bool(self.sets) == self.idle or not all(math.isfinite(factor) and factor for _, factor in self.sets):
-            raise InputError(f"{self.name} must set a number of the machine, each by a factor that is not zero")
+            raise InputError(f"{self.name} must set at least one number of the machine, each with a non-zero factor")
 
     @property
     def fullest(self) -> float:
@@ -53,7 +53,7 @@ def with_values(part: Any, varying: Sequence[Varying], values: Sequence[float]) 
     """Return a machine (any frozen dataclass) with its variables set to these values."""
     if len(varying) != len(values):
         names = ", ".join(item.name for item in varying) or "none"
-        raise InputError(f"a value is needed for every number that varies ({names}); got {len(values)} values")
+        raise InputError(f"every variable needs a value ({names}); got {len(values)} values")
     for item, value in zip(varying, values, strict=True):
         for path, factor in item.sets:
             part = _replace_at(part, path.split("."), factor * float(value), path)
@@ -65,7 +65,7 @@ def number_at(part: Any, path: str) -> float | None:
     for key in path.split("."):
         part = _member_at(part, key, path)
     if isinstance(part, bool) or not (part is None or isinstance(part, int | float)):
-        raise InputError(f"a varying number must be one number of the machine; got {path!r}, which is none")
+        raise InputError(f"a variable must be a number of the machine; got {path!r}, which is not one")
     return part
 
 
@@ -76,16 +76,16 @@ def require_possible(mechanism: Any) -> None:
     for path in paths:
         number_at(mechanism, path)
         if paths.count(path) > 1:
-            raise InputError(f"a number may only vary once; got {path} twice; leave out one of the two")
+            raise InputError(f"a number may only be set by one variable; got {path} twice; leave out one of the two")
     names = [item.name for item in varying]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"varying numbers need different names; got {name!r} twice")
+            raise InputError(f"variables must have different names; got {name!r} twice")
     for item in varying:
         if "speed" in item.paths and not item.lower * item.upper > 0.0:
             raise InputError(
-                "the sign of the speed says which way the crank turns, so a speed that varies keeps it and is not 0; "
-                f"got {item.lower:g} to {item.upper:g} rad/s; keep the range on one side of 0"
+                "a variable speed must not be 0 or change its sign, which is the direction of rotation; got "
+                f"{item.lower:g} to {item.upper:g} rad/s; keep the range on one side of 0"
             )
     for index, load in enumerate(mechanism.loads):
         if load.every_corner:
@@ -111,7 +111,7 @@ def _member_at(part: Any, key: str, path: str) -> Any:
         return part[int(key)]
     if is_dataclass(part) and key in {field.name for field in fields(part)}:
         return getattr(part, key)
-    raise InputError(f"a varying number must be a number of the machine; got {path!r}, which it has not")
+    raise InputError(f"a variable must be a number of the machine; got {path!r}, which it does not have")
 
 
 def _replace_at(part: Any, keys: list[str], number: float, path: str) -> Any:

@@ -70,7 +70,7 @@ class LawTurn:
         self._take(PeriodicTurn(equation, dimensions))
         if self._turn.terms.speed_dependent:
             raise InputError(
-                "a motion law takes loads that are independent of the speed; got one that depends on it; leave out "
+                "a motion law only takes loads that do not depend on the speed; got one that does; leave out "
                 "viscous loads and drag"
             )
 
@@ -151,11 +151,11 @@ def _require_simple(mechanism: Mechanism) -> None:
     require_one_cylinder(mechanism.arrangement, "a motion law")
     if cycle_turns(mechanism) > 1:
         raise InputError(
-            "a motion law repeats after one turn; got loads with a cycle of 720 deg; give a machine whose cycle is one "
-            "turn"
+            "a motion law must repeat after one turn; got loads with a cycle of 720 deg; use loads with a cycle of "
+            "one turn"
         )
     if mechanism.friction.acts:
         raise InputError(
-            "a motion law is found for joints without friction; got friction in joints or guide; leave [friction] out, "
-            "and give its force as a load that opposes motion"
+            "a motion law can only be found without friction in the joints; got friction in joints or guide; leave "
+            "[friction] out, and state its force as a load that opposes motion"
         )

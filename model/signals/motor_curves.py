@@ -164,7 +164,7 @@ class MotorShaft(Shaft):
 
 def _drive_of(mechanism: Mechanism) -> Drive:
     if mechanism.drive is None:
-        raise InputError("a curve of the motor needs a drive; got none; add for example [drive] gear_ratio = 5")
+        raise InputError("motor curves need a drive; got none; add for example [drive] gear_ratio = 5")
     return mechanism.drive
 
 

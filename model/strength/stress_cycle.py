@@ -236,7 +236,7 @@ def _require_one_sided(criteria: Array) -> None:
     """Raise `InputError` for criteria that compare two crank angles, because these may belong to different turns."""
     if (criteria > 0.0).all(axis=1).any():
         raise InputError(
-            "greatest and least stress of one place are those of one turn; got a cycle of 720 deg; leave the fatigue "
+            "fatigue needs the greatest and least stress over one turn; got a cycle of 720 deg; leave the fatigue "
             "safety out"
         )
 

@@ -100,8 +100,8 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
         slow = m[i] + u * (2.0 * second[i] + 3.0 * u * third[i])
         if slow.min() < -_ROUNDING:
             raise InputError(
-                "a table of a swing's motion must not turn back; got one that does near the fraction "
-                f"{t[i] + u[int(np.argmin(slow))]:.4g} of the time; give more points there, or a gentler course"
+                "the curve through a table of a swing's motion must not reverse; it does near the fraction "
+                f"{t[i] + u[int(np.argmin(slow))]:.4g} of the time; add points there, or make it smoother"
             )
     return pieces
 
@@ -116,10 +116,9 @@ def _require_points(t: Array, s: Array) -> None:
     if wrong or (np.diff(t) <= 0.0).any() or (np.diff(s) < 0.0).any():
         listed = ", ".join(f"({a:.6g}, {b:.6g})" for a, b in zip(t[:6].tolist(), s[:6].tolist(), strict=True))
         raise InputError(
-            "a table of a swing's motion must have at least three points, fractions of time and travel from 0 to 1, "
-            "with increasing times and travel that never decreases; got "
-            f"{listed or 'none'}{' ...' if len(t) > 6 else ''}; "
-            "begin with 0, 0 and end with 1, 1"
+            "a table of a swing's motion must have at least three points, fractions of time and travel from 0 to "
+            "1, with increasing times and non-decreasing travel; got "
+            f"{listed or 'none'}{' ...' if len(t) > 6 else ''}; begin with 0, 0 and end with 1, 1"
         )
 
 

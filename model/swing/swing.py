@@ -75,10 +75,9 @@ class Swing:
             )
         if (self.law == "slow") != (self.duration is None):
             raise InputError(
-                "a slow swing must have no duration, and any other must have one; "
-                f"got the law {self.law} and {'no duration' if self.duration is None else f'{self.duration:g} s'}; "
-                ""
-                "give both a law and a duration, or neither"
+                f"a slow swing must have no duration, and any other swing must have one; got the law {self.law} "
+                f"and {'no duration' if self.duration is None else f'{self.duration:g} s'}; give both a law and a "
+                "duration, or neither"
             )
         if self.duration is not None and not _LEAST <= self.duration <= _MOST:
             raise InputError(
@@ -87,14 +86,14 @@ class Swing:
             )
         if (self.law == "table") != bool(self.points):
             raise InputError(
-                "a motion law has points only if it is a table; got the law "
-                f"{self.law} and {len(self.points)} points; give both, or neither"
+                f"a tabulated motion law must have points, and any other must have none; got the law {self.law} "
+                f"and {len(self.points)} points; give both, or neither"
             )
         _ = self.table
         if self.actuator_tolerance and self.driver == "crank":
             raise InputError(
-                "a tolerance of the actuator needs a slider that drives; got "
-                f"{1e3 * self.actuator_tolerance:g} mm with the crank driven; drive the slider, or leave it out"
+                f"an actuator tolerance needs a slider that drives; got {1e3 * self.actuator_tolerance:g} mm with "
+                "the crank driven; let the slider drive, or leave the tolerance out"
             )
 
     @cached_property
@@ -167,8 +166,8 @@ def _missed_place_text(place: float, linkage: Linkage, swing: Swing) -> str:
     other_branch = "crossed" if linkage.branch == "open" else "open"
     return (
         f"the slider must reach both ends of the swing on the {linkage.branch} branch, with the crank pin on the "
-        f"{swing.side} of the line to the slider pin; got a slider position of {1e3 * place:.6g} mm, which is on the "
-        f"{other_branch} branch there; move it, take the other side, or the other branch"
+        f"{swing.side} of the line to the slider pin; got a slider position of {1e3 * place:.6g} mm, which is on "
+        f"the {other_branch} branch there; move it, or choose the other side or branch"
     )
 
 
@@ -202,8 +201,8 @@ def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> No
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre") and not bool(linkage.rotates_fully):
             raise InputError(
-                f"a load is measured from the {datum} of a full turn, which this linkage does not make; "
-                "measure it from the crank pivot"
+                f"a load must not be measured from the {datum}, as this linkage makes no full turn; measure it "
+                "from the crank pivot"
             )
 
 

@@ -58,8 +58,8 @@ def resolve_swing(
     }
     if request.law == "table" and (motion is None or not motion.points):
         raise InputError(
-            f"a motion law by a table must be in a job; got {names['law']} table; give its points in [motion] of "
-            f"the job, law_times and law_shares, and leave {names['law']} out"
+            f"a tabulated motion law must be in a job; got {names['law']} table; write its points as law_times and "
+            f"law_shares in the job's [motion], and leave {names['law']} out"
         )
     if request.law == "slow":
         fields.setdefault("duration", None)
@@ -87,7 +87,7 @@ def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[
     if any(name not in fields for name in stated):
         raise InputError(
             "a swing must run between two crank angles or between two slider positions; got "
-            f"{', '.join(names[name] for name in stated)}; give the two of one"
+            f"{', '.join(names[name] for name in stated)}; give only one of these pairs"
         )
     ends = {end: stated[name] for end, name in zip(_ANGLES, fields, strict=True) if name in stated}
     if motion is not None and motion.follows and motion.stated_for == stated_for and "end" not in ends:
@@ -100,7 +100,7 @@ def _new_swing(fields: dict[str, Any], names: Mapping[str, str]) -> Swing:
     for name, key in zip(_ANGLES, _POSITIONS if slider else _ANGLES, strict=True):
         if name not in fields:
             raise InputError(
-                f"a swing runs from one {'slider position' if slider else 'crank angle'} to another; got no "
-                f"{names[key]}; give both, or a job with [motion]"
+                f"a swing must run from one {'slider position' if slider else 'crank angle'} to another; got no "
+                f"{names[key]}; give both, or use a job with [motion]"
             )
     return Swing(**fields)

@@ -89,10 +89,11 @@ def simulate(
     _require_integer("samples", samples, least=1)
     _require_integer("seed", seed, least=0)
     if theta.ndim != 1 or not np.all(np.isfinite(theta)):
-        raise InputError("crank angles must be a list of finite numbers, rad")
+        raise InputError("crank angles must be a list of finite numbers, in rad")
     if samples * max(1, len(theta)) > _MOST:
         raise InputError(
-            f"samples times crank angles must be at most {_MOST:,}; got {samples:,} times {len(theta):,}; take fewer"
+            f"the number of samples times crank angles must be at most {_MOST:,}; got {samples:,} times "
+            f"{len(theta):,}; reduce one"
         )
     limits_of_sources, counted = (
         limits(mechanism, linkage),
@@ -146,7 +147,7 @@ def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.
     sample = np.asarray(values, dtype=np.float64)
     turning = sample[np.isfinite(sample)]
     if len(turning) < 2:
-        raise InputError(f"a summary needs two machines that turn; got {len(turning)}; simulate more")
+        raise InputError(f"a summary needs at least two machines that rotate fully; got {len(turning)}; simulate more")
     levels = np.percentile(turning, percents)
     pairs = tuple((float(percent), float(value)) for percent, value in zip(percents, levels, strict=True))
     return Summary(float(turning.mean()), float(turning.std(ddof=1)), pairs)

@@ -64,8 +64,8 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     if box[0, 0] <= 0.0 or box[1, 0] <= box[0, 1] + np.abs(box[2]).max():
         mm = 1e3 * box
         raise AssemblyError(
-            "every linkage within tolerances and clearances must turn fully, rod > crank + |offset|; got at worst "
-            f"rod {mm[1, 0]:g} mm, crank {mm[0, 0]:g} to {mm[0, 1]:g} mm, offset {np.abs(mm[2]).max():g} mm; "
+            "every linkage within tolerances and clearances must rotate fully, rod > crank + |offset|; got at "
+            f"worst rod {mm[1, 0]:g} mm, crank {mm[0, 0]:g} to {mm[0, 1]:g} mm, offset {np.abs(mm[2]).max():g} mm; "
             "tighten the tolerances"
         )
     return box

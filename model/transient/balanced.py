@@ -36,9 +36,9 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
         top = _speed_where_friction_balances(turn, motor_surplus, near)
         if top is None:
             raise InputError(
-                "steady running needs a torque or a load that changes with speed; got a constant motor torque of "
-                f"{drive.gear_ratio * law.torque:g} N m on the crank against {static:.6g} N m on average at "
-                "every speed; give the motor a no-load speed, or add a viscous load or drag"
+                "steady running needs a motor torque or a load that changes with speed; got a constant motor "
+                f"torque of {drive.gear_ratio * law.torque:g} N m on the crank against {static:.6g} N m on average "
+                "at every speed; give the motor a no-load speed, or add a viscous load or drag"
             )
     elif isinstance(law, ConstantTorque | LinearMotor):  # a straight line or falling faster: beyond its zero
         top = max(1.0, 1.01 * float(motor_surplus(0.0) / (motor_surplus(0.0) - motor_surplus(1.0))))
@@ -64,8 +64,8 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
                 if weak
                 else "stronger than the loads where its table ends"
             )
-            + f" ({static_torque:.6g} N m on the crank besides loads that change with speed); "
-            + ("choose a stronger motor or a greater gear ratio" if weak else "extend the torque table")
+            + f" ({static_torque:.6g} N m on the crank, without the loads that change with speed); "
+            + ("choose a stronger motor or a higher gear ratio" if weak else "extend the torque table")
         )
     speeds_found = [float(brentq(lambda speed: float(surplus(speed)), speeds[i], speeds[i + 1])) for i in falls]
     return min(speeds_found, key=lambda speed: abs(speed - near)) if near else speeds_found[0]

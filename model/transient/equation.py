@@ -192,7 +192,7 @@ class Equation:
         inertia = self.inertia(angles) + added
         if not inertia.min() > 1e-6 * inertia.max():
             raise InputError(
-                "the crank needs inertia at every angle, also at the dead centres where the slider stands; got none "
+                "the crank needs inertia at every angle, also at the dead centres where the slider stops; got none "
                 "there; give the crank a mass, or the drive a flywheel"
             )
         if self.rubs:

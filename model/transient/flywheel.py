@@ -98,7 +98,7 @@ def design_flywheel(
         else:
             run(enough)  # explains the reason if it does not run at all
             raise InputError(
-                f"no flywheel up to {enough:.3g} kg m^2 keeps the fluctuation at {fluctuation:g}; allow more"
+                f"no flywheel up to {enough:.3g} kg m^2 keeps the fluctuation within {fluctuation:g}; allow more"
             )
         sizes = [float(size) for size in np.linspace(0.0, enough, _BETWEEN)]
         least = next(i for i, size in enumerate(sizes) if surplus(size) >= 0.0)

@@ -65,7 +65,7 @@ def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
     """Return the drive, by default the mechanism's own. Raises `InputError` if there is no drive at all."""
     chosen = mechanism.drive if drive is None else drive
     if chosen is None:
-        raise InputError("a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
+        raise InputError("simulating a start or a run needs a motor; got a mechanism without a drive; add a [drive]")
     return chosen
 
 
@@ -123,11 +123,11 @@ def _require_options(duration: float, turns: int | None, steady: float | None, t
     if turns is not None and turns < 1:
         raise InputError(f"turns must be a whole number of at least 1; got {turns}")
     if steady is not None and not 0.0 < steady < 1.0:
-        raise InputError(f"steady must be a share of the speed between 0 and 1, such as 1e-6; got {steady:g}")
+        raise InputError(f"steady must be a fraction of the speed between 0 and 1, such as 1e-6; got {steady:g}")
     if not 1e-13 <= tolerance <= 1e-3:
         raise InputError(f"the tolerance must lie between 1e-13 and 1e-3; got {tolerance:g}")
     if samples < 8:
-        raise InputError(f"samples must be at least 8 for each turn; got {samples}")
+        raise InputError(f"samples must be at least 8 per turn; got {samples}")
 
 
 class _Run:
@@ -171,7 +171,7 @@ class _Run:
         self.arrived = -self.equation.direction  # at rest, so that the motor's direction is tried first
         if not self.slowest <= self.speed <= self.fastest:
             raise InputError(
-                f"the motor's torque must be known at the start; got {start.speed:g} rad/s of the crank; "
+                f"the motor's torque must be known at the start; got a crank speed of {start.speed:g} rad/s; "
                 "extend the torque table"
             )
         if self.way < 0.0:
@@ -283,8 +283,8 @@ class _Run:
         )
         if not solution.success:
             raise InputError(
-                f"the motion cannot be followed beyond {solution.t[-1]:.6g} s at this tolerance; "
-                f"got {self.tolerance:g}; check masses and loads for values of very different size"
+                f"the motion cannot be followed beyond {solution.t[-1]:.6g} s at this tolerance; got "
+                f"{self.tolerance:g}; check the masses and loads for values that differ by many orders of magnitude"
             )
         names: tuple[Stop, ...] = ("edge", "standstill", "table")
         event_times = solution.t_events or []

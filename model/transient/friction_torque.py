@@ -258,10 +258,9 @@ def jamming_error(angle: Array, inertia: Array) -> InputError:
     """
     worst = int(np.argmin(np.where(np.isnan(inertia), -np.inf, inertia)))
     return InputError(
-        "motion under a motor with friction needs more inertia at every crank angle than friction can give back, for "
-        f"one acceleration to follow from the torque; got {inertia[worst]:.3g} kg m^2 left at "
-        f"{math.degrees(angle[worst]) % 360.0:.4g} deg; give the drive a flywheel, the crank a mass, or reduce the "
-        "friction"
+        "the inertia must exceed what friction cancels at every crank angle, so that the torque determines the "
+        f"acceleration; got {inertia[worst]:.3g} kg m^2 left at {math.degrees(angle[worst]) % 360.0:.4g} deg; give "
+        "the drive a flywheel, the crank a mass, or reduce the friction"
     )
 
 

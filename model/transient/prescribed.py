@@ -106,7 +106,7 @@ def over_angle(
     samples: points in each turn. Raises `InputError` for a speed that is not finite, is zero or changes its sign.
     """
     if not (0.0 < turns < math.inf and math.isfinite(start)):
-        raise InputError(f"turns must be positive, and the start finite; got {turns:g} turns from {start:g} rad")
+        raise InputError(f"turns must be positive and the start angle finite; got {turns:g} turns from {start:g} rad")
     first = _function_values("speed", motion.speed, np.array([start]))[0]
     way = math.copysign(1.0, first)
     angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
@@ -117,8 +117,8 @@ def over_angle(
     all_speeds = np.concatenate([speed, inner_speeds])
     if not np.all(all_speeds * way > 0.0):
         raise InputError(
-            "a speed over crank angle must not be zero or change its sign, because the crank could not pass; got "
-            f"{all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; give the motion over time"
+            "a speed over crank angle must not be zero or change its sign, or the crank would stop; got "
+            f"{all_speeds[np.argmin(all_speeds * way)]:.6g} rad/s; state the motion over time"
         )
     _require_slope(motion.speed, motion.slope, angle)
     time = np.concatenate([[0.0], np.cumsum(step[:, 0] * ((1.0 / inner_speeds).reshape(-1, 4) @ weights))])
@@ -134,7 +134,9 @@ def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, tim
     """
     time = np.atleast_1d(np.asarray(times, dtype=np.float64))
     if time.ndim != 1 or not np.all(np.isfinite(time)) or np.any(np.diff(time) <= 0.0):
-        raise InputError("times must be a list of finite, increasing values, s; sort them and remove repeated points")
+        raise InputError(
+            "times must be a list of finite, increasing values, in s; sort them and remove repeated points"
+        )
     speed = _function_values("speed", motion.speed, time)
     acceleration = _function_values("acceleration", motion.acceleration, time)
     _require_slope(motion.speed, motion.acceleration, time)
@@ -179,8 +181,8 @@ def _table_as_arrays(quantity: str, at: Sequence[float], speeds: Sequence[float]
     """Return a table as arrays. Raises `InputError` if it is not a valid table."""
     if len(at) != len(speeds) or len(at) < 4:
         raise InputError(
-            f"a table of speeds needs as many speeds as {quantity}, four at least; "
-            f"got {len(at)} {quantity} and {len(speeds)} speeds"
+            f"a table of speeds needs as many speeds as {quantity}, at least four; got {len(at)} {quantity} and "
+            f"{len(speeds)} speeds"
         )
     points, values = np.array(at, dtype=np.float64), np.array(speeds, dtype=np.float64)
     if not (np.all(np.isfinite(points)) and np.all(np.isfinite(values))):

@@ -17,11 +17,11 @@ from .equation import TURN, Equation, Span
 Verdict = Literal["time is up", "turns done", "steady", "stands still", "beyond the torque table", "cancelled"]
 
 _SAID: dict[Verdict, str] = {
-    "time is up": "the time is up",
-    "turns done": "the turns are done",
-    "steady": "it runs steadily: speed repeats from turn to turn",
-    "stands still": "it stands still: the motor cannot overcome the load or the friction here",
-    "beyond the torque table": "the motor's torque is not known beyond its table of speeds",
+    "time is up": "the time limit was reached",
+    "turns done": "all turns are complete",
+    "steady": "it runs steadily: the speed repeats from turn to turn",
+    "stands still": "it has stalled: the motor cannot overcome the load or friction here",
+    "beyond the torque table": "the motor's torque is not known beyond its speed table",
     "cancelled": "cancelled",
 }
 assert set(_SAID) == set(get_args(Verdict))

@@ -117,7 +117,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     linkage = single(mechanism, linkage)
     if not mechanism.speed or (mechanism.acceleration and mechanism.speed_profile is None):
         raise InputError(
-            f"a turn that repeats needs a speed and no acceleration besides; got {mechanism.speed:g} rad/s and "
+            f"a repeating turn must have a speed and no constant acceleration; got {mechanism.speed:g} rad/s and "
             f"{mechanism.acceleration:g} rad/s^2"
         )
 

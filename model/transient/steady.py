@@ -75,15 +75,15 @@ class Runner:
         solved = self.turn.resolved(motor, drive.inertia, lambda turn: turn.even(guess))
         if solved is None or not solved[1].memory < 1.0:
             raise InputError(
-                "steady running needs a crank that completes every turn; got none near the "
-                f"{guess:.6g} rad/s where motor and loads balance; add a flywheel or a stronger motor"
+                f"steady running needs a crank that completes every turn; got none near {guess:.6g} rad/s, where "
+                "motor and loads balance; add a flywheel or a stronger motor"
             )
         running = _steady_result(*solved, motor, drive.inertia)
         fastest = float(np.abs(running.speed).max())
         if not fastest <= speed_range(drive)[1]:
             raise InputError(
-                "steady running needs a motor torque at every speed of the turn; "
-                f"got {fastest:.6g} rad/s of the crank, beyond the torque table; extend the table"
+                "steady running needs a motor torque at every speed of the turn; got a crank speed of "
+                f"{fastest:.6g} rad/s, beyond the torque table; extend the table"
             )
         return running
 
@@ -94,7 +94,7 @@ class Runner:
         Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `speeds`).
         """
         if not self.speed:
-            raise InputError("a constant torque needs the mean speed to keep; got none; give the speed")
+            raise InputError("finding a constant torque needs the mean speed; got none; add it")
         self.equation.require_inertia(inertia)
 
         def guess(turn: PeriodicTurn) -> Guess | None:
@@ -112,7 +112,7 @@ class Runner:
         else:
             raise InputError(
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
-                f"{inertia:.6g} kg m^2 besides the mechanism; add a flywheel or turn faster"
+                f"{inertia:.6g} kg m^2 besides the mechanism; add a flywheel or raise the speed"
             )
         turn, profile = solved
         if not self.works:  # cancelling terms leave rounding errors

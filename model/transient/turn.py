@@ -232,9 +232,9 @@ class PeriodicTurn:
             if len(turn.width) + rough.sum() > len(self.width) + _MOST:
                 at = math.degrees(float(turn.low[rough][0])) % math.degrees(turn.equation.period)
                 raise InputError(
-                    "steady running needs a motion that can be resolved; got one that "
-                    f"{len(turn.width):,} panels do not resolve, for example at a crank angle of {at:.6g} deg; smooth "
-                    "the load there, or add a flywheel"
+                    f"steady running needs a motion smooth enough to resolve; got one that {len(turn.width):,} "
+                    f"panels do not resolve, for example at a crank angle of {at:.6g} deg; smooth the load there, "
+                    "or add a flywheel"
                 )
             turn = turn.cut(turn.low[rough] + 0.5 * turn.width[rough])
         return None

@@ -105,13 +105,13 @@ class LeverSwing:
         require_numbers(self, "duration", phrase="the duration of a swing", above=0.0, unit="s")
         if self.law == "slow" and self.duration is not None:
             raise InputError(
-                f"a slow swing has no duration, as it ignores inertia; got {self.duration:g} s; name a law such as "
-                "cycloidal, or leave out the duration"
+                f"a slow swing must not have a duration, as it ignores inertia; got {self.duration:g} s; name a "
+                "motion law such as cycloidal, or leave out the duration"
             )
         if self.law != "slow" and self.duration is None:
             raise InputError(
-                f"a swing by a law needs its duration; got the law {self.law} and no duration; give the time of one "
-                "way, or leave out the law"
+                f"a swing with a motion law needs a duration; got the law {self.law} and no duration; give the "
+                "time of one stroke, or leave out the law"
             )
 
 

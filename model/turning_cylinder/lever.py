@@ -51,8 +51,7 @@ class TurningCylinder:
         require_numbers(self, "crank", phrase="the crank OB of a lever", above=0.0, unit="m")
         if self.frame == 0.0:
             raise InputError(
-                "lever and cylinder must turn about two different pivots; got both in one place, 0 mm apart; "
-                "move one of them"
+                "lever and cylinder must turn about two different pivots; got pivots 0 mm apart; move one of them"
             )
         require_numbers(self, "frame", phrase="the frame OA of a lever", above=0.0, unit="m")
         require_numbers(self, "frame_angle", "offset", "pin_angle", phrase="the {} of a lever")
@@ -117,8 +116,8 @@ class TurningCylinder:
             angle = start if not lengths[0] > 0.0 else end
             distance = float(pin_distance(self.crank, self.frame, self.relative_angle(angle)))
             raise AssemblyError(
-                "the cylinder's line must reach the lever over the whole swing: |offset| < distance from A to B; got "
-                f"an offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees(angle)}; reduce "
+                "the cylinder must reach the lever over the whole swing: |offset| < distance from A to B; got an "
+                f"offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees(angle)}; reduce "
                 "the offset, or swing less far"
             )
 
@@ -276,7 +275,7 @@ def _smaller_swing(start: float, end: float) -> str:
     pairs = zip((start, end), near, strict=True)
     wrapped = [f"{_degrees(other)} for {_degrees(angle)}" for angle, other in pairs if abs(other - angle) > 1.0]
     if wrapped and 0.0 < abs(near[1] - near[0]) < math.pi:
-        return f"angles count through full turns: write {' and '.join(wrapped)}"
+        return f"angles must be written without wrapping at a full turn: write {' and '.join(wrapped)}"
     return "swing less far"
 
 

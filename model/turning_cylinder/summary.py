@@ -134,7 +134,7 @@ def _remedy(fitting: tuple[float, float] | None) -> str:
     if fitting is None:
         return "choose another cylinder, or move a pivot"
     crank, frame = (f"{1e3 * size:.6g} mm" for size in fitting)
-    return f"choose another cylinder, or a crank of {crank} and a frame of {frame}, which take its whole stroke"
+    return f"choose another cylinder, or a crank of {crank} and a frame of {frame}, which use its whole stroke"
 
 
 def _greatest_points(

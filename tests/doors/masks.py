@@ -58,7 +58,11 @@ MASKS = (
     _mask(rf'^    \{{\n(?:      .*\n)*?        "stage": "{_STEPS}"\n(?:      .*\n)*    \}}\n', "", _STEP_REASON),
     _mask(r'("number":)\d+(?=,"at")|^(id: )\d+$|("(?:events|last)": )\d+', r"\1\2\3<number>", _STEP_REASON),
     _mask(r'("kind": "(?:progress|state)"\n +"number": )\d+', r"\1<number>", _STEP_REASON),
-    _mask(r"^slidercrank compiles its formulas.*\n", "", "formulas are compiled where none are kept on disk"),
+    _mask(
+        r"^slidercrank (compiles|is compiling) its formulas.*\n",
+        "",
+        "formulas are compiled where none are kept on disk",
+    ),
     _mask(r"^24\d{5}\.\d+$", "<day>", "dates of DXF, in days"),
     _mask(r"\{[0-9A-F]{8}(-[0-9A-F]{4}){3}-[0-9A-F]{12}\}", "<id>", "random names of DXF"),
     _mask(r"\b127\.0\.0\.1:\d+", "127.0.0.1:<port>", "free ports"),

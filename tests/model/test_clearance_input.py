@@ -51,11 +51,11 @@ def test_a_clearance_that_makes_no_sense_is_refused(change: dict[str, Any], word
 @pytest.mark.parametrize(
     ("machine", "linkage", "options", "words"),
     [
-        (replace(SIEVE, speed=0.0), LINKAGE, {}, "give a crank speed"),
-        (replace(SIEVE, acceleration=1.0), LINKAGE, {}, "turns steadily"),
+        (replace(SIEVE, speed=0.0), LINKAGE, {}, "needs a crank speed; got none"),
+        (replace(SIEVE, acceleration=1.0), LINKAGE, {}, "a crank at constant speed"),
         (replace(SIEVE, rod=RigidLink(mass=0.0)), LINKAGE, {}, "give both a mass"),
         (SIEVE, Linkage(0.14, 0.2012, -0.06), {}, "fold over"),
-        (SIEVE, LINKAGE, {"cycles": 3, "discard": 3}, "more than discard"),
+        (SIEVE, LINKAGE, {"cycles": 3, "discard": 3}, "exceed discard"),
         (SIEVE, LINKAGE, {"tolerance": 1.0}, "tolerance"),
     ],
 )
@@ -72,7 +72,7 @@ def test_a_slider_without_mass_behind_a_loose_pin_is_refused() -> None:
 
 
 def test_a_contact_too_soft_to_hold_the_journal_is_an_error() -> None:
-    with pytest.raises(SlidercrankError, match=r"stiffness of 1000 N/m\^1.5; make the contact stiffer"):
+    with pytest.raises(SlidercrankError, match=r"stiffness of 1000 N/m\^1.5; stiffen the contact"):
         simulate(SIEVE, LINKAGE, replace(PIN, stiffness=1e3), cycles=1, discard=0)
 
 

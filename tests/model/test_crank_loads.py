@@ -179,7 +179,7 @@ def test_job_tables_say_them() -> None:
 @pytest.mark.parametrize(
     ("load", "words"),
     [
-        ({"torque_per_angle": "40 N m/rad", "free_angle": "10 deg"}, "winds up with every turn"),
+        ({"torque_per_angle": "40 N m/rad", "free_angle": "10 deg"}, "would wind up with every turn"),
         ({"crank_resistance": "-5 N m"}, "must be positive"),
         ({"crank_torque": "5 N"}, "is a force"),
         ({"torque_angles": ["0 deg", "90 deg"], "torques": ["1 N m"]}, "at least 2 entries"),
@@ -199,7 +199,7 @@ def test_analyses_of_a_turn_and_of_clearance_refuse_what_they_cannot_take() -> N
         lambda: cycle(sprung, Linkage(*DESIGNS[0]), [0.0]),
         lambda: find_peaks(sprung, Signal.TORQUE, DESIGNS),
     ):
-        with pytest.raises(InputError, match="winds up with every turn"):
+        with pytest.raises(InputError, match="would wind up with every turn"):
             call()
     machine = replace(loaded(SMOOTH, CrankTorque(torque=5.0)), acceleration=0.0)
     clearance = Clearance(joint="crank pin", radius=1e-4, journal_radius=0.01)

@@ -96,7 +96,7 @@ def test_linkage_on_another_branch_than_the_mechanism_is_refused() -> None:
 
 
 def test_several_linkages_at_once_are_refused() -> None:
-    with pytest.raises(InputError, match=r"one linkage at a time; got an array of shape \(2,\)"):
+    with pytest.raises(InputError, match=r"one linkage is possible at a time; got an array of shape \(2,\)"):
         cycle(Mechanism(), Linkage(0.05, [0.2, 0.3], 0.03), THETA)
 
 

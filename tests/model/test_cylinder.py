@@ -281,7 +281,7 @@ def test_a_motor_settles_where_it_gives_what_the_compressor_takes() -> None:
         ({"piston_rod": 0.07}, "thinner than the bore; got 70 mm"),
         ({"clearance": 0.3}, "clearance must be below 0.2147 of the swept volume.*got 0.3"),
         ({"clearance": math.inf}, "clearance must be zero or more and finite"),
-        ({"compression_exponent": 0.0}, "both exponents are zero.*got 0 and 1.2"),
+        ({"compression_exponent": 0.0}, "both exponents must be zero.*got 0 and 1.2"),
         ({"head": "left"}, "head must be 'outer dead centre' or 'inner dead centre'; got 'left'"),
     ],
 )

@@ -155,7 +155,7 @@ def test_several_cylinders_share_a_crankshaft_and_one_of_two_strokes_keeps_its_o
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ({"cycle": "360 deg"}, "exhaust pressure needs a cycle of four strokes"),
+        ({"cycle": "360 deg"}, "exhaust pressure needs a four-stroke cycle"),
         ({"exhaust": "-1 bar"}, "exhaust: an absolute pressure must be at or above vacuum, 0"),
         ({"peak_pressure": "10 bar"}, "exceed that of compression alone"),
         ({"cycle": "1080 deg"}, 'must be "360 deg" or "720 deg"'),

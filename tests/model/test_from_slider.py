@@ -162,8 +162,8 @@ def test_a_crank_longer_than_the_rod_has_its_folded_dead_centre_on_the_far_side(
         ({"position": [0.24, 0.25]}, InputError, "slider position must be one number"),
         ({"position": 0.24 + 1e-30j}, InputError, "slider position must be real"),
         ({"position": 0.24, "velocity": 1e300}, InputError, "give a smaller one"),
-        ({"position": 0.24, "acceleration": 3.0}, InputError, "got acceleration 3 m/s^2 alone; give the velocity too"),
-        ({"position": OUTER, "velocity": -1.0}, InputError, "velocity must be 0 at the dead centre of position 281.42"),
+        ({"position": 0.24, "acceleration": 3.0}, InputError, "got acceleration 3 m/s^2 alone; add the velocity"),
+        ({"position": OUTER, "velocity": -1.0}, InputError, "velocity must be 0 at the dead centre, position 281.42"),
         ({"position": OUTER, "velocity": 0.0, "acceleration": 1.0}, InputError, "acceleration must be negative or 0"),
         ({"position": INNER, "velocity": 0.0, "acceleration": -1.0}, InputError, "acceleration must be positive or 0"),
     ],
@@ -186,9 +186,11 @@ def test_the_ends_of_the_reach_as_a_refusal_tells_them_are_in_reach(branch: Bran
 
 
 def test_what_has_no_single_answer_is_refused() -> None:
-    with pytest.raises(AssemblyError, match="leaves the crank free to turn; got position 0 mm with rod = crank = 50"):
+    with pytest.raises(
+        AssemblyError, match="leaves the crank angle undetermined; got position 0 mm with rod = crank = 50"
+    ):
         Linkage(0.05, 0.05).from_slider(0.0)
-    with pytest.raises(InputError, match=r"one linkage; got an array of shape \(2,\)"):
+    with pytest.raises(InputError, match=r"one linkage at a time; got an array of shape \(2,\)"):
         Linkage(0.05, [0.2, 0.3]).from_slider(0.2)
     with pytest.raises(InputError, match="got complex ones"):
         Linkage(0.05 + 1e-30j, 0.2).from_slider(0.2)

@@ -75,7 +75,7 @@ def test_machine_code_of_strangers_is_not_run(
             place.rename(place.with_name(f"slidercrank-{stranger}"))
     found = choose_folder()
     assert found.folder is None
-    assert "is not a folder that this user alone can write" in found.refused
+    assert "is not a folder that only this user can write" in found.refused
 
 
 def test_a_user_without_a_home_keeps_nothing_in_the_current_folder(

@@ -78,7 +78,7 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program:
     told = [
         line for line in lines if not re.fullmatch(r".* its formulas: 0 of 1 done, now four_times; \d+ s so far", line)
     ]
-    assert told == ["slidercrank compiles its formulas, once after installation"]
+    assert told == ["slidercrank is compiling its formulas (only once after installation)"]
     assert len(list((tmp_path / "slidercrank/kernels").glob("program.four_times.*"))) == 2  # and a lock
     again = started(program, tmp_path)
     assert again.communicate() == ("12.0 False\n", "")
@@ -91,7 +91,7 @@ def test_compiling_ahead_is_told_by_who_waits_for_it(program: list[str], tmp_pat
     Path(program[-1]).write_text(source)
     found, said = started(program, tmp_path).communicate()
     assert found == "12.0 False\n"
-    assert said.splitlines()[0] == "slidercrank compiles its formulas, once after installation"
+    assert said.splitlines()[0] == "slidercrank is compiling its formulas (only once after installation)"
     assert said.count("once after installation") == 1
     Path(program[-1]).write_text(source.replace("    print(", "    sys.exit(3)\n    print("))
     for folder in (tmp_path, tmp_path / "empty"):  # where it is there already, and where nobody waits for it
@@ -207,7 +207,7 @@ def test_a_function_that_is_not_there_is_said_and_not_called() -> None:
 
 
 def test_a_kernel_that_takes_other_arguments_is_said_and_not_called() -> None:
-    with pytest.raises(SlidercrankError, match="must take what it declares"):
+    with pytest.raises(SlidercrankError, match="must take the types that it declares"):
         load(MachineCode("name", ("i64", "i64"), (), b""), [Leaf("double"), Leaf("i64")])
 
 
@@ -276,7 +276,7 @@ def test_a_formula_that_makes_an_array_is_refused(body: str) -> None:
 
 def test_a_formula_that_hands_an_array_on_is_refused() -> None:
     found = of_source(MAKES.format(body="return x").replace("x: float", "x: Row"))
-    with pytest.raises(TypeError, match="must return no array; got one of g"):
+    with pytest.raises(TypeError, match="must not return an array; g does"):
         found.source().compile()
 
 

@@ -204,7 +204,7 @@ def test_the_first_turn_of_four_strokes_burns_as_two_strokes_do() -> None:
         ({"heat": "60 MJ/m^3"}, r"end within the stroke, with at most 28\.7207 MJ/m\^3 of heat; got 60 MJ/m\^3"),
         ({"peak_pressure": "20 bar"}, r"not be below that of compression alone, 36\.7583 bar; got 20 bar"),
         ({"heat_capacity_ratio": 1}, "heat_capacity_ratio: must be above 1; got 1"),
-        ({"peak_pressure": 0, "heat": 0}, "has a peak pressure, heat or both; got neither"),
+        ({"peak_pressure": 0, "heat": 0}, "must have a peak pressure, heat or both; got neither"),
     ],
 )
 @pytest.mark.parametrize("strokes", ["360 deg", "720 deg"])

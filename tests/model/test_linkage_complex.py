@@ -83,7 +83,7 @@ def test_conditions_look_at_the_real_part() -> None:
     assert bool(Linkage(0.04 + 1j, 0.1, 0.02).rotates_fully)
     with pytest.raises(AssemblyError, match=r"rod 100 mm, crank 80 mm, offset 30 mm"):
         Linkage(0.08 + 1e-30j, 0.1, 0.03).require_full_rotation()
-    with pytest.raises(InputError, match=r"crank must be longer than zero; got -0\.04 m"):
+    with pytest.raises(InputError, match=r"crank must be above zero; got -0\.04 m"):
         Linkage(-0.04 + 1e-30j, 0.1, 0.03)
     with pytest.raises(InputError, match="finite"):
         Linkage(complex(0.04, np.nan), 0.1, 0.03)

@@ -47,13 +47,13 @@ def test_linkage_is_immutable() -> None:
 @pytest.mark.parametrize(
     ("dimensions", "message"),
     [
-        ((0.0, 0.3, 0.0), "crank must be longer than zero; got 0 m"),
-        ((0.1, -0.3, 0.0), "rod must be longer than zero; got -0.3 m"),
-        (([0.1, -0.2], 0.3, 0.0), "crank must be longer than zero; got -0.2 m"),
+        ((0.0, 0.3, 0.0), "crank must be above zero; got 0 m"),
+        ((0.1, -0.3, 0.0), "rod must be above zero; got -0.3 m"),
+        (([0.1, -0.2], 0.3, 0.0), "crank must be above zero; got -0.2 m"),
         ((math.nan, 0.3, 0.0), "crank must be finite; got nan"),
         ((0.1, math.inf, 0.0), "rod must be finite; got inf"),
         ((0.1, 0.3, [0.0, math.nan]), "offset must be finite"),
-        (("long", 0.3, 0.0), "crank must be a number or an array of numbers, SI; got 'long'"),
+        (("long", 0.3, 0.0), "crank must be a number or an array of numbers in SI units; got 'long'"),
         ((0.1, None, 0.0), "rod must be finite; got None"),
         (([0.1, 0.1], [0.3, 0.3, 0.3], 0.0), r"must broadcast to one shape; got \(2,\), \(3,\), \(\)"),
     ],
@@ -69,7 +69,7 @@ def test_unknown_branch_is_refused() -> None:
 
 
 def test_linkage_that_never_closes_is_refused() -> None:
-    message = r"closes at no crank angle.*got rod 300 mm, crank 100 mm, offset -400 mm; shorten the offset"
+    message = r"or the linkage cannot close; got rod 300 mm, crank 100 mm, offset -400 mm; shorten the offset"
     with pytest.raises(AssemblyError, match=message):
         Linkage(0.1, 0.3, -0.4)
 
@@ -112,9 +112,9 @@ def test_rocking_linkage_moves_where_it_can() -> None:
 def test_crank_angles_must_be_finite() -> None:
     with pytest.raises(InputError, match="crank angles must be finite"):
         Linkage(0.1, 0.3).at([0.0, math.nan])
-    with pytest.raises(InputError, match="must be a number or an array of numbers, SI; got 'top'"):
+    with pytest.raises(InputError, match="must be a number or an array of numbers in SI units; got 'top'"):
         Linkage(0.1, 0.3).at("top")
-    with pytest.raises(InputError, match="stroke must be a number or an array of numbers, SI; got '80 mm'"):
+    with pytest.raises(InputError, match="stroke must be a number or an array of numbers in SI units; got '80 mm'"):
         crank_from_stroke("80 mm", rod=0.3)
 
 

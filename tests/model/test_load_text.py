@@ -54,7 +54,7 @@ OUTWARD: Final = "outward stroke"
         (StrokeForce(outward=0.0, inward=-80.0), "80 N inward, helps the inward stroke, throughout"),
         (
             StrokeForce(outward=-80.0, inward=60.0),
-            "80 N inward in the outward and 60 N outward in the inward stroke, resists both strokes, throughout",
+            "80 N inward on the outward and 60 N outward on the inward stroke, resists both strokes, throughout",
         ),
         (
             StrokeForce(outward=50.0, inward=50.0),
@@ -72,10 +72,10 @@ OUTWARD: Final = "outward stroke"
         ),
         (
             CrankTable(angles=(0.0, np.pi), forces=(20.0, -5.0)),
-            "5 N m clockwise to 20 N m counter-clockwise on the crank, helps or resists by crank angle, from 0 to 180 "
-            "deg of crank angle; periodic over 360 deg",
+            "5 N m clockwise to 20 N m counter-clockwise on the crank, helps or resists depending on the crank angle, "
+            "from 0 to 180 deg of crank angle; periodic over 360 deg",
         ),
-        (Viscous(coefficient=10.0), "viscous, 10 N s/m, resists both strokes, in proportion to the speed"),
+        (Viscous(coefficient=10.0), "viscous, 10 N s/m, resists both strokes, proportional to the speed"),
         (StrokeForce(outward=0.0, inward=0.0), "0 N, no effect, throughout"),
     ],
 )

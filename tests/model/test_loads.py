@@ -126,11 +126,11 @@ def test_loads_add_up() -> None:
         (lambda: Viscous(coefficient=math.nan), "coefficient of a Viscous must be finite"),
         (
             lambda: PositionTable(positions=(0.0,), forces=(1.0,)),
-            "as many forces as positions, two at least; got 1 positions and 1 forces",
+            "as many forces as positions, at least two; got 1 positions and 1 forces",
         ),
         (
             lambda: PositionTable(positions=(0.0, 1.0), forces=(1.0, 2.0, 3.0)),
-            "as many forces as positions, two at least; got 2 positions and 3 forces",
+            "as many forces as positions, at least two; got 2 positions and 3 forces",
         ),
         (
             lambda: PositionTable(positions=(0.0, math.nan), forces=(1.0, 2.0)),
@@ -150,7 +150,7 @@ def test_loads_add_up() -> None:
         ),
         (
             lambda: AngleTable(angles=(0.0, 2.5 * math.pi), forces=(1.0, 1.0)),
-            "must span 360 deg at most; got 450 deg; for a cycle of two turns",
+            "must span at most 360 deg; got 450 deg; for a cycle of two turns",
         ),
     ],
 )
@@ -174,12 +174,12 @@ def test_unknown_word_in_a_load_is_refused(make: Any, message: str) -> None:
 
 
 def test_a_table_that_lies_beyond_its_dead_centre_is_refused() -> None:
-    with pytest.raises(InputError, match=r"zero or more; got -12 mm to 0 mm, .* turn the table round"):
+    with pytest.raises(InputError, match=r"zero or more; got -12 mm to 0 mm, .* reverse the signs"):
         PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4), datum="outer dead centre")
     PositionTable(positions=(-0.012, 0.0), forces=(0.0, 2e4))
 
 
 def test_a_table_of_loads_is_told_by_one_of_its_keys() -> None:
     entries = (Entry("pull", "Stiffness", "force per distance", "5 N/mm"),)
-    with pytest.raises(ValueError, match="told by the key of one of its entries; got 'magnet'"):
+    with pytest.raises(ValueError, match="identified by the key of one of its entries; got 'magnet'"):
         Table("magnet", "MagnetLoad", "magnet", "A magnet.", entries, {"pull": "5 N/mm"}, Spring)

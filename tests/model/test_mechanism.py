@@ -23,11 +23,14 @@ from tests.model.cases import random_machine
         ({"slider_mass": -1.0}, "the slider mass must be zero or more and finite; got -1 kg"),
         ({"slider_mass": math.nan}, "the slider mass must be zero or more and finite; got nan kg"),
         ({"gravity": (0.0, math.nan)}, "gravity must be finite"),
-        ({"gravity": ("down", 0.0)}, "gravity must be of numbers, SI; got 'down'; text with a unit belongs"),
-        ({"speed": "300 rpm"}, "speed must be a number, SI; got '300 rpm'; text with a unit belongs"),
+        (
+            {"gravity": ("down", 0.0)},
+            "gravity must consist of numbers in SI units; got 'down'; write text with a unit in",
+        ),
+        ({"speed": "300 rpm"}, "speed must be a number in SI units; got '300 rpm'; write text with a unit in"),
         (
             {"loads": ("600 N",)},
-            r"loads must be a tuple of loads; got \('600 N',\); a job has them in its \[\[load\]\]",
+            r"loads must be a tuple of loads; got \('600 N',\); in a job, write \[\[load\]\]",
         ),
         ({"loads": 3}, "loads must be a tuple of loads; got 3"),
         ({"branch": "half-open"}, "branch must be 'open' or 'crossed'; got 'half-open'"),
@@ -46,13 +49,13 @@ def test_tolerance_is_zero_or_more(name: str, value: float) -> None:
 
 
 def test_tolerance_of_the_crank_angle_is_no_share() -> None:
-    with pytest.raises(InputError, match="is an angle, not a share; give it in rad or deg"):
+    with pytest.raises(InputError, match="must be an angle, not a fraction; give it in rad or deg"):
         Tolerances(crank_angle=Tolerance(fraction=0.01))
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.5, 0.5), (0.6, 0.4), (-0.1, 0.5), (0.2, 1.1), (math.nan, 1.0)])
 def test_window_is_a_part_of_the_stroke(start: float, end: float) -> None:
-    with pytest.raises(InputError, match="a part of the stroke needs 0 <= start < end <= 1"):
+    with pytest.raises(InputError, match="a part of the stroke must have 0 <= start < end <= 1"):
         Window(start=start, end=end)
 
 
@@ -95,12 +98,12 @@ def test_lists_and_arrays_serve_as_tuples() -> None:
         ({"tolerances": 1e-4}, "tolerances of a Mechanism must be Tolerances; got 0.0001"),
         ({"drive": 3.0}, "drive of a Mechanism must be Drive or None; got 3.0"),
         ({"varying": ("speed",)}, "varying of a Mechanism must be a tuple of Varying; got 'speed'"),
-        ({"speed": None}, "speed must be a number, SI; got None; leave it out for 0"),
+        ({"speed": None}, "speed must be a number in SI units; got None; leave it out for 0"),
         (
             {"gravity": 9.81},
-            "gravity must be its components along x and y, m/s^2; got 9.81; write it like (0.0, -9.81)",
+            "gravity must have components along x and y, in m/s^2; got 9.81; write for example (0.0, -9.81)",
         ),
-        ({"gravity": (0.0, 0.0, -9.81)}, "gravity must be its components along x and y, m/s^2; got (0.0, 0.0, -9.81)"),
+        ({"gravity": (0.0, 0.0, -9.81)}, "gravity must have components along x and y, in m/s^2; got (0.0, 0.0, -9.81)"),
     ],
 )
 def test_a_part_of_another_kind_is_refused_at_once(wrong: dict[str, Any], said: str) -> None:

@@ -157,7 +157,7 @@ def test_a_cylinder_turned_with_its_bank_gives_the_same_power_to_gravity() -> No
         ({"phases": tuple(0.1 * k for k in range(25))}, "got 25 phases"),
         ({"phases": (0.0, math.nan)}, "must be finite"),
         ({"phases": (0.0, TURN)}, "got 0 deg for cylinder 1 and 360 deg for cylinder 2; change one of them"),
-        ({"phases": (0.0, 0.0), "banks": (0.5, 0.5)}, "both in the bank of 28.6479 deg"),
+        ({"phases": (0.0, 0.0), "banks": (0.5, 0.5)}, "both in the bank at 28.6479 deg"),
         ({"phases": (0.0, 1.0), "banks": (0.5,)}, "got 1 banks and 2 phases"),
     ],
 )

@@ -139,13 +139,13 @@ def test_pressures_of_a_job_file_push_the_piston_away_from_its_head() -> None:
         ({"back_pressure": "-1 bar"}, 'back_pressure.*at or above vacuum, 0; got "-1 bar"'),
         (
             {"pressure_angles": ["40 deg", "40 deg", "40 deg"]},
-            'must increase, but for two at a step; got "40 deg" three times',
+            'must increase, except for two equal ones at a step; got "40 deg" three times',
         ),
         ({"bore": "0 mm"}, "bore: must be positive"),
         ({"piston_rod": "100 mm"}, "thinner than the bore; got 100 mm"),
         (
             {"pressure_angles": ["0 deg", "40 deg", "720 deg"]},
-            "360 deg at most; got 720 deg; for a cycle of two turns",
+            "at most 360 deg; got 720 deg; for a cycle of two turns",
         ),
         ({"pressure_angles": ["0 deg", "40 deg", "30 deg"]}, "must increase; got"),
         ({"pressures": ["1 bar", "2 bar"]}, "got 2 pressures at 3 points"),
@@ -158,5 +158,5 @@ def test_a_wrong_table_of_pressures_is_refused_at_its_key(wrong: dict[str, Any],
 
 def test_tables_of_more_than_a_turn_are_refused_with_what_they_need() -> None:
     degrees, forces = (0.0, 180.0, 720.0), (5.0, 1.0, 5.0)
-    with pytest.raises(InputError, match="for a cycle of two turns give cycle"):
+    with pytest.raises(InputError, match="for a cycle of two turns, set cycle"):
         AngleTable(angles=tuple(np.radians(degrees).tolist()), forces=forces)

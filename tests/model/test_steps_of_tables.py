@@ -302,7 +302,7 @@ def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
     [
         (
             lambda: PositionTable(positions=(0.0, 0.02, 0.02, 0.02), forces=(0.0, 1.0, 2.0, 3.0)),
-            "positions of a table must increase, but for two at a step; got 0.02 three times; keep the values before",
+            "positions of a table must increase, except for two equal ones at a step; got 0.02 three times; keep",
         ),
         (
             lambda: AngleTable(angles=(1.0, 1.0, 1.0 + TURN), forces=(0.0, 1.0, 2.0)),

@@ -95,7 +95,7 @@ def test_freedom_never_makes_it_worse() -> None:
     ("angles", "positions", "message"),
     [
         ((0.0, 1.0, 2.0), (1.0, 2.0), "as many positions as crank angles"),
-        ((0.0, 1.0), (1.0, 2.0), "three at least"),
+        ((0.0, 1.0), (1.0, 2.0), "at least three"),
         ((0.0, 1.0, math.nan), (1.0, 2.0, 3.0), "finite throughout"),
         ((0.0, 2.0, 1.0), (1.0, 2.0, 3.0), "must increase; got 1 after 2"),
         ((0.0, 1.0, 6.3), (1.0, 2.0, 3.0), "less than one turn, 360 deg; got 360.963 deg"),

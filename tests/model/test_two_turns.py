@@ -169,7 +169,7 @@ def test_four_cylinders_of_four_strokes_fire_one_after_the_other() -> None:
 def test_impossible_cycles_are_refused() -> None:
     with pytest.raises(InputError, match=r"720 deg later; got three points there, from 0 deg to 720 deg"):
         AngleTable(angles=(0.0, 0.0, 2.0 * TURN), forces=(1.0, 2.0, 3.0), cycle="720 deg")
-    with pytest.raises(InputError, match=r"720 deg at most; got 859\.437 deg; give two turns at most"):
+    with pytest.raises(InputError, match=r"at most 720 deg; got 859\.437 deg; give at most two turns"):
         AngleTable(angles=(0.0, 15.0), forces=(1.0, 2.0), cycle="720 deg")
     tables = [
         AngleTable(angles=(0.0, 9.0), forces=(1.0, 2.0), cycle="720 deg", datum=datum)

@@ -48,7 +48,7 @@ def test_longer_crank_of_case_two_lengthens_the_stroke_and_a_longer_rod_hardly_d
 
 
 def test_wrong_changes_are_refused() -> None:
-    with pytest.raises(InputError, match="a dimension is one of crank, rod, offset; got 'speed'"):
+    with pytest.raises(InputError, match="a dimension must be one of crank, rod, offset; got 'speed'"):
         vary(SIEVE, [("speed", 1.0)], TURN)  # type: ignore[list-item]
     with pytest.raises(InputError, match="must be finite"):
         vary(SIEVE, [("crank", math.nan)], TURN)

@@ -271,6 +271,6 @@ def test_a_bad_drive_train_is_refused_in_one_sentence(drive: dict[str, Any] | No
 
 def test_a_machine_does_not_run_under_a_drive_without_torque_or_with_losses() -> None:
     machine = Mechanism(speed=10.0, crank=RigidLink(mass=1.0), slider_mass=2.0)
-    for drive, words in ((Drive(gear_ratio=5.0), "needs the motor's torque"), (LOSSY_MOTOR, "gear without losses")):
+    for drive, words in ((Drive(gear_ratio=5.0), "needs a motor torque"), (LOSSY_MOTOR, "gear without losses")):
         with pytest.raises(InputError, match=words):
             simulate(machine, Linkage(crank=0.05, rod=0.2, offset=0.02), drive, duration=1.0)

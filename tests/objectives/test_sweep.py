@@ -52,7 +52,7 @@ def test_linkage_that_does_not_turn_has_no_value_but_a_reason() -> None:
     table = sweep(FEEDER, DESIGN, [Axis("offset", (0.02, 0.03, 0.2))], ["stroke", "peak_torque"])
     assert table["reason"][0] == ""
     assert "rod must exceed crank + |offset| for full rotation" in table["reason"][1]
-    assert "closes at no crank angle" in table["reason"][2]
+    assert "linkage cannot close" in table["reason"][2]
     assert table.loc[1:, ["stroke_mm", "peak_torque_Nm"]].isna().all(axis=None)
     assert table["stroke_mm"][0] == pytest.approx(1e3 * Linkage(0.04, 0.064, 0.02).stroke)
 

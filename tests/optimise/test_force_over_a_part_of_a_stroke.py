@@ -75,7 +75,7 @@ def test_a_whole_stroke_is_a_force_that_is_constant_in_it(load: dict[str, Any], 
 @pytest.mark.parametrize(
     ("load", "said"),
     [
-        ({"opposes": "motion", "over": "last 60 mm"}, "needs one stroke; got both"),
+        ({"opposes": "motion", "over": "last 60 mm"}, "must name one stroke; got motion, which means both"),
         ({"opposes": "outward stroke", "over": "60 mm"}, 'must be "first" or "last" and a length'),
         ({"opposes": "outward stroke", "over": 0.06}, 'must be "first" or "last" and a length'),
         (

@@ -141,7 +141,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"motion": {"to": "11 deg"}}, "two different crank angles"),
         ({"motion": {"to": "400 deg"}}, "less than a turn apart"),
         ({"motion": {"duration": "0 s", "law": "harmonic"}}, "motion.duration: must be positive"),
-        ({"motion": {"law": "harmonic"}}, "any other must have one"),
+        ({"motion": {"law": "harmonic"}}, "any other swing must have one"),
         ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "passes a dead point"),
         ({"motion": {"from": "-170 deg"}}, "passes a dead point"),
         ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design within the ranges closes"),

@@ -213,7 +213,7 @@ def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() ->
         ("angle_deg,force_N,torque_Nm\n0,1,2\n9,2,3", {}, r'got "force_N" and "torque_Nm"; let the names'),
         ("position_mm,torque_Nm\n0,1\n9,2", {}, "must be a table of a load; .* give torques over the crank angle"),
         ("position_mm,force_N\n0,1\n9,2\n5,3", {}, '"position_mm" must increase; got 5 after 9; sort the rows'),
-        ("angle_deg,force_N\n0,1\n9,2\n9,3\n9,4", {}, "must increase, but for two at a step"),
+        ("angle_deg,force_N\n0,1\n9,2\n9,3\n9,4", {}, "must increase, except for two equal ones at a step"),
         ("angle_deg,force_N\n0,1\n9,", {}, 'row 3, column "force_N": must be a number; got an empty cell'),
         ("angle_deg,force_N\n0,1\n9,2", {"forces": ["1 N"]}, "#1.forces: a load with file must not have this key"),
         ("crank angle (mm),force (N)\n0,1\n9,2", {}, 'column "crank angle .mm.": must have the unit of an angle'),

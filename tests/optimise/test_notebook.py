@@ -58,7 +58,7 @@ def test_picture_of_a_linkage_has_its_pins_where_they_are() -> None:
 def test_figures_show_the_numbers(front: sc.ParetoFront) -> None:
     analysis = front.problem.analyse(front.dimensions[0])
     assert isinstance(analysis.linkage.plot(), Figure)
-    with pytest.raises(sc.InputError, match=r"shows one crank angle; got an array of shape \(2,\); take one of them"):
+    with pytest.raises(sc.InputError, match=r"can only show one crank angle; got an array of shape \(2,\); choose one"):
         analysis.linkage.plot(crank_angle=[1.0, 2.0])  # type: ignore[arg-type]
     shown = front.plot()
     spots = np.asarray(shown.axes[0].lines[0].get_xydata())

@@ -94,7 +94,10 @@ SLIPS: dict[str, tuple[Any, str]] = {
         lambda: door.Linkage([0.04, 0.05], 0.1).at([0.0, 1.0, 2.0]),
         "crank angles must broadcast with the linkages; got shapes (3,) and (2,)",
     ),
-    "label": (lambda: door.Linkage([0.04, 0.05], 0.1).label, "a label shows one linkage; got an array of shape (2,)"),
+    "label": (
+        lambda: door.Linkage([0.04, 0.05], 0.1).label,
+        "a label can only show one linkage; got an array of shape (2,)",
+    ),
     "measured": (
         lambda: NO_FRONT.analyse([0.04, 0.1, 0.02]).deviations(None),
         "a measured table has columns by their names; got NoneType; give a dict or a DataFrame",

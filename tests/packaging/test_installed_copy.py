@@ -26,7 +26,7 @@ ALONE = f"import os; os.cpu_count = lambda: 1{USE}"
 FirstUse = tuple[Path, str, str]
 """A copy, and what its first use put out and said."""
 
-COMPILES = "slidercrank compiles its formulas, once after installation\n"
+COMPILES = "slidercrank is compiling its formulas (only once after installation)\n"
 
 pytestmark = pytest.mark.slow
 
@@ -101,7 +101,7 @@ def test_a_copy_that_cannot_be_written_in_a_home_that_cannot_says_so_once(copy: 
     printed, said = used(copy, ALONE, before=before, TMPDIR=str(temporary))
     assert printed == f"{copy / '__init__.py'} 0.2\n"
     assert said.startswith(f"slidercrank keeps compiled kernels in {temporary}/slidercrank-{os.getuid()}: {home}")
-    assert f"name a folder that can be written in NUMBA_CACHE_DIR\n{COMPILES}" in said
+    assert f"set NUMBA_CACHE_DIR to a writable folder\n{COMPILES}" in said
     assert used(copy, before=before, TMPDIR=str(temporary)) == (printed, "")
 
 

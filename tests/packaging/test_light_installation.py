@@ -236,7 +236,7 @@ for plot in (linkage.plot, analysis.plot, front.plot):
 """
     done = run(f"{script}{code}", tmp_path)
     assert done.returncode == 0, done.stderr
-    line = 'figures need the extra "figures", which is not installed; add it: pip install "slidercrank[figures]"'
+    line = 'figures need the extra "figures", which is not installed; install it: pip install "slidercrank[figures]"'
     assert done.stdout.splitlines() == [line] * 3
 
 

@@ -122,7 +122,7 @@ def test_the_pivot_of_the_cylinder_lies_farthest_from_both_dead_points_by_defaul
         ),
         (("--bore", "40 mm", "--supply-pressure", "10 bar"), "needs 13.609 bar; got 10 bar; raise it"),
         (("--bore", "20 mm", "--piston-rod", "20 mm"), "the bore must exceed the piston rod"),
-        (("--duration", "2 s"), "got 2 s; name a law such as cycloidal, or leave out the duration"),
+        (("--duration", "2 s"), "got 2 s; name a motion law such as cycloidal, or leave out the duration"),
         (("--mass", "-1 kg"), "--mass must be zero or more; got"),
         (("--rod", "0 mm"), "--rod must be positive; got"),
     ],
@@ -163,7 +163,7 @@ def test_ends_and_the_place_of_a_mass_are_asked_for(command: Command) -> None:
     done = command("lever", *TIPPER[:-2])
     assert (done.exit_code, done.stderr) == (
         2,
-        "slidercrank: a lever swings from one angle to another; got no --to; give both, or a job with [motion]\n",
+        "slidercrank: a lever swings from one angle to another; got no --to; give both, or use a job with [motion]\n",
     )
     done = command("lever", *TIPPER, "--mass", "80 kg")
     assert "a carried mass needs its place on the lever; got 80 kg and no --centre" in done.stderr

@@ -308,11 +308,11 @@ WRONG: list[tuple[str, dict[str, object], str]] = [
     ("inverse", {"slider_position": None}, "inverse needs slider_position; got none"),
     ("inverse", {"slider_position": 9.0}, "the slider position must be within reach of the open branch"),
     ("inverse", {"slider_position": 0.3, "start": 0.1}, "inverse may only be given slider_position, slider_velocity, "),
-    ("swing", {"start": 0.1}, "a swing runs from one crank angle to another; got no end; give both"),
+    ("swing", {"start": 0.1}, "a swing must run from one crank angle to another; got no end; give both"),
     (
         "swing",
         {"start": 0.1, "slider_end": 0.2},
-        "two slider positions; got start, slider_end; give the two",
+        "two slider positions; got start, slider_end; give only one",
     ),
     ("swing", {"start": 0.1, "end": 0.5, "driver": "motor"}, "driver must be 'crank' or 'slider'; got 'motor'"),
     ("swing", {"start": 0.1, "end": 0.5, "law": ["slow"]}, "law must be 'slow' or "),

@@ -92,7 +92,7 @@ def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -
     [
         (JOB, ("--rod", "200 mm"), "sizing sections needs the table [sections]; this job has none"),
         (JOB + SECTIONS, (), "--rod is needed"),
-        (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "got 450, 350 and 520 MPa; swap those"),
+        (JOB + SECTIONS.replace("150 MPa", "450 MPa"), ("--rod", "200 mm"), "got 450, 350 and 520 MPa; swap them"),
         (
             JOB + SECTIONS.replace('"350 MPa"', '"350 Pa"'),
             ("--rod", "200 mm"),

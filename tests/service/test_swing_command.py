@@ -171,7 +171,7 @@ def test_commands_of_a_full_turn_say_so_of_a_job_that_swings(command: Command, g
         (("--from", "11 deg", "--to", "50 mm"), "--to must be an angle"),
         (("--from", "-20 deg", "--to", "50 deg", "--driver", "slider"), "dead point"),
         ((*OVER, "--driver", "motor"), "'motor' is not one of"),
-        ((*OVER, "--law", "harmonic"), "any other must have one"),
+        ((*OVER, "--law", "harmonic"), "any other swing must have one"),
         ((*OVER, "--duration", "3 s"), "a slow swing must have no duration"),
         ((*OVER, "--law", "harmonic", "--duration", "0 s"), "--duration must be"),
         ((*OVER, "--actuator-tolerance", "-1 mm"), "--actuator-tolerance must"),

@@ -168,7 +168,7 @@ def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
         ),
         (
             '{ crank_angles = ["0 deg", 1, 2, "360 deg"], speeds = ["9 rpm", "8 rpm", "9 rpm", "7 rpm"] }',
-            "a turn later and differs by -2 rpm",
+            "one turn after the first, differs from it by -2 rpm",
         ),
         ('{ file = "gap.csv" }', "row 3, column .speed_rpm.: must be a number; got .nan.; write the number alone"),
         ('{ file = "short.csv" }', "must cover at least one turn; got 54 deg"),

@@ -45,7 +45,7 @@ class AddedMass(Load):
     @property
     def effect(self) -> str:
         """It opposes acceleration."""
-        return "resists acceleration of the slider, no net work over a cycle"
+        return "resists acceleration of the slider; does no net work over a cycle"
 
 
 AddedMass.tables = (
@@ -53,8 +53,8 @@ AddedMass.tables = (
         "added_mass",
         "AddedMassLoad",
         "mass that moves with the slider",
-        "Fluid or rollers that the slider accelerates: inertia without weight.",
-        (Entry("added_mass", "Mass", "mass moved with the slider's speed", "2 kg"),),
+        "Fluid or rollers accelerated by the slider: inertia without weight.",
+        (Entry("added_mass", "Mass", "mass that moves at the slider's speed", "2 kg"),),
         {"added_mass": "1 kg"},
         built(AddedMass, added_mass="mass"),
     ),

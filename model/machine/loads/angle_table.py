@@ -71,14 +71,14 @@ class AngleTable(Load):
         if span > self._period + _ROUNDING:
             two_turns = self.cycle == "720 deg" or span > 2.0 * _TURN + _ROUNDING
             raise InputError(
-                f"angles of a periodic table must span {self.cycle} at most; got {math.degrees(span):.6g} deg; "
-                + ("give two turns at most" if two_turns else 'for a cycle of two turns give cycle = "720 deg"')
+                f"angles of a periodic table must span at most {self.cycle}; got {math.degrees(span):.6g} deg; "
+                + ("give at most two turns" if two_turns else 'for a cycle of two turns, set cycle = "720 deg"')
             )
         if self._closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
             raise InputError(
-                f"the first angle of a periodic table recurs {self.cycle} later; got three points there, from "
-                f"{math.degrees(self.angles[0]):.6g} deg to {math.degrees(self.angles[-1]):.6g} deg; keep the forces "
-                "before and after the step"
+                "a periodic table may have at most two points at one angle, and its first angle recurs "
+                f"{self.cycle} later; got three points there, from {math.degrees(self.angles[0]):.6g} deg to "
+                f"{math.degrees(self.angles[-1]):.6g} deg; keep only the forces before and after the step"
             )
 
     @property
@@ -197,10 +197,10 @@ AngleTable.tables = (
         "crank_angles",
         "AngleLoad",
         "table of forces over the crank angle",
-        "A force tabulated over the crank angle: linear between the points, periodic; two points at one angle "
-        "are a step.",
+        "A force tabulated over the crank angle: linear between the points, periodic; two points at one angle form "
+        "a step.",
         (
-            points("crank_angles", "Angle", "crank angles, increasing, within one cycle", "0 deg", "90 deg"),
+            points("crank_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"),
             FORCES,
             ANGLE_DATUM,
             CYCLE,
@@ -214,12 +214,13 @@ AngleTable.tables = (
         "PressureAngleLoad",
         "table of pressures over the crank angle",
         "Pressure in a cylinder over the crank angle: linear between the points, periodic; two points at one angle "
-        "are a step; pressures are absolute.",
+        "form a step; pressures are absolute.",
         (
             points(
                 "pressure_angles",
                 "Angle",
-                "crank angles from the dead centre at the head, in the sense of rotation, increasing, within one cycle",
+                "increasing crank angles from the dead centre at the head, in the direction of rotation, "
+                "within one cycle",
                 "0 deg",
                 "90 deg",
             ),

@@ -32,9 +32,9 @@ class Compressor(Cylinder):
             limit = 1.0 / (ratio ** (1.0 / n) - 1.0)
             if self.clearance >= limit:
                 raise InputError(
-                    f"the clearance must be below {limit:.4g} of the swept volume, else nothing is delivered at "
-                    f"{ratio:.4g} times the suction pressure with exponent {n:g}; got {self.clearance:g}; reduce the "
-                    "clearance or the pressure ratio"
+                    f"the clearance must be below {limit:.4g} of the swept volume, or nothing is delivered at "
+                    f"{ratio:.4g} times the suction pressure with exponent {n:g}; got {self.clearance:g}; reduce "
+                    "the clearance or the pressure ratio"
                 )
 
     @property
@@ -85,8 +85,8 @@ Compressor.tables = (
         "The closed cycle of a single-stage compressor or pump with ideal valves; pressures are absolute.",
         (
             BORE,
-            Entry("suction", "AbsolutePressure", "absolute pressure of the intake", "1 bar"),
-            Entry("discharge", "AbsolutePressure", "absolute pressure of the delivery", "8 bar"),
+            Entry("suction", "AbsolutePressure", "absolute intake pressure", "1 bar"),
+            Entry("discharge", "AbsolutePressure", "absolute delivery pressure", "8 bar"),
             Entry("medium", ("gas", "liquid"), "what it delivers", "gas", default="gas"),
             *CLEARANCES,
             *EXPONENTS,

@@ -54,9 +54,9 @@ CrankTable.tables = (
         "CrankTorqueTableLoad",
         "table of torques on the crank over the crank angle",
         "A torque on the crank tabulated over the crank angle: linear between the points, periodic; two points at "
-        "one angle are a step.",
+        "one angle form a step.",
         (
-            points("torque_angles", "Angle", "crank angles, increasing, within one cycle", "0 deg", "90 deg"),
+            points("torque_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"),
             Entry(
                 "torques",
                 "Torque",

@@ -80,15 +80,15 @@ class Cylinder(Load):
         for exponent in (self.compression_exponent, self.expansion_exponent):
             if 0.0 < exponent < _LEAST_EXPONENT:
                 raise InputError(
-                    f"an exponent of p V^n is at least {_LEAST_EXPONENT:g}, or zero for a liquid; got {exponent:g}; "
-                    "1 is isothermal, 1.4 adiabatic for air"
+                    f"an exponent of p V^n must be at least {_LEAST_EXPONENT:g}, or zero for a liquid; got "
+                    f"{exponent:g}; 1 is isothermal, 1.4 adiabatic for air"
                 )
         require_word("head", self.head, Head)
         piston_area(self.bore, self.piston_rod)
         if (self.compression_exponent == 0.0) != (self.expansion_exponent == 0.0):
             raise InputError(
-                "both exponents are zero, for a liquid, or neither; got "
-                f"{self.compression_exponent:g} and {self.expansion_exponent:g}"
+                f"both exponents must be zero, for a liquid, or neither; got {self.compression_exponent:g} and "
+                f"{self.expansion_exponent:g}"
             )
 
     @property
@@ -140,23 +140,23 @@ class Cylinder(Load):
         return f"{', '.join(parts)}, head at the {self.head}, {1e-5 * self.back_pressure:.6g} bar behind the piston"
 
 
-BORE = Entry("bore", "PositiveLength", "diameter of the cylinder", "70 mm")
+BORE = Entry("bore", "PositiveLength", "bore of the cylinder", "70 mm")
 CLEARANCES = (
-    Entry("clearance", "Fraction", "least volume over the swept volume", 0.05, default=0.0),
-    Entry("clearance_volume", "Volume", "least volume, added to that of the ratio", "8 cm^3", default=0.0),
+    Entry("clearance", "Fraction", "least volume divided by the swept volume", 0.05, default=0.0),
+    Entry("clearance_volume", "Volume", "least volume, added to that from the ratio", "8 cm^3", default=0.0),
 )
 BACK_PRESSURE = Entry(
     "back_pressure",
     "LeastPressure",
-    "absolute pressure on the other side of the piston; the standard atmosphere where it is left out",
+    "absolute pressure on the other side of the piston; the standard atmosphere if left out",
     "1 bar",
     default=ATMOSPHERE,
 )
-PISTON_ROD = Entry("piston_rod", "Radius", "diameter of a piston rod through this side", "20 mm", default=0.0)
+PISTON_ROD = Entry("piston_rod", "Radius", "diameter of a piston rod on this side", "20 mm", default=0.0)
 HEAD = Entry(
     "head",
     ("outer dead centre", "inner dead centre"),
-    "the dead centre at which the volume is least: behind the outer one gas pushes the slider inward",
+    "the dead centre with the least volume; a head at the outer one lets gas push the slider inward",
     "outer dead centre",
     default="outer dead centre",
 )
@@ -195,8 +195,8 @@ def piston_forces(
     """
     if len(places) != len(pressures):
         raise InputError(
-            f"a table needs a pressure at each of its points; got {len(pressures)} pressures at {len(places)} points; "
-            "add what is missing"
+            f"a table needs one pressure for each of its points; got {len(pressures)} pressures at {len(places)} "
+            "points; add what is missing"
         )
     area = piston_area(bore, piston_rod)
     return tuple(

@@ -56,16 +56,16 @@ class Drag(Load):
     @property
     def range(self) -> str:
         """Dependence on the speed."""
-        return "with the square of the speed"
+        return "proportional to the square of the speed"
 
 
 Drag.tables = (
     Table(
         "drag",
         "DragLoad",
-        "resistance with the square of the speed",
-        "A resistance that grows with the square of the slider speed, as that of a fluid.",
-        (Entry("drag", "QuadraticDamping", "force per square of the speed", "20 N s^2/m^2"),),
+        "resistance proportional to the square of the speed",
+        "A resistance proportional to the square of the slider speed, such as that of a fluid.",
+        (Entry("drag", "QuadraticDamping", "force per squared speed", "20 N s^2/m^2"),),
         {"drag": "10 N s^2/m^2"},
         Drag,
     ),

@@ -239,7 +239,9 @@ def _built(
     if not compression_ratio > 1.0:
         raise InputError(f"the compression ratio must exceed 1; got {compression_ratio:g}; 6 to 20 are usual")
     if not (peak_pressure > 0.0 or heat > 0.0):
-        raise InputError("an engine cycle has a peak pressure, heat or both; got neither; give peak_pressure or heat")
+        raise InputError(
+            "an engine cycle must have a peak pressure, heat or both; got neither; add peak_pressure or heat"
+        )
     compressed = intake * compression_ratio**compression_exponent
     # An ideal gas at constant volume absorbs the heat (p_h - p_end) V_c / (k - 1); V_c is V_s / (ratio - 1).
     added = heat * (heat_capacity_ratio - 1.0) * (compression_ratio - 1.0)
@@ -260,8 +262,8 @@ def _built(
         return (FourStrokeLimitedPressure if limited else FourStroke)(exhaust=exhaust or back_pressure, **size)
     if exhaust:
         raise InputError(
-            "an exhaust pressure needs a cycle of four strokes; got one with a cycle of 360 deg; add "
-            'cycle = "720 deg", or leave the exhaust pressure out'
+            'an exhaust pressure needs a four-stroke cycle; got one with a cycle of 360 deg; add cycle = "720 '
+            'deg", or leave the exhaust pressure out'
         )
     return (LimitedPressure if limited else Engine)(**size)
 
@@ -271,32 +273,38 @@ Engine.tables = (
         "compression_ratio",
         "EngineLoad",
         "ideal engine cycle",
-        "The ideal cycle of an engine of two or four strokes; pressures are absolute. It burns at constant volume, "
-        "with both peak_pressure and heat at limited pressure.",
+        "The ideal cycle of a two-stroke or four-stroke engine; pressures are absolute. The fuel burns at constant "
+        "volume, or at limited pressure if both peak_pressure and heat are given.",
         (
             BORE,
-            Entry("compression_ratio", "CompressionRatio", "greatest volume over the least one", 8.0),
+            Entry("compression_ratio", "CompressionRatio", "greatest volume divided by the least", 8.0),
             Entry("intake", "AbsolutePressure", "absolute pressure at the start of compression", "1 bar"),
             Entry(
                 "peak_pressure",
                 "LeastPressure",
-                "greatest absolute pressure, of burning; with heat, the rest burns at this pressure",
+                "greatest absolute pressure during combustion; with heat, the rest of the fuel burns at this pressure",
                 "40 bar",
                 default=0.0,
             ),
             Entry(
                 "heat",
                 "HeatPerVolume",
-                "heat set free per swept volume; at the top, or up to peak_pressure and then at it",
+                "heat released per swept volume: at the top, or up to peak_pressure and then at that pressure",
                 "1.2 MJ/m^3",
                 default=0.0,
             ),
-            Entry("heat_capacity_ratio", "HeatCapacityRatio", "of the burning gas, for heat", 1.4, default=1.4),
+            Entry(
+                "heat_capacity_ratio",
+                "HeatCapacityRatio",
+                "ratio for the burning gas, used with heat",
+                1.4,
+                default=1.4,
+            ),
             CYCLE,
             Entry(
                 "exhaust",
                 "LeastPressure",
-                "absolute pressure of the exhaust stroke, of four strokes; the back pressure where it is left out",
+                "absolute pressure of the exhaust stroke in a four-stroke cycle; the back pressure if left out",
                 "1.05 bar",
                 default=0.0,
             ),

@@ -111,7 +111,9 @@ class Table:
 
     def __post_init__(self) -> None:
         if self.key not in {entry.name for entry in self.entries}:
-            raise ValueError(f"a table of loads is told by the key of one of its entries; got {self.key!r}; name one")
+            raise ValueError(
+                f"a load table must be identified by the key of one of its entries; got {self.key!r}; name one"
+            )
         keys, parameters = {entry.name for entry in self.entries}, signature(self.build).parameters.values()
         named = {parameter.name for parameter in parameters if parameter.kind is not Parameter.VAR_KEYWORD}
         needed = {
@@ -122,8 +124,8 @@ class Table:
         unknown = keys - named if len(named) == len(parameters) else set()
         if unknown or needed - keys:
             raise ValueError(
-                f"the build of a load table must take its entries by name; got {_listed(unknown)}, which the build of "
-                f"{self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
+                f"a load table's build function must take its entries by name; got {_listed(unknown)}, which that "
+                f"of {self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
                 "built(kind, key='field')"
             )
 
@@ -307,8 +309,8 @@ def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *
     """
     if len(at) != len(forces) or len(at) < 2:
         raise InputError(
-            f"a table needs as many {values} as {argument}, two at least; "
-            f"got {len(at)} {argument} and {len(forces)} {values}"
+            f"a table needs as many {values} as {argument}, at least two; got {len(at)} {argument} and "
+            f"{len(forces)} {values}"
         )
     require_all_finite(f"a table of {argument} and {values}", (*at, *forces), "throughout")
     n = out_of_order(at)
@@ -331,7 +333,10 @@ def order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
     """Return the rule that point n in a table breaks, with this point and its predecessor as typed."""
     if at[n] < at[n - 1]:
         return f"must increase; got {point} after {before}; sort the table"
-    return f"must increase, but for two at a step; got {point} three times; keep the values before and after the step"
+    return (
+        f"must increase, except for two equal ones at a step; got {point} three times; keep the values before and "
+        "after the step"
+    )
 
 
 def has_step(at: Sequence[float]) -> bool:
@@ -339,19 +344,20 @@ def has_step(at: Sequence[float]) -> bool:
     return any(after == before for before, after in itertools.pairwise(at))
 
 
-DURING = Entry("during", get_args(During), "when the load acts", "outward stroke", default="cycle")
+DURING = Entry("during", get_args(During), "motion or stroke in which the load acts", "outward stroke", default="cycle")
 DATUM = Entry(
     "measured_from",
     get_args(Datum),
-    "origin of the positions: the crank pivot or the inner dead centre (both outward), or the outer dead "
-    "centre (inward)",
+    "origin of the positions: the crank pivot or inner dead centre (counted outward), or the outer dead centre "
+    "(counted inward)",
     "outer dead centre",
     default="crank pivot",
 )
 ANGLE_DATUM = Entry(
     "measured_from",
     get_args(AngleDatum),
-    "origin of the crank angles: zero, counter-clockwise, or a dead centre, in the sense of rotation",
+    "origin of the crank angles: zero (counted counter-clockwise), or a dead centre (counted in the direction "
+    "of rotation)",
     "outer dead centre",
     default="zero crank angle",
 )
@@ -365,7 +371,7 @@ CYCLE = Entry(
 FORCES = Entry(
     "forces",
     "Force",
-    "force on the slider at each point, positive outward, away from the crank pivot",
+    "force on the slider at each point; positive outward, away from the crank pivot",
     ["-600 N", "0 N"],
     several=True,
 )

@@ -68,7 +68,7 @@ def effect_by_direction(forces: Sequence[float], ways: Ways, motion: str) -> str
     """Return the effect of forces on motion in either direction. motion: "motion" or "rotation"."""
     low, high = min(forces), max(forces)
     if low < 0.0 < high:
-        return "helps or resists by crank angle"
+        return "helps or resists depending on the crank angle"
     helped, resisted = ways if high > 0.0 else ways[::-1]
     return f"helps {helped} and resists {resisted} {motion}" if low or high else "no effect"
 

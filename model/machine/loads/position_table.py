@@ -55,8 +55,8 @@ class PositionTable(Load):
         if self.datum != "crank pivot" and self.positions[-1] <= 0.0:
             ends = f"{1e3 * self.positions[0]:g} mm to {1e3 * self.positions[-1]:g} mm"
             raise InputError(
-                f"positions from the {self.datum} are distances from it, zero or more; got {ends}, of which only the "
-                "last force would ever act; turn the table round"
+                f"positions from the {self.datum} are distances and must be zero or more; got {ends}, so that only "
+                "the last force would ever act; reverse the signs"
             )
 
     def numbers(self) -> tuple[float, float, float, float]:
@@ -121,8 +121,8 @@ PositionTable.tables = (
         "positions",
         "PositionLoad",
         "table of forces over the slider position",
-        "A force tabulated over the slider position: linear between the points, constant beyond them; two points at "
-        "one position are a step.",
+        "A force tabulated over the slider position: linear between the points, constant beyond them; two points "
+        "at one position form a step.",
         (
             points("positions", "Length", "slider positions, increasing", "0 mm", "20 mm"),
             FORCES,
@@ -136,13 +136,13 @@ PositionTable.tables = (
         "pressure_positions",
         "PressurePositionLoad",
         "table of pressures over the slider position",
-        "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant beyond; "
-        "two points at one distance are a step.",
+        "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant "
+        "beyond; two points at one distance form a step.",
         (
             points(
                 "pressure_positions",
                 "Length",
-                "distances of the piston from its top, the dead centre at the head, increasing",
+                "increasing distances of the piston from its top, the dead centre at the head",
                 "0 mm",
                 "20 mm",
             ),

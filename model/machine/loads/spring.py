@@ -58,7 +58,7 @@ Spring.tables = (
         "A linear spring between slider and frame.",
         (
             Entry("stiffness", "Stiffness", "of the spring", "20 N/mm"),
-            Entry("free_position", "Length", "slider position where the spring is free of force", "25 mm"),
+            Entry("free_position", "Length", "slider position at which the spring is relaxed", "25 mm"),
             DATUM,
         ),
         {"stiffness": "1 N/mm", "free_position": "0 mm", "measured_from": "inner dead centre"},

@@ -55,7 +55,7 @@ class StrokeForce(Load):
         if self.outward == -self.inward:
             return f"{abs(self.outward):.6g} N"
         forces = {force: sized((force,)) for force in (self.outward, self.inward) if force}
-        return " in the outward and ".join(forces.values()) + (" in the inward stroke" if len(forces) > 1 else "")
+        return " on the outward and ".join(forces.values()) + (" on the inward stroke" if len(forces) > 1 else "")
 
     @property
     def push(self) -> tuple[Sequence[float], Sequence[float]]:
@@ -79,8 +79,8 @@ def _force_along_motion(force: float, stroke: str, part: StrokePart, *, drives: 
         return StrokeForce(outward=outward, inward=inward, drives=drives)
     if stroke == "motion":
         raise InputError(
-            f"the {part.part} part of a stroke needs one stroke; got both, as motion; name the outward or the inward "
-            "stroke, and give each its own load"
+            f"a load on the {part.part} part of a stroke must name one stroke; got motion, which means both; name "
+            "the outward or the inward stroke, with a separate load for each"
         )
     from_outer = (stroke == "outward stroke") == (part.part == "last")
     size = outward + inward
@@ -106,7 +106,7 @@ _STROKES = ("outward stroke", "inward stroke", "motion")
 _OVER = Entry(
     "over",
     "StrokePart",
-    'the part of the stroke in which it acts: "first" or "last" and a length, or the whole stroke',
+    'the part of the stroke on which it acts: "first" or "last" and a length; the whole stroke if left out',
     "last 60 mm",
     default="whole stroke",
 )
@@ -115,8 +115,8 @@ StrokeForce.tables = (
         "opposes",
         "OpposingForce",
         "force against a stroke or the motion",
-        "A force of constant size that resists a stroke or a part of it, or every motion (Coulomb friction of known "
-        "size).",
+        "A force of constant size that resists a stroke, part of a stroke or every motion (Coulomb friction of "
+        "known size).",
         (_SIZE, Entry("opposes", _STROKES, "what it resists", "outward stroke"), _OVER),
         {"force": "100 N", "opposes": "outward stroke"},
         lambda force, opposes, over: _force_along_motion(-force, opposes, over),
@@ -125,7 +125,7 @@ StrokeForce.tables = (
         "helps",
         "HelpingForce",
         "force along a stroke or the motion",
-        "A force of constant size that helps a stroke or a part of it, or every motion.",
+        "A force of constant size that helps a stroke, part of a stroke or every motion.",
         (_SIZE, Entry("helps", _STROKES, "what it helps", "inward stroke"), _OVER),
         {"force": "100 N", "helps": "inward stroke"},
         lambda force, helps, over: _force_along_motion(force, helps, over, drives=True),

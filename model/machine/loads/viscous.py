@@ -45,7 +45,7 @@ class Viscous(Load):
     @property
     def range(self) -> str:
         """Dependence on the speed."""
-        return "in proportion to the speed"
+        return "proportional to the speed"
 
 
 Viscous.tables = (

@@ -116,8 +116,8 @@ def _swing(
     for name, angle in (("start", start), ("end", end)):
         if angle is None:
             raise InputError(
-                f"a lever swings from one angle to another; got no {labels.get(name, name)}; give both, or a job with "
-                "[motion]"
+                f"a lever swings from one angle to another; got no {labels.get(name, name)}; give both, or use a job "
+                "with [motion]"
             )
     law: LeverLaw | None = inputs.get("law")
     if law is None and swing is not None:

@@ -62,7 +62,7 @@ def test_what_cannot_be_assembled_is_refused_with_its_angle() -> None:
 
 
 def test_what_does_not_converge_is_refused_with_its_angle() -> None:
-    with pytest.raises(InputError, match=r"must end within 2 steps; got none at crank angle 57\.2958 deg"):
+    with pytest.raises(InputError, match=r"must converge within 2 steps; it did not at crank angle 57\.2958 deg"):
         solve_loop(Linkage(0.1, 0.12), [0.0, 1.0], iteration_limit=2)
-    with pytest.raises(InputError, match="start of the iteration must be finite"):
+    with pytest.raises(InputError, match="starting point must be finite"):
         solve_loop(Linkage(0.1, 0.12), 0.0, start=(math.nan, 0.0))

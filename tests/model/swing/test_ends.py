@@ -145,7 +145,7 @@ def test_a_table_of_motion_is_the_complete_cubic_spline() -> None:
     [
         (((0.0, 0.0), (1.0, 1.0)), "at least three points"),
         (((0.0, 0.0), (0.5, 0.6), (0.4, 0.8), (1.0, 1.0)), "with increasing times"),
-        (((0.0, 0.0), (0.4, 0.98), (0.5, 0.99), (1.0, 1.0)), "must not turn back"),
+        (((0.0, 0.0), (0.4, 0.98), (0.5, 0.99), (1.0, 1.0)), "must not reverse"),
         (((0.0, 0.0), (0.4, 0.5), (0.9, 1.0)), "end with 1, 1"),
     ],
 )

@@ -113,11 +113,11 @@ def test_the_swing_of_a_problem_is_that_of_its_quantities() -> None:
 @pytest.mark.parametrize(
     ("asked", "words"),
     [
-        (SwingRequest(start=0.1), "got no end; give both, or a job"),
+        (SwingRequest(start=0.1), "got no end; give both, or use a job"),
         (SwingRequest(slider_end=0.1), "from one slider position to another; got no slider_start"),
-        (SwingRequest(start=0.1, slider_end=0.3), "got start, slider_end; give the two of one"),
+        (SwingRequest(start=0.1, slider_end=0.3), "got start, slider_end; give only one of these pairs"),
         (SwingRequest(), "got no start"),
-        (SwingRequest(start=0.1, end=0.4, law="table"), "got law table; give its points in"),
+        (SwingRequest(start=0.1, end=0.4, law="table"), "got law table; write its points as law_times"),
         (SwingRequest(slider_start=0.1, slider_end=0.1), "needs two different slider positions"),
     ],
 )

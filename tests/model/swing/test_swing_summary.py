@@ -184,13 +184,13 @@ def test_dead_points_are_where_the_slider_turns() -> None:
         ({"start": 0.0, "end": math.inf}, "finite"),
         ({"start": 0.0, "end": 1.0, "driver": "rod"}, "driver must be 'crank' or 'slider'"),
         ({"start": 0.0, "end": 1.0, "law": "fast"}, "law must be"),
-        ({"start": 0.0, "end": 1.0, "law": "harmonic"}, "any other must have one"),
+        ({"start": 0.0, "end": 1.0, "law": "harmonic"}, "any other swing must have one"),
         ({"start": 0.0, "end": 1.0, "duration": 2.0}, "a slow swing must have no duration"),
         ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 0.0}, "positive"),
         ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 1e300}, "check the unit"),
         ({"start": 0.0, "end": 1.0, "law": "harmonic", "duration": 1e-155}, "check the unit"),
-        ({"start": None, "end": 1.0}, "must be of numbers"),
-        ({"start": "1", "end": 1.0}, "must be of numbers"),
+        ({"start": None, "end": 1.0}, "must consist of numbers"),
+        ({"start": "1", "end": 1.0}, "must consist of numbers"),
         ({"start": 0.0, "end": 1.0, "actuator_tolerance": -1.0}, "zero or more"),
         ({"start": 0.0, "end": 1.0, "actuator_tolerance": 1e-3}, "needs a slider that drives"),
     ],
@@ -208,7 +208,7 @@ def test_swings_that_cannot_be_made_are_refused() -> None:
         summarise(COLUMN, SUPPORT, replace(OVER, start=-0.5))
     with pytest.raises(InputError, match="same branch"):
         summarise(replace(COLUMN, branch="crossed"), SUPPORT, OVER)
-    with pytest.raises(InputError, match="one linkage at a time"):
+    with pytest.raises(InputError, match="one linkage is possible at a time"):
         summarise(COLUMN, Linkage([1.4, 1.5], 1.8, -0.05), OVER)
     spring = Spring(stiffness=100.0, datum="inner dead centre")
     with pytest.raises(InputError, match="measure it from the crank pivot"):

@@ -184,5 +184,5 @@ def test_linkages_within_the_limits_must_turn() -> None:
         extremes(mechanism, close, 0.0)
     with pytest.raises(InputError, match="below 180 deg"):
         extremes(Mechanism(tolerances=Tolerances(crank_angle=Tolerance(absolute=4.0))), SUPPORT, 0.0)
-    with pytest.raises(InputError, match=r"one linkage at a time; got an array of shape \(2,\)"):
+    with pytest.raises(InputError, match=r"one linkage is possible at a time; got an array of shape \(2,\)"):
         extremes(PUBLISHED, Linkage([1.4, 1.5], 1.8), 0.0)

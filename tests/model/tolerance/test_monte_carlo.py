@@ -189,7 +189,7 @@ def test_summary_is_that_of_the_sample() -> None:
         ({"samples": 2.5}, "samples must be a whole number"),
         ({"seed": -1}, "seed must be a whole number of at least 0; got -1"),
         ({"crank_angle": [math.nan]}, "crank angles must be a list of finite numbers"),
-        ({"samples": 10**8, "crank_angle": [0.0, 1.0]}, "take fewer"),
+        ({"samples": 10**8, "crank_angle": [0.0, 1.0]}, "reduce one"),
     ],
 )
 def test_wrong_arguments_are_refused(arguments: dict[str, Any], message: str) -> None:
@@ -206,7 +206,7 @@ def test_wrong_distributions_and_limits_are_refused() -> None:
         (lambda: yield_within([0.0], math.nan), "must be zero or more and finite"),
         (lambda: yield_within([0.0], 1.0, confidence=1.0), "confidence must be between 0 and 1; got 1"),
         (lambda: yield_within([], 1.0), "at least one number"),
-        (lambda: summarise([math.nan, 1.0]), "needs two machines that turn; got 1"),
+        (lambda: summarise([math.nan, 1.0]), "needs at least two machines that rotate fully; got 1"),
     ):
         with pytest.raises(InputError, match=message):
             wrong()

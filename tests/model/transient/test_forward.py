@@ -188,7 +188,7 @@ def test_speed_beyond_the_torque_table_ends_the_simulation() -> None:
     assert found.verdict == "beyond the torque table"
     assert found.speed[-1] == pytest.approx(20.0, rel=1e-9)
     assert np.all(np.isfinite(found.motor_torque))
-    with pytest.raises(InputError, match="known at the start; got 25 rad/s"):
+    with pytest.raises(InputError, match="known at the start; got a crank speed of 25 rad/s"):
         simulate(SMOOTH, LINKAGE, Drive(motor=table), duration=1.0, start=State(speed=25.0))
 
 
@@ -228,7 +228,7 @@ def test_points_are_close_enough_to_draw() -> None:
         ({"duration": 0.0}, "duration must be positive and finite; got 0 s"),
         ({"duration": math.nan}, "duration must be positive and finite; got nan s"),
         ({"turns": 0}, "turns must be a whole number of at least 1; got 0"),
-        ({"steady": 2.0}, "steady must be a share of the speed"),
+        ({"steady": 2.0}, "steady must be a fraction of the speed"),
         ({"tolerance": 1e-16}, "tolerance must lie between 1e-13 and 1e-3; got 1e-16"),
         ({"samples": 1}, "samples must be at least 8"),
     ],

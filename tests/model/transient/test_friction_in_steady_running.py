@@ -163,7 +163,7 @@ def fast(mass: float) -> Mechanism:
 
 
 def test_friction_that_grows_with_the_speed_limits_a_constant_motor_torque() -> None:
-    """The guide's force, and the heat of a turn, grow with the square of the speed."""
+    """The guide's force, and the heat of a turn, grow proportional to the square of the speed."""
     runs = [
         steady_running(fast(2.0), LINKAGE, Drive(motor=ConstantTorque(torque=torque), flywheel=5.0))
         for torque in (20.0, 80.0)

@@ -103,13 +103,13 @@ GOOD: Any = (lambda q: 20.0 + np.cos(q), lambda q: -np.sin(q))
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: SpeedOverAngle.table((0.0, 1.0, 2.0), (1.0, 1.0, 1.0)), "four at least; got 3 crank angles"),
+        (lambda: SpeedOverAngle.table((0.0, 1.0, 2.0), (1.0, 1.0, 1.0)), "at least four; got 3 crank angles"),
         (lambda: SpeedOverAngle.table((0.0, 1.0, 2.0, 7.0), (1.0,) * 4), "span less than 360 deg; got 401"),
         (lambda: SpeedOverTime.table((0.0, 1.0, 3.0, 2.0), (1.0,) * 4), "times of a table must increase"),
         (lambda: SpeedOverTime.table((0.0, 1.0, 2.0, 3.0), (1.0, 1.0, 1.0, math.nan)), "finite throughout"),
         (
             lambda: over_angle(SMOOTH, LINKAGE, SpeedOverAngle(np.cos, lambda q: -np.sin(q))),
-            "must not be zero or change its sign, .*give the motion over time",
+            "must not be zero or change its sign, .*state the motion over time",
         ),
         (
             lambda: over_angle(SMOOTH, LINKAGE, SpeedOverAngle(GOOD[0], lambda q: np.sin(q))),

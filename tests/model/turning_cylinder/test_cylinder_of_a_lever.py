@@ -110,7 +110,7 @@ def test_the_cylinder_holds_the_lever_at_both_ends_whatever_the_law(law: LeverLa
 def test_needs_suffice_as_reported() -> None:
     for field, pattern, unit, given in (
         ("supply_pressure", r"needs ([\d.]+) bar", 1e5, {"bore": 0.04, "supply_pressure": 1e6}),
-        ("rod", r"take one of ([\d.]+) mm", 1e-3, {"rod": 0.008}),
+        ("rod", r"use at least ([\d.]+) mm", 1e-3, {"rod": 0.008}),
     ):
         with pytest.raises(InputError) as refused:
             summarise(TIPPER, SLOW, Cylinder(**given))
@@ -147,9 +147,12 @@ def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
             {"bore": 0.02, "rod": 0.02},
             "the bore must exceed the piston rod; got a bore of 20 mm",
         ),
-        ({"supply_pressure": 1e6}, "a supply pressure needs the bore of the cylinder; got 10 bar and no bore"),
+        ({"supply_pressure": 1e6}, "a supply pressure needs a cylinder bore; got 10 bar and no bore"),
         ({"bore": 0.04, "supply_pressure": 1e6}, "a push of 1710.09 N needs 13.609 bar; got 10 bar; raise it"),
-        ({"rod": 0.008}, "the cylinder carries 0.2838 times its push; got a piston rod of 8 mm; take one of 10.9"),
+        (
+            {"rod": 0.008},
+            "it carries 0.2838 times the push of the cylinder; got a piston rod of 8 mm; use at least 10.9",
+        ),
         ({"bore": math.nan}, "the bore of a cylinder must be positive and finite; got nan m"),
         ({"seal_friction": -1.0}, "the friction of a seal must be zero or more and finite; got -1 N"),
     ],

@@ -126,7 +126,7 @@ def test_a_swing_across_a_dead_point_or_to_where_the_line_does_not_reach_is_refu
         lever().require_swing(math.nan, 1.0)
     with pytest.raises(AssemblyError, match=r"an offset of 700 mm and \d+\.?\d* mm at -20 deg; reduce the offset"):
         lever(offset=0.7).require_swing(math.radians(-20.0), math.radians(50.0))
-    with pytest.raises(InputError, match="both in one place, 0 mm apart; move one of them"):
+    with pytest.raises(InputError, match="pivots 0 mm apart; move one of them"):
         lever(frame=0.0)
     with pytest.raises(InputError, match=r"the crank OB of a lever must be positive and finite; got -0\.35 m"):
         lever(crank=-0.35)
@@ -135,7 +135,11 @@ def test_a_swing_across_a_dead_point_or_to_where_the_line_does_not_reach_is_refu
 @pytest.mark.parametrize(
     ("start", "end", "remedy"),
     [
-        (340.0, 50.0, "got 340 deg to 50 deg; angles count through full turns: write -20 deg for 340 deg"),
+        (
+            340.0,
+            50.0,
+            "got 340 deg to 50 deg; angles must be written without wrapping at a full turn: write -20 deg for 340 deg",
+        ),
         (-20.0, 410.0, "write 50 deg for 410 deg"),
         (-40.0, 140.0, "less than 180 deg, .*; got -40 deg to 140 deg; swing less far"),
         (0.0, 360.0, "got 0 deg to 360 deg; swing less far"),

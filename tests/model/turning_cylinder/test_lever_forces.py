@@ -119,8 +119,12 @@ def test_a_cylinder_without_mass_pushes_along_the_line_of_its_pins() -> None:
     ("law", "duration", "part"),
     [
         ("table", 1.0, "law must be 'slow' or .* 'polynomial'; got 'table'"),
-        ("slow", 2.0, "a slow swing has no duration, .*; got 2 s; name a law such as cycloidal, or leave out the dur"),
-        ("harmonic", None, "got the law harmonic and no duration; give the time of one way, or leave out the law"),
+        (
+            "slow",
+            2.0,
+            "a slow swing must not have a duration, .*; got 2 s; name a motion law such as cycloidal, or leave",
+        ),
+        ("harmonic", None, "got the law harmonic and no duration; give the time of one stroke, or leave out the law"),
         ("harmonic", math.inf, "the duration of a swing must be positive and finite; got inf s"),
         ("harmonic", 0.0, "the duration of a swing must be positive and finite; got 0 s"),
     ],

@@ -69,12 +69,16 @@ def test_two_places_of_the_slider_are_the_swing_between_their_angles(client: htt
     [
         ({"start_deg": 40.0, "end_deg": 40.0}, 422, "less than a turn apart"),
         ({"start_deg": -40.0, "end_deg": 100.0, "driver": "slider"}, 422, "dead point"),
-        ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "any other must have one"),
+        ({"start_deg": 40.0, "end_deg": 100.0, "law": "harmonic"}, 422, "any other swing must have one"),
         ({"start_deg": "nan", "end_deg": 100.0}, 422, "start_deg"),
         ({"start_deg": 40.0, "end_deg": 100.0, "driver": "rod"}, 422, "driver"),
         ({"start_deg": 40.0}, 422, "got no end_deg"),
         ({}, 422, "got no start_deg"),
-        ({"start_deg": 40.0, "slider_end_mm": 100.0}, 422, "got start_deg, slider_end_mm; give the two of one"),
+        (
+            {"start_deg": 40.0, "slider_end_mm": 100.0},
+            422,
+            "got start_deg, slider_end_mm; give only one of these pairs",
+        ),
         ({"slider_start_mm": 100.0, "slider_end_mm": 1e5}, 422, "must reach both ends"),
         ({"start_deg": 40.0, "end_deg": 100.0, "law": "table", "duration_s": 1.0}, 422, "got law table"),
     ],

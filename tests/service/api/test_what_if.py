@@ -102,7 +102,7 @@ def test_lengths_beyond_their_ranges_are_named(client: httpx.Client, solved: Sol
     ("body", "sentence"),
     [
         ({"crank_mm": 60, "rod_mm": 64, "offset_mm": 20}, "rod must exceed crank + |offset| for full rotation"),
-        ({"crank_mm": 60, "rod_mm": 64, "offset_mm": 900}, "the linkage closes at no crank angle"),
+        ({"crank_mm": 60, "rod_mm": 64, "offset_mm": 900}, "or the linkage cannot close"),
         ({"crank_mm": 0, "rod_mm": 64, "offset_mm": 20}, "crank_mm: must be at least 0.0001"),
         ({"crank_mm": 40, "rod_mm": 64}, "offset_mm: is missing, but required"),
         ({"crank_mm": 40, "rod_mm": 64, "offset_mm": 0, "angles": 2}, "curves must have 4 to 3600 crank angles"),

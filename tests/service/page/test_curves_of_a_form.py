@@ -70,7 +70,7 @@ def test_two_points_at_one_position_are_a_step_and_neither_key_nor_mouse_puts_a_
     points.nth(2).press("ArrowUp")
     assert float(job_of(page)["load"][0]["forces"][2].split()[0]) > 0.0
     page.get_by_label("points, one per line", exact=True).fill("0\t0\n20\t-600\n20\t0\n20\t5")
-    expect(page.get_by_text("Must increase, but for two at a step")).to_be_visible(timeout=30_000)
+    expect(page.get_by_text("Must increase, except for two equal ones at a step")).to_be_visible(timeout=30_000)
 
 
 def test_a_wanted_motion_begins_with_that_of_the_linkage_beside_the_form(form: Open, store: Store) -> None:

@@ -30,7 +30,7 @@ def test_the_shipped_support_is_shown_changed_and_started_with_the_two_ends_of_i
     page.get_by_label("margin from dead points", exact=True).blur()
     expect(beside).to_contain_text("to 95°")
     page.get_by_label("motion over time", exact=True).select_option("polynomial")
-    expect(page.get_by_text(re.compile("any other must have one"))).to_be_visible()
+    expect(page.get_by_text(re.compile("any other swing must have one"))).to_be_visible()
     page.get_by_label("duration of one stroke", exact=True).fill("30")
     ready(page)
     motion = text_of(page)["motion"]
