@@ -102,7 +102,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         LOAD,
         'crank_angles = ["0 deg", "400 deg"]\nforces = ["1 N", "1 N"]',
-        ["load #2", "at most 360 deg", "got 400 deg", 'give cycle = "720 deg"'],
+        ["load #2", "at most 360 deg", "got 400 deg", 'set cycle = "720 deg"'],
     ),
     # Tolerances
     ('crank = "0.05 mm"', 'crank = "0,05 mm"', ["tolerances.crank", '"0,05 mm"', "point"]),
