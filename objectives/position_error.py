@@ -30,7 +30,7 @@ POSITION_ERROR = _error(
         "The greatest error of the slider position over the cycle, with crank, rod, offset and crank angle at their "
         "tolerances in the worst combination."
     ),
-    advice="It depends on the tolerances alone; without tolerances it is undefined.",
+    advice="It depends on lengths and tolerances, not on masses, loads or speed; without tolerances it is undefined.",
     formula="max over theta of the sum of |dx/di| T_i, for i = crank, rod, offset, crank angle",
     example="0.3 mm",
     offered=("objective",),
