@@ -55,7 +55,7 @@ def _closed_forms() -> dict[str, float]:
         "inner dead centre, crank angle": inner,
         "outer dead centre, crank angle": outer,
         "stroke": 1e3 * float(FEEDER.stroke),
-        "excess angle, size": math.degrees(geometry.excess_angle(0.040, 0.064, 0.020)),
+        "excess angle, magnitude": math.degrees(geometry.excess_angle(0.040, 0.064, 0.020)),
         "time ratio": float(FEEDER.time_ratio),
         "least transmission angle": math.degrees(float(FEEDER.least_transmission_angle)),
         "crank from this stroke": 1e3 * float(crank_from_stroke(FEEDER.stroke, rod=0.064, offset=-0.020)),
@@ -78,7 +78,7 @@ def _kinematics() -> dict[str, float]:
         "slider position, second derivative": 1e3 * float(m.x_2),
         "slider velocity": float(at.slider_velocity),
         "slider acceleration": float(at.slider_acceleration),
-        "crank angle back from the position": math.degrees(float(crank_angle_at(FEEDER, m.x, solution="inward"))),
+        "crank angle recovered from the position": math.degrees(float(crank_angle_at(FEEDER, m.x, solution="inward"))),
     }
 
 
@@ -94,8 +94,8 @@ def _forces() -> dict[str, float]:
         "force of guide on slider": float(at.guide[0]),
         "shaking moment": float(shaking.moment[0]),
         "static rod force for a load of -500 N": float(static.rod_force),
-        "static guide force for the same": float(static.guide_reaction),
-        "static crank torque for the same": float(static.crank_torque),
+        "static guide force for this load": float(static.guide_reaction),
+        "static crank torque for this load": float(static.crank_torque),
     }
 
 
@@ -132,7 +132,7 @@ def _errors() -> dict[str, float]:
         "influence of the crank angle": 1e3 * float(influences.crank_angle) * math.radians(1.0),
         "position error, worst case": 1e3 * float(first.worst_case[0]),
         "position error, exact worst case": 1e3 * float(exact.size[0]),
-        "bound of what first order leaves out": 1e3 * float(first.remainder[0]),
+        "bound on the first-order error": 1e3 * float(first.remainder[0]),
         "position error, root-sum-square": 1e3 * float(first.root_sum_square[0]),
         "worst case, greatest over the cycle": 1e3
         * float(find_peaks(MACHINE, Signal.POSITION_ERROR, _DESIGN, limit=1).values[0, 0]),
