@@ -14,9 +14,9 @@ from ..model.errors import InputError
 from ..model.kernel.interruption import interrupted_by
 from .certificate.infeasible import prove_infeasible
 from .engine.engine import Engine
-from .feasibility.best import Best, best_of
+from .feasibility.best import Best, find_best_design
 from .feasibility.infeasibility import diagnose
-from .feasibility.valueless import require_finite, valueless_in_all
+from .feasibility.valueless import require_finite, valueless_quantity_text_of_variants
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, search_with
@@ -171,7 +171,7 @@ def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run)
         front = deliver(problem, evaluators, archive, run)
         if front is not None:
             return front
-    message = diagnosis.message or valueless_in_all(problem, diagnosis.feasible) or _NARROW_RANGES
+    message = diagnosis.message or valueless_quantity_text_of_variants(problem, diagnosis.feasible) or _NARROW_RANGES
     if diagnosis.message and prove_infeasible(problem, poll=partial(run.stage_reporter("proving"), 0, 1)):
         message += "; proven: no design within the ranges meets them all"
     return empty_front(problem, evaluators, run, "infeasible", message)
@@ -200,7 +200,7 @@ def _best_value(problem: Problem, *, run: Run, evaluators: list[Evaluator]) -> B
     def report(at: Progress) -> None:
         run.report_stage(_DIAGNOSING, at.round, at.rounds)
 
-    best = best_of(problem, run.checkpoints, evaluators[0].engine, report)
+    best = find_best_design(problem, run.checkpoints, evaluators[0].engine, report)
     run.report_round(_DIAGNOSING, searched_evaluators(evaluators), Archive.empty(len(run.problem.objectives)))
     return best
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ..problem.problem import Problem, require_problem
-from .missing import require
+from .missing import missing_framework_error
 
 if TYPE_CHECKING:
     import jax
@@ -27,7 +27,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
     try:
         import jax
     except ImportError as error:
-        raise require("jax", error) from None
+        raise missing_framework_error("jax", error) from None
     if not jax.config.jax_enable_x64:
         raise InputError(
             'designs need double precision; JAX is set to single; first call jax.config.update("jax_enable_x64", '
@@ -37,7 +37,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
     names = [o.quantity for o in problem.objectives] if quantities is None else list(quantities)
     problem.evaluate(np.zeros((1, width)), names)  # raises errors before tracing
 
-    def outside(x: jax.Array) -> jax.Array:
+    def evaluate_on_host(x: jax.Array) -> jax.Array:
         shape = jax.ShapeDtypeStruct((*x.shape[:-1], len(names)), np.float64)
         return jax.pure_callback(
             lambda y: problem.evaluate(np.asarray(y), names), shape, x, vmap_method="broadcast_all"
@@ -49,9 +49,9 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
             lambda y: problem.evaluate(np.asarray(y), names, gradients=True)[1], shape, x, vmap_method="broadcast_all"
         )
 
-    differentiable = jax.custom_vjp(outside)
+    differentiable = jax.custom_vjp(evaluate_on_host)
     differentiable.defvjp(
-        lambda x: (outside(x), slopes(x)),
+        lambda x: (evaluate_on_host(x), slopes(x)),
         lambda jacobian, pushed: (jax.numpy.einsum("...q,...qd->...d", pushed, jacobian),),
     )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...model.errors import InputError
 
 
-def require(framework: str, error: ImportError) -> InputError:
+def missing_framework_error(framework: str, error: ImportError) -> InputError:
     """Return an error that names the extra to install; for any other missing import, return the error itself."""
     if error.name is None or error.name.partition(".")[0] != framework:
         raise error

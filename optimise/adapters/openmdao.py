@@ -12,7 +12,7 @@ from ...model.arrays import Array
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.numbers import unit_of
 from ..problem.problem import Problem, require_problem
-from .missing import require
+from .missing import missing_framework_error
 
 if TYPE_CHECKING:
     from openmdao.api import ExplicitComponent
@@ -31,7 +31,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     try:
         from openmdao.api import ExplicitComponent
     except ImportError as error:
-        raise require("openmdao", error) from None
+        raise missing_framework_error("openmdao", error) from None
     if quantities is None:
         requested = [*(o.quantity for o in problem.objectives), *(c.quantity for c in problem.constraints)]
         quantities = list(dict.fromkeys(requested))

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...objectives.quantity import Array
 from ..problem.problem import Problem
-from .missing import require
+from .missing import missing_framework_error
 from .standard_form import standard_form
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
     try:
         from pymoo.core.problem import Problem as PymooProblem
     except ImportError as error:
-        raise require("pymoo", error) from None
+        raise missing_framework_error("pymoo", error) from None
     form = standard_form(problem, eliminate=eliminate, elimination_branch=elimination_branch)
 
     class SliderCrank(PymooProblem):  # type: ignore[misc]

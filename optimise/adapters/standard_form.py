@@ -100,14 +100,17 @@ class StandardForm:
         )
         at = {name: (values[..., i], slopes[..., i, :]) for i, name in enumerate(names)}
         f = [_as_minimised(objective, *at[objective.quantity]) for objective in self.problem.objectives]
-        g, h = _full_rotation_rows(x, self._constraints, slopes.shape[-1]) if self._turns else [], list[Row]()
+        g, h = (
+            _full_rotation_rows(x, self._constraints, slopes.shape[-1]) if self._must_rotate_fully else [],
+            list[Row](),
+        )
         for constraint in self._constraints:
             value, slope = at[constraint.quantity]
             for word, bound in reversed(constraint.sides):
                 (h if word == "equals" else g).append(_scaled_row(value, slope, bound, -1.0 if word == "min" else 1.0))
         if self._branch is not None:
             g += _computed_range_rows(x, self._branch, slopes.shape[-1])
-            f, g, h = (_without_spurious(rows, x, self.problem, self._branch) for rows in (f, g, h))
+            f, g, h = (_rule_out_spurious_roots(rows, x, self.problem, self._branch) for rows in (f, g, h))
             if gradients:
                 chain = self._branch.jacobian(points.reshape(-1, len(self.names)))
                 chain = chain.reshape(*points.shape[:-1], *chain.shape[1:])
@@ -131,8 +134,8 @@ class StandardForm:
             raise InputError(f'a gradient is needed; got {lacking[0]} with gradient = "none"; use finite differences')
         constraints: list[LinearConstraint | NonlinearConstraint] = []
         first = 0
-        if self._branch is None and self._turns:
-            share, rest = _greatest_crank_share(self._constraints), np.zeros((2, len(self.names) - 3))
+        if self._branch is None and self._must_rotate_fully:
+            share, rest = _greatest_crank_to_rod_ratio(self._constraints), np.zeros((2, len(self.names) - 3))
             turning = np.column_stack([[[1.0, -share, 1.0], [1.0, -share, -1.0]], rest])
             constraints.append(LinearConstraint(turning, -np.inf, 0.0, keep_feasible=keep_feasible))
             first = 2  # linear rows of G
@@ -155,7 +158,7 @@ class StandardForm:
 
         Raises `InputError` if no such point exists.
         """
-        if self._branch is not None or not self._turns:
+        if self._branch is not None or not self._must_rotate_fully:
             grid = self.lower + np.random.default_rng(1).random((4096, len(self.names))) * (self.upper - self.lower)
             arrays = self.arrays(grid)
             worst = np.concatenate([arrays.G, np.abs(arrays.H)], axis=1).max(axis=1, initial=-1e300)
@@ -179,7 +182,7 @@ class StandardForm:
         )
 
     @property
-    def _turns(self) -> bool:
+    def _must_rotate_fully(self) -> bool:
         return self.problem.motion is None
 
     def _column(self, objective: str | None) -> int:
@@ -301,7 +304,7 @@ def _computed_range_rows(x: Array, branch: EliminationBranch, width: int) -> lis
     return rows
 
 
-def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: EliminationBranch) -> list[Row]:
+def _rule_out_spurious_roots(rows: list[Row], x: Array, problem: Problem, branch: EliminationBranch) -> list[Row]:
     """Return columns that are infinite where an eliminated equality fails because its formula gave another root."""
     equalities = [c for c in problem.constraints if c.quantity in branch.eliminated]
     values = problem.evaluate(x, [c.quantity for c in equalities])
@@ -310,7 +313,7 @@ def _without_spurious(rows: list[Row], x: Array, problem: Problem, branch: Elimi
     return [(np.where(holds, value, np.inf), slope) for value, slope in rows]
 
 
-def _greatest_crank_share(constraints: tuple[Constraint, ...]) -> float:
+def _greatest_crank_to_rod_ratio(constraints: tuple[Constraint, ...]) -> float:
     """Greatest allowed ratio of crank + |offset| to rod."""
     floor = next((c.lower for c in constraints if c.quantity == TRANSMISSION_ANGLE.name and c.lower is not None), None)
     return 1.0 - _MARGIN if floor is None or not 0.0 < floor < 1.5 else float(np.cos(floor))
@@ -318,7 +321,7 @@ def _greatest_crank_share(constraints: tuple[Constraint, ...]) -> float:
 
 def _full_rotation_rows(x: Array, constraints: tuple[Constraint, ...], width: int) -> list[Row]:
     """Columns of G that keep the crank rotating fully: the transmission angle's floor, linear in the dimensions."""
-    share, rows = _greatest_crank_share(constraints), []
+    share, rows = _greatest_crank_to_rod_ratio(constraints), []
     for sign in (1.0, -1.0):
         size = np.abs(x[..., 1])
         slope = np.zeros((*x.shape[:-1], width))

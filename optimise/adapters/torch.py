@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ..problem.problem import Problem, require_problem
-from .missing import require
+from .missing import missing_framework_error
 
 if TYPE_CHECKING:
     import torch
@@ -28,7 +28,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     try:
         import torch
     except ImportError as error:
-        raise require("torch", error) from None
+        raise missing_framework_error("torch", error) from None
     names = [objective.quantity for objective in problem.objectives] if quantities is None else list(quantities)
     problem.evaluate(np.zeros((1, 3 + len(problem.mechanism.varying))), names)  # raises errors early
 

@@ -12,7 +12,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Sense
-from .machine import unbounded_load
+from .machine import unboundable_load_reason
 
 
 def unbounded_reason(problem: Problem, objective: Objective) -> str:
@@ -21,11 +21,11 @@ def unbounded_reason(problem: Problem, objective: Objective) -> str:
     Bounds exist for quantities with `formulas`, and for the travel and angle of a swing. Machines without friction also
     have lower bounds on peaks over the cycle or swing, and upper bounds on the least values of a swing.
     """
-    reasons = (_why_unbounded(part, objective) for part in problem.parts())
+    reasons = (_unbounded_reason_in_part(part, objective) for part in problem.parts())
     return next(filter(None, reasons), "")
 
 
-def _why_unbounded(problem: Problem, objective: Objective) -> str:
+def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
     quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
@@ -35,7 +35,7 @@ def _why_unbounded(problem: Problem, objective: Objective) -> str:
     has_forces = _has_forces(quantity)
     if has_forces and mechanism.friction.acts and not (isinstance(quantity, SwingPeak) and quantity.free):
         return f"{quantity.title} has no bound over a range of designs with friction"
-    if has_forces and (load := unbounded_load(mechanism)):
+    if has_forces and (load := unboundable_load_reason(mechanism)):
         return f"{quantity.title} has no bound over a range of designs: {load}"
     least = isinstance(quantity, SwingLeast | SwingForm) or (isinstance(quantity, BarPeak) and quantity.least)
     if objective.sense != ("maximise" if least else "minimise"):

@@ -25,11 +25,11 @@ from ..problem.violation import restated_constraints
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
 from .boundable import is_swing_form, is_usable, unbounded_reason
-from .cycle import CycleCurve, machines_of
+from .cycle import CycleCurve, machines_with_separate_peaks
 from .demands import DemandCurve, demand_curves
-from .enclosure import Enclosure, coordinate, side_by_side
+from .enclosure import Enclosure, coordinate, join_parts
 from .limits import Limits
-from .machine import Numbers, numbers_over_boxes, raw_number
+from .machine import Numbers, parameter_lookup, parameters_over_boxes
 from .swing import SwingBoxes, SwingCurve, swing_form
 
 Curve = CycleCurve | SwingCurve | DemandCurve
@@ -87,7 +87,7 @@ class Boxes:
         """Return the curves whose greatest or least value is the quantity; empty for a closed form."""
         quantity = self.problem.quantity(name)
         if isinstance(quantity, CyclePeak):
-            machines = machines_of(self.mechanism, quantity.signal)
+            machines = machines_with_separate_peaks(self.mechanism, quantity.signal)
             return [CycleCurve(machine, quantity.signal, during=quantity.during) for machine in machines]
         if isinstance(quantity, BarPeak):
             return demand_curves(self.mechanism, quantity)
@@ -100,11 +100,13 @@ class Boxes:
         with np.errstate(all="ignore"):
             n, k = lower.shape
             limits = Limits(n, k)
-            numbers = self._numbers(lower, upper, limits)
+            numbers = self._machine_parameters(lower, upper, limits)
             r, l, e = (numbers[slot] for slot in range(3))
-            limits.add((r + e * self.branch.sign - l) / l if self.swing is None else self.swing.opening(numbers))
+            limits.require_nonpositive(
+                (r + e * self.branch.sign - l) / l if self.swing is None else self.swing.closure_violation(numbers)
+            )
             for constraint in self.cheap:
-                limits.hold(constraint, *self._closed(constraint.quantity, numbers))
+                limits.add_constraint(constraint, *self._closed_form_bounds(constraint.quantity, numbers))
             middle = self.branch.dimensions(0.5 * (lower + upper))
             moves = moving(self.mechanism, self.problem.motion, middle)
             curves: dict[str, Enclosure] = {}
@@ -117,7 +119,7 @@ class Boxes:
                     if constraint.quantity == name:
                         side = "lower" if curves_of_quantity[0].least else "upper"
                         held = Constraint(quantity=name, **{side: getattr(constraint, side)})
-                        limits.hold_curve(held, curves[name])
+                        limits.add_curve_constraint(held, curves[name])
             low, high = limits.contracted()
             corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
             for column, objective in enumerate(self.objectives):
@@ -126,7 +128,7 @@ class Boxes:
                     value = curves[name]
                     corner[:, column] = _curve_bound(value, low, high, least=self.curves[name][0].least)
                 else:
-                    value, known_least, known_greatest = self._closed(name, numbers)
+                    value, known_least, known_greatest = self._closed_form_bounds(name, numbers)
                     lowest, highest = (end.max(axis=1) for end in value.ends(low, high))
                     lowest = lowest if known_least is None else np.maximum(lowest, known_least)
                     highest = highest if known_greatest is None else np.minimum(highest, known_greatest)
@@ -134,8 +136,8 @@ class Boxes:
                 wide = np.abs(value.slopes).max(axis=2) * (high - low) / self.span[column]
                 smear = np.fmax(smear, wide.T)
             centre, half = 0.5 * (lower + upper), 0.5 * (upper - lower)
-            trial = limits.feasible_points(low, high)
-            smear = np.fmax(smear, limits.smear(low, high))
+            trial = limits.trial_points(low, high)
+            smear = np.fmax(smear, limits.width_effects(low, high))
             return Bounded(
                 limits.alive,
                 np.clip(centre + half * low.T, lower, upper),
@@ -145,7 +147,7 @@ class Boxes:
                 np.clip(centre + half * trial.T, lower, upper),
             )
 
-    def _numbers(self, lower: Array, upper: Array, limits: Limits) -> Numbers:
+    def _machine_parameters(self, lower: Array, upper: Array, limits: Limits) -> Numbers:
         """Return the machine parameters that designs set, (n, 1); confine computed dimensions to their bounds."""
         n, k = lower.shape
         branch = self.branch
@@ -165,23 +167,23 @@ class Boxes:
             computed = step.formula(*sources) if sources else everywhere(float(step.formula()))
             bounds = branch.bounds[step.target]
             scale = max(bounds.upper, 1e-300)
-            limits.add((computed - bounds.upper) * (1.0 / scale))
-            limits.add((bounds.lower - computed) * (1.0 / scale))
+            limits.require_nonpositive((computed - bounds.upper) * (1.0 / scale))
+            limits.require_nonpositive((bounds.lower - computed) * (1.0 / scale))
             turning = self.swing is None
-            ends = _computed_ends(step.target, unknowns if turning else {}, bounds, self.lean, n)
+            ends = _ends_of_computed_dimension(step.target, unknowns if turning else {}, bounds, self.lean, n)
             unknowns[step.target] = computed.confined(*ends)
         unknowns["offset"] = unknowns["offset"] * branch.sign
-        return numbers_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
+        return parameters_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
 
-    def _closed(self, name: str, numbers: Numbers) -> tuple[Enclosure, Array | None, Array | None]:
+    def _closed_form_bounds(self, name: str, numbers: Numbers) -> tuple[Enclosure, Array | None, Array | None]:
         """Return the closed forms of a quantity (n, forms), and further lower and upper bounds."""
         quantity = self.problem.quantity(name)
         if is_swing_form(quantity):
             return swing_form(self.mechanism, quantity, numbers), None, None
         r, l, e = (numbers[slot] for slot in range(3))
-        number = raw_number(self.mechanism, numbers)
+        number = parameter_lookup(self.mechanism, numbers)
         forms = [formula(number) for formula in quantity.formulas(self.mechanism)]
-        value = reduce(side_by_side, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
+        value = reduce(join_parts, [form if isinstance(form, Enclosure) else 0.0 * r + form for form in forms])
         greatest = value.ends()[1].max(axis=1)
         if not isinstance(quantity, ClosedFormQuantity) or quantity.rises is None:
             return value, None, greatest
@@ -211,14 +213,14 @@ def _enclose_curves(curves: Sequence[Curve], part: Numbers, middle: Array, moves
     """
     enclosures = []
     for curve in curves:
-        places = np.tile(curve.anywhere, (len(middle), 1))
+        positions = np.tile(curve.default_position, (len(middle), 1))
         if moves.any():
-            places[moves] = curve.places(middle[moves])
-        enclosures.append(curve.enclose(part, places, middle))
-    return reduce(side_by_side, enclosures)
+            positions[moves] = curve.peak_positions(middle[moves])
+        enclosures.append(curve.enclose(part, positions, middle))
+    return reduce(join_parts, enclosures)
 
 
-def _computed_ends(
+def _ends_of_computed_dimension(
     name: str, unknowns: dict[str, Enclosure], bounds: Range, lean: float, n: int
 ) -> tuple[Array, Array]:
     """Return the lower and upper end (n, 1) of a computed dimension from its bounds and r + |e| <= lean l."""

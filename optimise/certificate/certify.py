@@ -60,13 +60,13 @@ def certify_designs(
         raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
     chosen = np.array(variants if len(variants) else [0] * len(dimensions), dtype=np.int64)
     if problem.discrete:
-        problem, chosen = _enumerated(problem, chosen)
+        problem, chosen = _with_variant_per_combination(problem, chosen)
     search = Search(problem, dimensions, chosen, epsilon, seconds, cancelled)
     search.run(progress)
     return search.certificate()
 
 
-def _enumerated(problem: Problem, variants: IntArray) -> tuple[Problem, IntArray]:
+def _with_variant_per_combination(problem: Problem, variants: IntArray) -> tuple[Problem, IntArray]:
     """Return a problem with a variant for each combination of listed values, and each design's variant in that problem.
 
     A design's variant may be any combination of its choices: the design itself holds their values.

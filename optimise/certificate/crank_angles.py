@@ -18,7 +18,7 @@ _ON_END = 1e-7  # fraction of the stroke; a point closer than this to a dead cen
 _AT_REST = 1e-6  # relative to the crank: |x'| below it means a dead centre
 
 
-def crank_pin_of(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
+def crank_pin_coefficients(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
     """Return q and h for a slider position x; the crank pin is at q B + h B'.
 
     B is the slider pin, B' is B turned by 90 degrees, q = (r^2 + B^2 - l^2) / (2 B^2) and h^2 = r^2 / B^2 - q^2. side:
@@ -29,9 +29,9 @@ def crank_pin_of(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
     return q, np.sqrt(d.r * d.r / square - q * q) * side
 
 
-def crank_at(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
-    """Return sine and cosine of the crank angle for the slider position x, see `crank_pin_of`."""
-    q, h = crank_pin_of(d, x, side)
+def crank_sine_and_cosine(d: Design, x: Any, side: Any) -> tuple[Any, Any]:
+    """Return sine and cosine of the crank angle for the slider position x, see `crank_pin_coefficients`."""
+    q, h = crank_pin_coefficients(d, x, side)
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
@@ -52,7 +52,7 @@ def angle_near(d: Design, x: Enclosure, sine: Any, cosine: Any, side: Array, nea
     return Enclosure(off.centre + middle, off.slopes, np.where(is_sure, off.rest, np.nan), off.empty)
 
 
-def at_share(
+def crank_at_stroke_fraction(
     d: Design, sine: Array, cosine: Array, middle: Array, start: float, end: float
 ) -> tuple[Enclosure, Enclosure]:
     """Return sine and cosine of the crank angle at the same fraction of the stroke as in the middle design."""
@@ -62,7 +62,7 @@ def at_share(
     share = np.clip((at.x * d.branch - inner) / (outer - inner), start, end)
     side = np.where(at.x * r * sine >= e * r * cosine, 1.0, -1.0)
     x = (d.inner + (d.outer - d.inner) * np.clip(share, _ON_END, 1.0 - _ON_END)) * d.branch
-    q, h = crank_pin_of(d, x, side)
+    q, h = crank_pin_coefficients(d, x, side)
     on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
     q = select(on_inner, -d.r / (d.l - d.r), select(on_outer, d.r / (d.l + d.r), q))
     h = select(on_inner | on_outer, 0.0 * d.r, h)
@@ -77,7 +77,7 @@ def dead_centre_angle(d: Design, far: Mask) -> Enclosure:
     return angle if d.branch > 0.0 else math.pi - angle
 
 
-def at_dead_centre(
+def follow_dead_centre(
     d: Design, sine: Array, cosine: Array, angle: Array, middle: Array
 ) -> tuple[Mask, Enclosure, Enclosure, Any]:
     """Return a mask of middle designs at a dead centre, with sine, cosine and angle that follow the dead centre."""

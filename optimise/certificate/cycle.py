@@ -35,15 +35,15 @@ from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_mo
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
-from .crank_angles import at_dead_centre, at_share, dead_centre_angle
-from .enclosure import Enclosure, interval, select, side_by_side
+from .crank_angles import crank_at_stroke_fraction, dead_centre_angle, follow_dead_centre
+from .enclosure import Enclosure, interval, join_parts, select
 from .machine import BoxMachine, Numbers
 
 _SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad, distances from a step
 _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
 
-def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
+def machines_with_separate_peaks(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     """Return machines whose highest peak of a signal equals the whole machine's peak.
 
     If the cycle of a single crank has two turns, each turn is a separate machine. So is each cylinder, if the signal
@@ -54,14 +54,16 @@ def machines_of(mechanism: Mechanism, kind: Signal) -> tuple[Mechanism, ...]:
     alike = equivalent_single_cranks(mechanism, kind)
     every = mechanism.arrangement
     if alike:
-        return tuple(part for single in alike for part in machines_of(single, kind))
+        return tuple(part for single in alike for part in machines_with_separate_peaks(single, kind))
     if kind in SUMS or every is None or len(every.phases) == 1:
         return (mechanism,)
     apart = (
         Arrangement(phases=(phase,), banks=(every.bank(k),), places=(every.place(k),))
         for k, phase in enumerate(every.phases)
     )
-    return tuple(part for one in apart for part in machines_of(replace(mechanism, arrangement=one), kind))
+    return tuple(
+        part for one in apart for part in machines_with_separate_peaks(replace(mechanism, arrangement=one), kind)
+    )
 
 
 Read = Callable[[Forces, Any, Any, Motion, Design], tuple[Any, Any]]
@@ -72,7 +74,7 @@ class CycleCurve:
     """One signal of a machine over boxes of designs. Friction is excluded: its forces have no plain formula."""
 
     least = False
-    anywhere: tuple[float, ...] = (0.5 * math.pi,)
+    default_position: tuple[float, ...] = (0.5 * math.pi,)
     """Position for boxes whose middle design does not rotate fully."""
 
     def __init__(self, mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> None:
@@ -91,14 +93,14 @@ class CycleCurve:
         self.steps = self.kind.needs_forces and any(load.steps for load in mechanism.fullest.loads)
         self.shares = self.partial and self.kind in _ERRORS
 
-    def places(self, designs: Array) -> Array:
+    def peak_positions(self, designs: Array) -> Array:
         """Return each design's crank angle at the peak, rad, (n, 1); for a crankshaft, the shaft's angle."""
         if screens(self.mechanism, self.kind, during=self.during):
             return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
         angles = find_peaks(self.mechanism, self.kind, designs, during=self.during, limit=1).angles
         return np.where(np.isfinite(angles), angles, 0.0)
 
-    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+    def enclose(self, numbers: Numbers, positions: Array, middle: Array) -> Enclosure:
         """Return the signal (n, p) at crank angles (n, 1). numbers: (n, 1). middle: middle designs (n, 3 + k).
 
         The result has two parts where the signal may jump at the angle, and three where a table steps. The rest is NaN
@@ -106,13 +108,13 @@ class CycleCurve:
         """
         sums = [
             pair
-            for angles in self.angles_at_steps(numbers, places, middle)
-            for pair in self.sums(numbers, angles, middle)
+            for angles in self.angles_beside_load_steps(numbers, positions, middle)
+            for pair in self.sum_over_cylinders(numbers, angles, middle)
         ]
         sizes: list[Enclosure] = [np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x) for x, y in sums]
-        return reduce(side_by_side, sizes)
+        return reduce(join_parts, sizes)
 
-    def angles_at_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
+    def angles_beside_load_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
         """Return angles (n, 1) and, if loads have steps, angles on both sides of each step.
 
         A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
@@ -125,14 +127,16 @@ class CycleCurve:
         away = np.minimum(width / np.maximum(pace, 1e-3 * r) + width / r + _SIDE_STEP, _FARTHEST)
         return [angles, angles - away, angles + away]
 
-    def sums(self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None) -> list[tuple[Any, Any]]:
+    def sum_over_cylinders(
+        self, numbers: Numbers, angles: Array, middle: Array, read: Read | None = None
+    ) -> list[tuple[Any, Any]]:
         """Return the signal's two components, or what `read` takes from the joint forces, summed over all cylinders.
 
         Two pairs if it jumps at the angle, as only a single cylinder does at its dead centre.
         """
         designs = [machine.design(numbers) for machine in self.machines]
         read = read or self._component
-        parts = [self._member_parts(member, designs, angles, middle, read) for member in self.members]
+        parts = [self._cylinder_components(member, designs, angles, middle, read) for member in self.members]
         sums: list[tuple[Any, Any]] = []
         for pairs in zip(*parts, strict=True):
             xs, ys = zip(*pairs, strict=True)
@@ -143,21 +147,21 @@ class CycleCurve:
         x, y = vector_of_force(int(self.kind), f, m, d)
         return x, y
 
-    def _member_parts(
+    def _cylinder_components(
         self, member: Member, designs: list[tuple[Design, Any]], angles: Array, middle: Array, read: Read
     ) -> list[tuple[Enclosure, Enclosure]]:
         """Return a cylinder's components at shaft angles; for both strokes if they jump at the angle."""
-        d = self._moving(designs[0][0], member, angles)
+        d = self._design_in_motion(designs[0][0], member, angles)
         local: Any = angles + member.lead
         sine: Any = np.sin(local)
         cosine: Any = np.cos(local)
         if self.shares:
-            sine, cosine = at_share(d, sine, cosine, middle, self.watch.start, self.watch.end)
+            sine, cosine = crank_at_stroke_fraction(d, sine, cosine, middle, self.watch.start, self.watch.end)
         jump = None
         if self.jumps:
-            jump, sine, cosine, local = at_dead_centre(d, sine, cosine, local, middle)
+            jump, sine, cosine, local = follow_dead_centre(d, sine, cosine, local, middle)
             if jump.any() and self.mechanism.speed_profile is not None:
-                d = self._moving(designs[0][0], member, local - member.lead)
+                d = self._design_in_motion(designs[0][0], member, local - member.lead)
         m = design_motion(sine, cosine, d)
         outward = m.x_1 * (d.branch * self.mechanism.direction)
         place = (sine, cosine, local, m)
@@ -166,15 +170,15 @@ class CycleCurve:
             sides = [
                 select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
             ]
-            return [self._components(member, designs, d, place, side, read) for side in sides]
-        x, y = self._components(member, designs, d, place, outward, read)
+            return [self._cylinder_components_on_stroke(member, designs, d, place, side, read) for side in sides]
+        x, y = self._cylinder_components_on_stroke(member, designs, d, place, outward, read)
         if self.partial and not self.shares:
             low, high = outward.ends()
             counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
             x = Enclosure(x.centre, x.slopes, np.where(counts, x.rest, np.nan), x.empty)
         return [(x, y)]
 
-    def _moving(self, d: Design, member: Member, angles: Array | Enclosure) -> Design:
+    def _design_in_motion(self, d: Design, member: Member, angles: Array | Enclosure) -> Design:
         """Return a design with the speed and acceleration at shaft angles, and gravity in the axes of its bank."""
         if member.bank:
             c, s = math.cos(member.bank), math.sin(member.bank)
@@ -182,11 +186,11 @@ class CycleCurve:
             d = d._replace(gravity_x=c * x + s * y, gravity_y=c * y - s * x)
         if self.mechanism.speed_profile is None:
             return d
-        ratio, slope, _ = _ratios(self.pace, angles)
+        ratio, slope, _ = _speed_ratio_and_derivatives(self.pace, angles)
         square = d.speed * d.speed
         return d._replace(speed=d.speed * ratio, acceleration=d.acceleration + square * (ratio * slope))
 
-    def _components(
+    def _cylinder_components_on_stroke(
         self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         """Return the components of one cylinder; a shaking signal is in the axes of the shaft."""
@@ -196,17 +200,17 @@ class CycleCurve:
             return signal_of_motion(int(kind), sine, cosine, m, d), nothing
         if kind.needs_forces:
             vectors = [
-                self._forces(machine, d, block, place, outward, read)
+                self._force_components(machine, d, block, place, outward, read)
                 for machine, (_, block) in zip(self.machines, designs, strict=True)
             ]
             if self.turns == 1 or len(vectors) == 1:
                 return vectors[0]
-            first, known = self._first_half(d, local)
+            first, known = self._turn_masks(d, local)
             x, y = (select(first, *pair) for pair in zip(*vectors, strict=True))
             return Enclosure(x.centre, x.slopes, np.where(known, x.rest, np.nan), x.empty), y
         rate = 0.0
         if kind is Signal.SLIDER_JERK and self.mechanism.speed_profile is not None:
-            ratio, slope, bend = _ratios(self.pace, local - member.lead)
+            ratio, slope, bend = _speed_ratio_and_derivatives(self.pace, local - member.lead)
             plain = designs[0][0].speed
             rate = plain * plain * (slope * slope + ratio * bend)
         x, y = (nothing + part for part in vector_of_motion(int(kind), sine, cosine, m, d, rate))
@@ -215,7 +219,7 @@ class CycleCurve:
             x, y = c * x - s * y, s * x + c * y
         return (-member.place * y, member.place * x) if kind is Signal.ROCKING_COUPLE else (x, y)
 
-    def _forces(
+    def _force_components(
         self, machine: BoxMachine, d: Design, block: Any, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         sine, cosine, local, m = place
@@ -224,10 +228,10 @@ class CycleCurve:
         if self.kind not in (Signal.TORQUE, Signal.POWER):
             x, y = read(f, sine, cosine, m, d)
             return x, 0.0 * outward + y
-        torque = f.torque - machine.on_crank(m, d, block, local, outward, self.mechanism.direction)
+        torque = f.torque - machine.crank_torque_of_loads(m, d, block, local, outward, self.mechanism.direction)
         return (torque * d.speed if self.kind is Signal.POWER else torque), 0.0 * outward
 
-    def _first_half(self, d: Design, local: Any) -> tuple[Mask, Mask]:
+    def _turn_masks(self, d: Design, local: Any) -> tuple[Mask, Mask]:
         """Return two masks: angles in the first of two turns, and boxes that lie within one turn."""
         (datum,) = {load.cycle_datum for load in self.mechanism.loads if load.cycle_turns > 1}
         way = 1.0 if datum == "zero crank angle" else self.mechanism.direction
@@ -252,7 +256,7 @@ class CycleCurve:
             return np.mod(np.floor(low), 2.0) == 0.0, np.floor(low) == np.floor(high)
 
 
-def _ratios(pace: Any, angles: Any) -> tuple[Any, Any, Any]:
+def _speed_ratio_and_derivatives(pace: Any, angles: Any) -> tuple[Any, Any, Any]:
     """Return p of a speed profile and its first two derivatives at shaft angles (n, p).
 
     Over an enclosed angle: the tangent at its centre, and bounds on the second and third derivatives for the rest.
@@ -261,7 +265,7 @@ def _ratios(pace: Any, angles: Any) -> tuple[Any, Any, Any]:
         found = [speed_ratio_at(float(angle), pace)[:3] for angle in angles.ravel()]
         p, slope, bend = np.array(found).T.reshape(3, *angles.shape)
         return p, slope, bend
-    p, slope, bend = _ratios(pace, angles.centre)
+    p, slope, bend = _speed_ratio_and_derivatives(pace, angles.centre)
     k = np.arange(1.0, len(pace.cosines) + 1.0)
     size = np.abs(pace.cosines) + np.abs(pace.sines)
     second, third = float((k**2 * size).sum()), float((k**3 * size).sum())

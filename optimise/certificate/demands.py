@@ -29,35 +29,39 @@ from ...model.strength.section_forces import ROD, at_share, stress_along
 from ...model.strength.stress_cycle import stress_peaks
 from ...model.strength.stress_locations import Eye, StressLocation, eye_factors
 from ...objectives.bars import FORCE, BarPeak, Criteria, Demand
-from .cycle import CycleCurve, machines_of
-from .enclosure import Enclosure, side_by_side
-from .machine import Numbers, raw_number
+from .cycle import CycleCurve, machines_with_separate_peaks
+from .enclosure import Enclosure, join_parts
+from .machine import Numbers, parameter_lookup
 
 
 class StressCurve(CycleCurve):
     """Greatest p sigma - q sigma at a location over one turn of a machine; `stress_cycle` defines it."""
 
-    anywhere = (1.0, 1.0, np.pi / 2.0, np.pi / 2.0)
+    default_position = (1.0, 1.0, np.pi / 2.0, np.pi / 2.0)
 
     def __init__(self, mechanism: Mechanism, location: StressLocation, criteria: Criteria) -> None:
         super().__init__(mechanism, Signal.CRANK_PIN_FORCE)
         self.location, self.criteria = location, criteria
 
-    def places(self, designs: Array) -> Array:
+    def peak_positions(self, designs: Array) -> Array:
         """Return each design's critical point (n, 4): fraction of the length, side, and both crank angles, rad."""
         (peaks,) = stress_peaks(self.mechanism, (self.location,), designs, np.array(self.criteria), limit=1)
-        return np.where(np.isfinite(peaks.places[:, 0]), peaks.places[:, 0], self.anywhere)
+        return np.where(np.isfinite(peaks.places[:, 0]), peaks.places[:, 0], self.default_position)
 
-    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+    def enclose(self, numbers: Numbers, positions: Array, middle: Array) -> Enclosure:
         """Return the value (n, p) of each criterion at critical points (n, 4); see `CycleCurve.enclose`."""
-        share, side, first, second = (places[:, column : column + 1] for column in range(4))
+        share, side, first, second = (positions[:, column : column + 1] for column in range(4))
 
-        def read(f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
-            return self._stress((sine, cosine, m, d, f), raw_number(self.mechanism, numbers), share, side), 0.0
+        def stress_component(f: Forces, sine: Any, cosine: Any, m: Motion, d: Design) -> tuple[Any, Any]:
+            return self._stress((sine, cosine, m, d, f), parameter_lookup(self.mechanism, numbers), share, side), 0.0
 
         def stresses(angles: Array) -> list[Enclosure]:
-            near_steps = self.angles_at_steps(numbers, angles, middle)
-            return [stress for at in near_steps for stress, _ in self.sums(numbers, at, middle, read)]
+            near_steps = self.angles_beside_load_steps(numbers, angles, middle)
+            return [
+                stress
+                for at in near_steps
+                for stress, _ in self.sum_over_cylinders(numbers, at, middle, stress_component)
+            ]
 
         highs = stresses(first) if any(p for p, _ in self.criteria) else []
         lows = stresses(second) if any(q for _, q in self.criteria) else []
@@ -67,7 +71,7 @@ class StressCurve(CycleCurve):
                 values += [high * p - low * q for high, low in product(highs, lows)]
             else:  # each criterion has its own angle; the point's other angle is not at a peak
                 values += [high * p for high in highs] if p else [-low * q for low in lows]
-        return reduce(side_by_side, values)
+        return reduce(join_parts, values)
 
     def _stress(
         self, state: tuple[Any, Any, Any, Any, Any], number: Callable[[int], Any], share: Array, side: Array
@@ -93,16 +97,16 @@ class DemandCurve:
     """One load demand: the greatest scale peak / section or, with `least`, the least scale section / peak."""
 
     def __init__(self, peak: CycleCurve, demand: Demand, *, least: bool) -> None:
-        self.peak, self.demand, self.least, self.anywhere = peak, demand, least, peak.anywhere
+        self.peak, self.demand, self.least, self.default_position = peak, demand, least, peak.default_position
 
-    def places(self, designs: Array) -> Array:
+    def peak_positions(self, designs: Array) -> Array:
         """Return the position of each design's peak."""
-        return self.peak.places(designs)
+        return self.peak.peak_positions(designs)
 
-    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+    def enclose(self, numbers: Numbers, positions: Array, middle: Array) -> Enclosure:
         """Return the value (n, p) at peak positions; NaN where the peak may not be positive."""
-        peak, (_, section, scale, _) = self.peak.enclose(numbers, places, middle), self.demand
-        size: Any = 1.0 if section is None else section(raw_number(self.peak.mechanism, numbers))
+        peak, (_, section, scale, _) = self.peak.enclose(numbers, positions, middle), self.demand
+        size: Any = 1.0 if section is None else section(parameter_lookup(self.peak.mechanism, numbers))
         value: Enclosure
         if self.least:
             size = 0.5 * (size + magnitude(size))
@@ -122,7 +126,7 @@ def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
         peaks: list[CycleCurve]
         if isinstance(demand.peak, str):
             signal = FORCE[demand.peak]
-            peaks = [CycleCurve(machine, signal) for machine in machines_of(mechanism, signal)]
+            peaks = [CycleCurve(machine, signal) for machine in machines_with_separate_peaks(mechanism, signal)]
         else:
             peaks = [StressCurve(turn, demand.peak, quantity.criteria(mechanism)) for turn in turns]
         curves += [DemandCurve(peak, demand, least=quantity.least) for peak in peaks]

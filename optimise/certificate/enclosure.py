@@ -50,7 +50,7 @@ class Enclosure:
         return self._radius
 
     @property
-    def size(self) -> Array:
+    def greatest_magnitude(self) -> Array:
         """Upper bound on the absolute value."""
         if self._size is None:
             self._size = np.asarray(np.abs(self.centre) + self.radius)
@@ -68,7 +68,7 @@ class Enclosure:
                 low, high = low[..., None], high[..., None]
             at_low, at_high = self.slopes * low, self.slopes * high
             lowest, highest = np.minimum(at_low, at_high).sum(axis=0), np.maximum(at_low, at_high).sum(axis=0)
-        margin = self.rest + INFLATION * self.size
+        margin = self.rest + INFLATION * self.greatest_magnitude
         least, greatest = self.centre + lowest - margin, self.centre + highest + margin
         is_finite = np.isfinite(least) & np.isfinite(greatest)
         return np.where(is_finite, least, -np.inf), np.where(is_finite, greatest, np.inf)
@@ -95,13 +95,19 @@ class Enclosure:
         height = np.where(straddles_zero, -2.0 * low * high / width, 0.0)
         chord = self._scaled(slope)
         return Enclosure(
-            chord.centre + 0.5 * height, chord.slopes, chord.rest + 0.5 * height + UNIT * self.size, self.empty
+            chord.centre + 0.5 * height,
+            chord.slopes,
+            chord.rest + 0.5 * height + UNIT * self.greatest_magnitude,
+            self.empty,
         )
 
     def _scaled(self, factor: Any) -> Enclosure:
         weight = np.abs(factor)
         return Enclosure(
-            self.centre * factor, self.slopes * factor, (self.rest + UNIT * self.size) * weight, self.empty
+            self.centre * factor,
+            self.slopes * factor,
+            (self.rest + UNIT * self.greatest_magnitude) * weight,
+            self.empty,
         )
 
     def __neg__(self) -> Enclosure:
@@ -112,11 +118,11 @@ class Enclosure:
             return Enclosure(
                 self.centre + other.centre,
                 self.slopes + other.slopes,
-                self.rest + other.rest + UNIT * (self.size + other.size),
+                self.rest + other.rest + UNIT * (self.greatest_magnitude + other.greatest_magnitude),
                 _merge_empty(self.empty, other.empty),
             )
         centre = self.centre + other
-        rest = self.rest + UNIT * (self.size + np.abs(other))
+        rest = self.rest + UNIT * (self.greatest_magnitude + np.abs(other))
         return Enclosure(centre, _broadcast_slopes(self.slopes, centre), rest, self.empty)
 
     __radd__ = __add__
@@ -137,7 +143,7 @@ class Enclosure:
         return Enclosure(
             a * b,
             a * other.slopes + b * self.slopes,
-            rest + UNIT * (self.size * other.size),
+            rest + UNIT * (self.greatest_magnitude * other.greatest_magnitude),
             _merge_empty(self.empty, other.empty),
         )
 
@@ -157,7 +163,7 @@ class Enclosure:
     def _squared(self) -> Enclosure:
         """(c + t)^2 = c^2 + 2 c t + t^2 with t^2 in [0, radius^2]."""
         half = 0.5 * self.radius * self.radius
-        rest = 2.0 * np.abs(self.centre) * self.rest + half + UNIT * self.size**2
+        rest = 2.0 * np.abs(self.centre) * self.rest + half + UNIT * self.greatest_magnitude**2
         return Enclosure(self.centre * self.centre + half, 2.0 * self.centre * self.slopes, rest, self.empty)
 
     def _inverted(self) -> Enclosure:
@@ -195,7 +201,7 @@ class Enclosure:
 
     def _arcsine(self) -> Enclosure:
         """Tangent at the centre; the second derivative x / (1 - x^2)^(3/2) grows with |x|."""
-        largest = self.size
+        largest = self.greatest_magnitude
         clear = largest < 1.0
         c, x = np.where(clear, self.centre, 0.0), np.where(clear, largest, 0.0)
         slope = 1.0 / np.sqrt(1.0 - c * c)
@@ -219,7 +225,7 @@ class Enclosure:
         """
         sine, cosine = np.sin(self.centre), np.cos(self.centre)
         rest = self.rest * np.abs(cosine) + 0.5 * self.radius**2 * (1.0 + INFLATION)
-        rest = rest + 8.0 * UNIT * (1.0 + self.size)
+        rest = rest + 8.0 * UNIT * (1.0 + self.greatest_magnitude)
         one = np.ones_like(sine)
         return Enclosure(sine, self.slopes * cosine, rest, self.empty).confined(-one, one)
 
@@ -268,7 +274,7 @@ def sign_of(value: Enclosure) -> Array:
     return np.where(low > 0.0, 1.0, np.where(high < 0.0, -1.0, np.nan))
 
 
-def side_by_side(left: Enclosure, right: Enclosure) -> Enclosure:
+def join_parts(left: Enclosure, right: Enclosure) -> Enclosure:
     """Return the parts (n, p) of two numbers side by side."""
     empty = None if left.empty is None or right.empty is None else left.empty & right.empty
     return Enclosure(

@@ -59,7 +59,7 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         lowest = np.where(between_ends, np.minimum(off, 0.0), 0.0) - 0.125 * bend * (last - first) ** 2
         highest = np.where(between_ends, np.maximum(off, 0.0), 0.0)
     chord = (share - first) * slope + (at_first + 0.5 * (highest + lowest))
-    most_of = UNIT * (load.high + np.abs(slope) * share.size)
+    most_of = UNIT * (load.high + np.abs(slope) * share.greatest_magnitude)
     return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 8.0 * most_of, chord.empty)
 
 

@@ -13,7 +13,7 @@ from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.evaluation import Evaluator
 from .boundable import is_usable
 from .boxes import Boxes
-from .tree import Tree, pool
+from .tree import Tree, bounding_threads
 
 SECONDS = 5.0
 _BATCH = 2048
@@ -35,7 +35,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
             for branch in elimination_branches(problem)
         ]
     )
-    with pool() as threads:
+    with bounding_threads() as threads:
         fresh = [(index, *tree.initial_boxes(index)) for index in range(len(tree.branches))]
         while fresh:
             for index, lower, upper in fresh:
@@ -48,7 +48,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
             if not len(tree):
                 return True
             late = time.perf_counter() - start > seconds or tree.bounded > _MOST
-            rows = tree.largest(_BATCH)
+            rows = tree.rows_of_largest_excess(_BATCH)
             if late or not len(rows):
                 return False
             fresh = tree.halved(rows)

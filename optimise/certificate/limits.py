@@ -21,13 +21,13 @@ class Limits:
         self.rows: list[tuple[Array, Array, Array]] = []  # centre (n,), slopes (k, n), rest (n,)
         self.k = k
 
-    def add(self, value: Enclosure) -> None:
+    def require_nonpositive(self, value: Enclosure) -> None:
         """Require each part of a number (n, p) to be defined and at most `FEASIBLE` somewhere in the box."""
         if value.empty is not None:
             self.alive &= ~value.empty.any(axis=1)
         self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
         for part in range(value.centre.shape[1]):
-            is_finite = np.isfinite(value.size[:, part])
+            is_finite = np.isfinite(value.greatest_magnitude[:, part])
             self.rows.append(
                 (
                     np.where(is_finite, value.centre[:, part], -np.inf),
@@ -36,27 +36,29 @@ class Limits:
                 )
             )
 
-    def hold(self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None) -> None:
+    def add_constraint(
+        self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None
+    ) -> None:
         """Require a constraint on the greatest part of a quantity. least, greatest: further bounds on it."""
         upper, lower = constraint.upper, constraint.lower
         if upper is not None:
             scale = abs(upper) or 1.0
-            self.add((value - upper) * (1.0 / scale))
+            self.require_nonpositive((value - upper) * (1.0 / scale))
             if least is not None:
                 self.alive &= ~(least - upper > FEASIBLE * scale)
         if lower is not None:
             scale = abs(lower) or 1.0
             if value.centre.shape[1] == 1:
-                self.add((lower - value) * (1.0 / scale))
+                self.require_nonpositive((lower - value) * (1.0 / scale))
             if greatest is not None:
                 self.alive &= ~(lower - greatest > FEASIBLE * scale)
 
-    def hold_curve(self, constraint: Constraint, value: Enclosure) -> None:
+    def add_curve_constraint(self, constraint: Constraint, value: Enclosure) -> None:
         """Require an upper bound on every part of a greatest value, or a lower bound on a least value."""
         if constraint.lower is None:
-            self.hold(constraint, value, None, None)
+            self.add_constraint(constraint, value, None, None)
         else:
-            self.add((constraint.lower - value) * (1.0 / (abs(constraint.lower) or 1.0)))
+            self.require_nonpositive((constraint.lower - value) * (1.0 / (abs(constraint.lower) or 1.0)))
 
     def contracted(self) -> tuple[Array, Array]:
         """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
@@ -74,7 +76,7 @@ class Limits:
         self.alive &= (low <= high).all(axis=0)
         return np.minimum(low, 1.0), np.maximum(high, -1.0)
 
-    def feasible_points(self, low: Array, high: Array) -> Array:
+    def trial_points(self, low: Array, high: Array) -> Array:
         """Return points (k, n) moved from the middle across the conditions that fail there, one after another."""
         d = 0.5 * (low + high)
         for _ in range(_ROUNDS):
@@ -85,7 +87,7 @@ class Limits:
                 d = np.clip(d - step * slopes, low, high)
         return d
 
-    def smear(self, low: Array, high: Array) -> Array:
+    def width_effects(self, low: Array, high: Array) -> Array:
         """Return the effect of the width along each axis on the conditions that are not certain to hold, (n, k)."""
         widest = np.zeros((len(self.alive), self.k))
         for centre, slopes, rest in self.rows:

@@ -26,19 +26,19 @@ Numbers = Mapping[int, Enclosure]
 """Machine parameters that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
 
 
-def numbers_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Numbers:
+def parameters_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Numbers:
     """Return the machine parameters that designs set, from the columns (n, 1) of a design's own numbers."""
     design = np.empty((1, len(columns)), dtype=object)
     design[0, :] = columns
     return {slot: value[0] for slot, value in raw_numbers(mechanism, design).items()}
 
 
-def raw_number(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
+def parameter_lookup(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
     """Return a function from slot to machine parameter, enclosed over boxes if designs set it."""
     return lambda slot: numbers[slot] if slot in numbers else nominal_number(mechanism, slot)
 
 
-def unbounded_load(mechanism: Mechanism) -> str:
+def unboundable_load_reason(mechanism: Mechanism) -> str:
     """Return why a machine's loads have no bound over a range of designs; empty if they do."""
     for item in mechanism.varying:
         for path in item.paths:
@@ -66,8 +66,8 @@ class BoxMachine:
 
     def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
         """Return the load on the slider, N outward. outward: has the sign of the slider's outward velocity."""
-        load: Any = smooth_load(m, d, by_stroke(outward, d.outward_force, d.inward_force))
-        way = by_stroke(outward, 1.0, -1.0)
+        load: Any = smooth_load(m, d, select_by_stroke(outward, d.outward_force, d.inward_force))
+        way = select_by_stroke(outward, 1.0, -1.0)
         for k, code in enumerate(self.loads.kind.tolist()):
             row = DESIGN + LOAD_ROWS * k
             if code >= Enters.FORMULA:
@@ -78,10 +78,10 @@ class BoxMachine:
                 z = (m.x * d.branch - block[row + 1, 0]) * block[row, 0]
                 load = load + gas_force(cast(Cylinder, self.mechanism.loads[k]), z / stroke, stroke, outward)
             if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
-                load = load + self._table(k, m, d, block, theta, outward)
+                load = load + self._table_force(k, m, d, block, theta, outward)
         return load
 
-    def on_crank(
+    def crank_torque_of_loads(
         self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure, way: float | Array
     ) -> Any:
         """Return the loads' torque on the crank, N m. way: 1 if the crank turns counter-clockwise, -1 if clockwise."""
@@ -93,18 +93,18 @@ class BoxMachine:
                 if isinstance(stiffness, Enclosure) or stiffness:
                     torque = torque - stiffness * (theta - free)
             elif load.on_crank:
-                torque = torque + self._table(k, m, d, block, theta, outward)
+                torque = torque + self._table_force(k, m, d, block, theta, outward)
         return torque
 
-    def _table(
+    def _table_force(
         self, k: int, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure
     ) -> Enclosure | Any:
         part = slice(self.loads.start[k], self.loads.start[k + 1])
         at, force = self.loads.knots[part], self.loads.force[part]
-        factor = self.loads.factor[k, 2] or by_stroke(outward, *self.loads.factor[k, :2].tolist())
+        factor = self.loads.factor[k, 2] or select_by_stroke(outward, *self.loads.factor[k, :2].tolist())
         if self.loads.kind[k] != Enters.ANGLE_TABLE:
             row = DESIGN + LOAD_ROWS * k
-            return factor * interpolated((m.x * d.branch - block[row + 1, 0]) * block[row, 0], at, force)
+            return factor * interpolate_force((m.x * d.branch - block[row + 1, 0]) * block[row, 0], at, force)
         if self.loads.datum[k] == 0 and not isinstance(theta, Enclosure):
             return factor * np.interp(theta - _TURN * np.floor((theta - at[0]) / _TURN), at, force)
         counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0] if self.loads.datum[k] else theta
@@ -113,10 +113,10 @@ class BoxMachine:
         # One turn before and one after, because a box may extend beyond the ends of the table. Where the table steps at
         # its seam, the end of one turn and the start of the next are the two sides of the step.
         at = np.concatenate([at - _TURN, at, at + _TURN])
-        return factor * interpolated(turns, at, np.tile(force, 3))
+        return factor * interpolate_force(turns, at, np.tile(force, 3))
 
 
-def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
+def interpolate_force(x: Enclosure, at: Array, force: Array) -> Enclosure:
     """Return the table's force over an enclosed position: the chord, and the greatest distance of the knots from it."""
     low, high = x.ends()
     first, last = np.interp(low, at, force), np.interp(high, at, force)
@@ -127,11 +127,11 @@ def interpolated(x: Enclosure, at: Array, force: Array) -> Enclosure:
         off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
         highest, lowest = np.maximum(highest, off), np.minimum(lowest, off)
     chord = (x - low) * slope + (first + 0.5 * (highest + lowest))
-    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.size)
+    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.greatest_magnitude)
     return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 4.0 * rounding, chord.empty)
 
 
-def by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
+def select_by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
     """Return one number for the outward stroke, another for the inward one, and both where the stroke is uncertain."""
     low, high = outward.ends()
     k = len(outward.slopes)

@@ -21,7 +21,7 @@ from .boundable import ignored_sides, is_usable
 from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of
 from .cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
-from .tree import Tree, pool
+from .tree import Tree, bounding_threads
 
 _BATCH = 4096  # boxes halved per batch
 _MOST = 4_000_000  # open boxes; memory for these is allocated
@@ -80,16 +80,16 @@ class Search:
 
     def run(self, progress: Callable[[Step], None] | None) -> None:
         """Halve boxes until all are closed or the budget runs out."""
-        with pool() as threads:
+        with bounding_threads() as threads:
             for index in range(len(self.evaluators)):
-                self._take(index, *self.tree.initial_boxes(index), threads)
+                self._process_boxes(index, *self.tree.initial_boxes(index), threads)
             while True:
                 self._report(progress)
-                rows = self.tree.largest(_BATCH)
+                rows = self.tree.rows_of_largest_excess(_BATCH)
                 if not len(rows) or self._should_stop():
                     break
                 for index, lower, upper in self.tree.halved(self._close_covered_boxes(rows)):
-                    self._take(index, lower, upper, threads)
+                    self._process_boxes(index, lower, upper, threads)
         if len(self.tree):  # check all designs against all open boxes
             self._close_covered_boxes(np.arange(len(self.tree)))
 
@@ -110,26 +110,26 @@ class Search:
         )
         tree.counted_designs[rows] = len(self.designs)
         covered = tree.excess[rows] <= self.epsilon
-        self._close(tree.corner[rows[covered]], tree.excess[rows[covered]])
+        self._record_closed_corners(tree.corner[rows[covered]], tree.excess[rows[covered]])
         is_open = np.ones(len(tree), dtype=bool)
         is_open[rows[covered]] = False
         if covered.any():
             tree.keep(is_open)
         return np.asarray(np.cumsum(is_open)[rows[~covered]] - 1)
 
-    def _take(self, index: int, lower: Array, upper: Array, threads: object) -> None:
+    def _process_boxes(self, index: int, lower: Array, upper: Array, threads: object) -> None:
         """Bound boxes of a branch, close those that can be closed, and open the rest."""
         boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
         corner = self._scaled(boxes.corner)
         gaps = excess(corner, self.designs, enough=self.epsilon)
         wanting = np.flatnonzero(gaps > self.epsilon)
         if len(wanting):
-            gaps[wanting] = self._add(index, boxes.trial[wanting], corner[wanting], gaps[wanting])
+            gaps[wanting] = self._add_covering_designs(index, boxes.trial[wanting], corner[wanting], gaps[wanting])
         covered = gaps <= self.epsilon
-        self._close(corner[covered], gaps[covered])
+        self._record_closed_corners(corner[covered], gaps[covered])
         self.tree.add(index, boxes[~covered], corner[~covered], gaps[~covered], len(self.designs))
 
-    def _add(self, index: int, trial: Array, corner: Array, gaps: Array) -> Array:
+    def _add_covering_designs(self, index: int, trial: Array, corner: Array, gaps: Array) -> Array:
         """Add designs that cover the corner of their box where no other does; return the excess of each corner."""
         evaluator = self.evaluators[index]
         dimensions, values, violation = evaluator.screen(trial)
@@ -140,26 +140,26 @@ class Search:
         lead = excess(scaled, self.front)
         farthest = int(np.argmax(lead))
         if lead[farthest] > self.gap:
-            self._note(index, dimensions[good[farthest]])
+            self._remember_farthest_design(index, dimensions[good[farthest]])
         rows = good[choose_covering(corner[good], scaled, self.epsilon)]
         if not len(rows):
             return gaps
-        fresh = self._exact(index, dimensions[rows])
+        fresh = self._scaled_exact_objectives(index, dimensions[rows])
         additions = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
         self.added = self.added.join(additions)
         self.designs = np.concatenate([self.designs, fresh])
         return excess(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
-    def _exact(self, index: int, dimensions: Array) -> Array:
+    def _scaled_exact_objectives(self, index: int, dimensions: Array) -> Array:
         return self._scaled(_exact_objectives(self.evaluators[index].problem, dimensions))
 
-    def _note(self, index: int, design: Array) -> None:
+    def _remember_farthest_design(self, index: int, design: Array) -> None:
         """Store the design of a branch that lies farthest beyond the front so far."""
-        lead = float(excess(self._exact(index, design[None]), self.front)[0])
+        lead = float(excess(self._scaled_exact_objectives(index, design[None]), self.front)[0])
         if lead > self.gap:
             self.gap, self.hole = lead, design
 
-    def _close(self, corner: Array, gaps: Array) -> None:
+    def _record_closed_corners(self, corner: Array, gaps: Array) -> None:
         if not len(corner):
             return
         self.closed = max(self.closed, float(gaps.max()))
@@ -170,33 +170,35 @@ class Search:
     def _report(self, progress: Callable[[Step], None] | None) -> None:
         if progress is not None:
             tree = self.tree
-            progress(Step(self._proven(), tree.bounded, len(tree), len(self.added), time.perf_counter() - self.start))
+            progress(
+                Step(self._proven_epsilon(), tree.bounded, len(tree), len(self.added), time.perf_counter() - self.start)
+            )
 
-    def _proven(self) -> float:
+    def _proven_epsilon(self) -> float:
         return max(self.closed, float(self.tree.excess.max(initial=0.0)))
 
     # ---- the result -----------------------------------------------------------------------------------------------
 
     def certificate(self) -> Certificate:
         """Return the certificate so far, with its added designs polished and reduced to as few as possible."""
-        tree, proven = self.tree, self._proven()
+        tree, proven = self.tree, self._proven_epsilon()
         needy = np.concatenate(self.needy)
-        self._drop_redundant(needy)
-        self._polish()
-        self._drop_redundant(needy)
+        self._drop_redundant_designs(needy)
+        self._polish_added_designs()
+        self._drop_redundant_designs(needy)
         self.designs = np.concatenate([self.front, self.added.values])
         dimensions = self.added.dimensions(self.evaluators)
         leads = excess(self.added.values, self.front)
         if len(leads) and leads.max() > self.gap:
             farthest = int(np.argmax(leads))
-            self._note(int(self.added.branch[farthest]), dimensions[farthest])
+            self._remember_farthest_design(int(self.added.branch[farthest]), dimensions[farthest])
         # If an added design covers a point, the front covers it to within the sum of both excesses.
         least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
         delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
         status: Status = "cancelled" if self.stopped else "out of budget"
         if proven <= self.epsilon:
             status = "proven"
-        open_range = self._worst_open_range() if len(tree) else None
+        open_range = self._worst_open_box() if len(tree) else None
         return Certificate(
             status=status,
             requested=self.epsilon,
@@ -235,12 +237,12 @@ class Search:
             notes += [f"the bounds ignore the {word} of {title}" for word in ignored_sides(part, constraint)]
         return tuple(dict.fromkeys(notes))
 
-    def _drop_redundant(self, needy: Array) -> None:
+    def _drop_redundant_designs(self, needy: Array) -> None:
         """Drop added designs whose corners other designs cover."""
         if not len(self.tree) and len(self.added) * len(needy) <= _MOST_PAIRS:
             self.added = self.added[greedy_cover(needy, self.added.values, self.epsilon)]
 
-    def _polish(self) -> None:
+    def _polish_added_designs(self) -> None:
         """Move added designs onto the front if no objective worsens, so that they still cover the same points."""
         if len(self.added) > _POLISHED:
             return
@@ -252,12 +254,12 @@ class Search:
                     return
                 k = evaluator.dimension
                 part = polish(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
-                fresh = self._exact(index, evaluator.branch.dimensions(part.u))
+                fresh = self._scaled_exact_objectives(index, evaluator.branch.dimensions(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
                 self.added.u[rows[better], :k] = part.u[better]
                 self.added.values[rows[better]] = fresh[better]
 
-    def _worst_open_range(self) -> Array:
+    def _worst_open_box(self) -> Array:
         tree = self.tree
         row = int(np.argmax(tree.excess))
         evaluator = self.evaluators[int(tree.branch[row])]

@@ -28,8 +28,8 @@ from ...model.swing.slider_pin_force import free_pin, toggle_distance
 from ...model.swing.swing import Swing, slowly
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
-from .crank_angles import angle_near, crank_at
-from .enclosure import Enclosure, constant, side_by_side, sign_of
+from .crank_angles import angle_near, crank_sine_and_cosine
+from .enclosure import Enclosure, constant, join_parts, sign_of
 from .machine import BoxMachine, Numbers
 
 _SIDE_STEP = 1e-9  # fraction of the time; moves to one side of a corner in the law, or of a step
@@ -82,7 +82,9 @@ class SwingBoxes:
         last = first + (swing.end - swing.start) if swing.follows else constant(swing.end, d.r)
         if swing.stated_for == "slider":
             side = constant(1.0 if swing.side == "left" else -1.0, d.r).centre
-            first_angle, last_angle = (angle_near(d, x, *crank_at(d, x, side), side) for x in (first, last))
+            first_angle, last_angle = (
+                angle_near(d, x, *crank_sine_and_cosine(d, x, side), side) for x in (first, last)
+            )
             return _Ends((first_angle, last_angle), (first, last), side)
         positions = [design_motion(angle.sin(), angle.cos(), d).x for angle in (first, last)]
         middle = 0.5 * (first + last)
@@ -93,18 +95,20 @@ class SwingBoxes:
             sign_of(toggle_distance(sine, cosine, design_motion(sine, cosine, d))),
         )
 
-    def at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
+    def state_at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
         """Return the state at fractions of the time (n, p); NaN where some designs in a box have none.
 
         probe: fractions on the same side of a corner in the law. back: 1 on the return stroke.
         """
         direction = 1.0 - 2.0 * back
         way, way_1, way_2, _ = way_at(code_of(self.swing.law), self.swing.table, share, probe)
-        return self.at_way(
+        return self.state_at_travel(
             numbers, np.where(back > 0.5, 1.0 - way, way), direction, direction * way_1, direction * way_2
         )
 
-    def at_way(self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0) -> _State:
+    def state_at_travel(
+        self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0
+    ) -> _State:
         """Return the state at fractions of the travel (n, p), with its derivatives by the fraction of the time."""
         d, block = self.machine.design(numbers)
         ends = self.ends(numbers, d)
@@ -112,7 +116,7 @@ class SwingBoxes:
         travel = last - first
         place = first + travel * way
         if self.slider:
-            sine, cosine = crank_at(d, place, ends.side)
+            sine, cosine = crank_sine_and_cosine(d, place, ends.side)
             angle = angle_near(d, place, sine, cosine, ends.side, 0.5 * (ends.angles[0].centre + ends.angles[1].centre))
         else:
             sine, cosine, angle = place.sin(), place.cos(), place
@@ -130,10 +134,10 @@ class SwingBoxes:
             turning = driver_way * sign_of(m.x_1) if self.needs_angle else driver_way
         return _State(sine, cosine, angle, m, d, block, outward, driver_way, turning)
 
-    def drive(self, at: _State) -> Enclosure:
+    def drive_torque_or_force(self, at: _State) -> Enclosure:
         """Return the torque on the crank, N m, or the force on the slider, N, without friction."""
         load = self.machine.load(at.m, at.d, at.block, at.angle, at.outward)
-        on_crank = self.machine.on_crank(at.m, at.d, at.block, at.angle, at.outward, at.way)
+        on_crank = self.machine.crank_torque_of_loads(at.m, at.d, at.block, at.angle, at.outward, at.way)
         if not self.slider:
             torque: Enclosure = forces(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
             return torque
@@ -141,7 +145,7 @@ class SwingBoxes:
         force: Enclosure = b.pull - free_pin(at.sine, at.cosine, at.m, at.d, b)[0]
         return force
 
-    def error(self, at: _State) -> Enclosure:
+    def position_error(self, at: _State) -> Enclosure:
         """Return the error on the driven side, m at the slider or rad at the crank."""
         i = influences(at.sine, at.cosine, at.m, at.d.l)
         error: Enclosure
@@ -153,19 +157,19 @@ class SwingBoxes:
         error = off / magnitude(at.m.x_1)
         return error
 
-    def angle(self, numbers: Numbers, way: Array) -> Enclosure:
+    def transmission_angle(self, numbers: Numbers, way: Array) -> Enclosure:
         """Return the transmission angle on the driven side at fractions of the travel (n, p), rad."""
-        at = self.at_way(numbers, way)
+        at = self.state_at_travel(numbers, way)
         sine = magnitude(toggle_distance(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
         angle: Enclosure = np.arcsin(sine)
         return angle if self.slider else 0.5 * np.pi - angle
 
-    def opening(self, numbers: Numbers) -> Enclosure:
+    def closure_violation(self, numbers: Numbers) -> Enclosure:
         """Return |e - r sin(theta)| / l - 1 at both ends (n, 2), below zero where the linkage closes."""
         d, _ = self.machine.design(numbers)
         ends = self.ends(numbers, d)
         opening: Enclosure = reduce(
-            side_by_side, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles)
+            join_parts, (magnitude(d.e - d.r * angle.sin()) / d.l - 1.0 for angle in ends.angles)
         )
         return opening
 
@@ -181,18 +185,18 @@ class SwingCurve:
         self.boxes = SwingBoxes(mechanism, quantity.swing, slow=self.at_ends or isinstance(quantity, SwingLeast))
 
     @property
-    def anywhere(self) -> tuple[float, ...]:
+    def default_position(self) -> tuple[float, ...]:
         """Position for boxes whose middle design does not swing."""
-        return self._range[:1]
+        return self._position_range[:1]
 
     @property
-    def _range(self) -> tuple[float, float]:
+    def _position_range(self) -> tuple[float, float]:
         """First and last position; see `enclose`."""
         if isinstance(self.quantity, SwingLeast):
             return float(self.quantity.back), 1.0 + self.quantity.back
         return 0.0, 2.0 if isinstance(self.quantity, SwingPeak) else 1.0
 
-    def places(self, designs: Array) -> Array:
+    def peak_positions(self, designs: Array) -> Array:
         """Return each design's position (n, 1) of the greatest value or, with `least`, of the least one.
 
         See `enclose`.
@@ -200,52 +204,52 @@ class SwingCurve:
         mechanism, swing, quantity = self.boxes.mechanism, self.quantity.swing, self.quantity
         assert swing is not None
         if isinstance(quantity, SwingForm):
-            return _place_of_least_angle(mechanism, swing, designs)[:, None]
+            return _least_transmission_angle_position(mechanism, swing, designs)[:, None]
         if isinstance(quantity, SwingLeast):
             found = least_drives(mechanism, swing, designs, back=quantity.back, limit=1).places
         elif quantity.state is None:
-            return np.full((len(designs), 1), self.anywhere)
+            return np.full((len(designs), 1), self.default_position)
         else:
             found = swing_peaks(mechanism, swing, quantity.state, designs, limit=1).places
-        return np.where(np.isfinite(found), np.clip(found, *self._range), self.anywhere)
+        return np.where(np.isfinite(found), np.clip(found, *self._position_range), self.default_position)
 
-    def enclose(self, numbers: Numbers, places: Array, middle: Array) -> Enclosure:
+    def enclose(self, numbers: Numbers, positions: Array, middle: Array) -> Enclosure:
         """Return the quantity's curve (n, p) at positions (n, 1), and at both ends.
 
         A position is a fraction of the time, plus 1 on the return stroke; for an angle, a fraction of the travel.
         """
-        at, (first, last) = places, self._range
+        at, (first, last) = positions, self._position_range
         columns = [at, np.full_like(at, first), np.full_like(at, last)]
         if last - first > 1.0:
             columns += [np.full_like(at, 1.0), np.full_like(at, 1.0 + _SIDE_STEP)]
         if self.boxes.steps and not self.at_ends:
             # A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
-            width: Any = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].size for slot in (0, 1))
+            width: Any = sum(np.ptp(numbers[slot].ends(), axis=0) / numbers[slot].greatest_magnitude for slot in (0, 1))
             away = np.minimum(4.0 * width, _FARTHEST)
             columns += [np.clip(at - away, first, last), np.clip(at + away, first, last)]
         return self._enclose_at(numbers, np.concatenate(columns, axis=1))
 
-    def _enclose_at(self, numbers: Numbers, places: Array) -> Enclosure:
+    def _enclose_at(self, numbers: Numbers, positions: Array) -> Enclosure:
         boxes, quantity = self.boxes, self.quantity
         if isinstance(quantity, SwingForm):
-            return boxes.angle(numbers, places)
+            return boxes.transmission_angle(numbers, positions)
         back = (
-            np.where(places > 1.0, 1.0, 0.0)
+            np.where(positions > 1.0, 1.0, 0.0)
             if isinstance(quantity, SwingPeak)
-            else np.full_like(places, float(quantity.back))
+            else np.full_like(positions, float(quantity.back))
         )
-        share = places - back
+        share = positions - back
         probes = [share - _SIDE_STEP, share + _SIDE_STEP] if boxes.corners else [share]
         return reduce(
-            side_by_side,
-            (self._value(boxes.at_time(numbers, share, np.clip(probe, 0.0, 1.0), back)) for probe in probes),
+            join_parts,
+            (self._value(boxes.state_at_time(numbers, share, np.clip(probe, 0.0, 1.0), back)) for probe in probes),
         )
 
     def _value(self, at: _State) -> Enclosure:
         state = self.quantity.state if isinstance(self.quantity, SwingPeak) else None
         if state == ERROR:
-            return self.boxes.error(at)
-        value: Enclosure = self.boxes.drive(at)
+            return self.boxes.position_error(at)
+        value: Enclosure = self.boxes.drive_torque_or_force(at)
         if isinstance(self.quantity, SwingLeast):
             return value * at.driver_way
         assert state in (POWER, DRIVE, None)
@@ -254,7 +258,7 @@ class SwingCurve:
         return value.magnitude()
 
 
-def _place_of_least_angle(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
+def _least_transmission_angle_position(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
     """Return the fraction of the travel (n,) at the transmission angle's minimum between the ends, 0 if none."""
     ends = ends_of(mechanism, swing, designs)
     r, l, e = designs[:, :3].T

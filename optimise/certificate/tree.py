@@ -93,7 +93,7 @@ class Tree(Table):
         """Keep only these boxes."""
         self.become(self[rows])
 
-    def largest(self, count: int) -> IntArray:
+    def rows_of_largest_excess(self, count: int) -> IntArray:
         """Return the splittable boxes with the largest excess."""
         rows = np.flatnonzero(self.axis >= 0)
         if len(rows) <= count:
@@ -120,6 +120,6 @@ class Tree(Table):
         return halves
 
 
-def pool() -> ThreadPoolExecutor:
+def bounding_threads() -> ThreadPoolExecutor:
     """Return a separate thread pool, because bounding calls kernels that wait for the shared pool."""
     return ThreadPoolExecutor(max_workers=cpu_count() or 1, thread_name_prefix="slidercrank-boxes")

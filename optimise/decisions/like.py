@@ -54,7 +54,7 @@ def distance(values: Array, reference: Array, span: Array) -> Array:
     return np.asarray(np.linalg.norm((values - reference) / span, axis=1))
 
 
-def nearest(
+def nearest_optimal_design(
     problem: Problem,
     row: Mapping[str, object],
     values: Array,
@@ -71,8 +71,8 @@ def nearest(
     meets all requirements, or for a quantity without gradient.
     """
     ranges = ranges or {}
-    _require_new(problem, row, constraints, ranges)
-    extended_problem, contradiction = extended(problem, constraints, ranges)
+    _require_new_requirement(problem, row, constraints, ranges)
+    extended_problem, contradiction = extend_problem(problem, constraints, ranges)
     require_gradients(extended_problem, "the search for a design like another")
     evaluators = [Evaluator(extended_problem, branch) for branch in elimination_branches(extended_problem)]
     run = Run(extended_problem, 1)
@@ -115,10 +115,12 @@ def like(
     if (doubt := in_both_units(ends)) is not None:
         warn_user(f"ranges of lengths are in m: {doubt}")
     table = {name: values[row] for name, values in front.columns.items()}
-    return nearest(front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges)
+    return nearest_optimal_design(
+        front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges
+    )
 
 
-def extended(
+def extend_problem(
     problem: Problem, constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
 ) -> tuple[Problem, str | None]:
     """Return the problem with added requirements merged, and the contradictory one that was left out, if any."""
@@ -127,7 +129,9 @@ def extended(
     contradictions, keys = [], []
     for added in constraints:
         required = constraints_by_name.get(added.quantity)
-        ends = common((added.lower, added.upper), (required.lower, required.upper) if required else (None, None))
+        ends = intersect_ranges(
+            (added.lower, added.upper), (required.lower, required.upper) if required else (None, None)
+        )
         quantity = problem.quantity(added.quantity)
         if ends is None:
             assert required is not None
@@ -140,7 +144,7 @@ def extended(
             constraints_by_name[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
     for name, requested in ranges.items():
         range_of_name = dimensions[name]
-        ends = common(requested, (range_of_name.lower, range_of_name.upper))
+        ends = intersect_ranges(requested, (range_of_name.lower, range_of_name.upper))
         if ends is None:
             existing = f"{_ends_text((range_of_name.lower, range_of_name.upper), 1e3, 'mm')} is its range"
             contradictions.append(f"{name} {_ends_text(requested, 1e3, 'mm')}, where {existing}")
@@ -158,7 +162,7 @@ def extended(
     )
 
 
-def common(first: Ends, second: Ends) -> Ends | None:
+def intersect_ranges(first: Ends, second: Ends) -> Ends | None:
     """Return the intersection of two ranges, None if it is empty."""
     lower = max((end for end in (first[0], second[0]) if end is not None), default=None)
     upper = min((end for end in (first[1], second[1]) if end is not None), default=None)
@@ -173,7 +177,7 @@ def _ends_text(ends: Ends, factor: float, unit: str) -> str:
     return " and ".join(parts)
 
 
-def _require_new(
+def _require_new_requirement(
     problem: Problem, row: Mapping[str, object], constraints: Sequence[Constraint], ranges: Mapping[str, Ends]
 ) -> None:
     columns: list[tuple[str, float, Ends]] = []

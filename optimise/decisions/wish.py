@@ -42,7 +42,7 @@ from ..search.polish import polish
 from ..search.sampling import distant_rows
 from ..search.search import BANDS, Run
 from .wished import Wished, outcomes_of
-from .wishes import Wish, aimed, read_wishes
+from .wishes import Wish, minimised_aim, read_wishes
 
 _NEAREST, _MORE = 3, 6  # starts per branch, and further ones if the first end in different optima
 _BRANCHES, _FINAL = 12, 2  # branches to try, best first, at first from one start each; then the best of these
@@ -81,12 +81,12 @@ class Wishes:
             front.part(row)  # raises an error for an unknown row
             row = int(row) % len(front)
         wishes = read_wishes(front, texts, row)
-        form, aims = self._form(wishes, row)
+        form, aims = self._achievement_form(wishes, row)
         evaluators = self._evaluators()
         best = self._solve(form, evaluators)
         run = Run(front.problem, 1)
         if best is None:
-            message = self._why_none(wishes)
+            message = self._no_design_message(wishes)
             nothing = empty_front(front.problem, evaluators, run, "infeasible", message)
             return Wished(found=nothing, row=row, wishes=wishes, value=np.nan, outcomes=(), message=message)
         index, u, value = best
@@ -123,7 +123,7 @@ class Wishes:
                 parts.append(Candidates(*rest))
         return parts[0].join(*parts[1:])
 
-    def _form(self, wishes: Sequence[Wish], row: int | None) -> tuple[Form, list[float | None]]:
+    def _achievement_form(self, wishes: Sequence[Wish], row: int | None) -> tuple[Form, list[float | None]]:
         """Return the achievement function, and the desired values as minimised, SI."""
         m = len(wishes)
         weights, reference, ceilings = np.zeros(m), np.zeros(m), np.full(m, np.inf)
@@ -131,7 +131,7 @@ class Wishes:
         aims: list[float | None] = [None] * m
         for column, wish in enumerate(wishes):
             if wish.value is not None:
-                aims[column] = aim = aimed(self.front, column, wish)
+                aims[column] = aim = minimised_aim(self.front, column, wish)
                 scaled = (aim - self.ideal[column]) / self.span[column]
                 if wish.kind == "value":
                     weights[column], reference[column] = 1.0, scaled
@@ -156,13 +156,13 @@ class Wishes:
         merits = free.value(scaled) + _OUTSIDE * (excess + ~self._starts.is_feasible)
         branch, tried = self._starts.branch, np.zeros(len(merits), np.bool_)
         ends: list[tuple[float, int, Array]] = []  # the best first
-        chosen = self._promising(merits)
+        chosen = self._promising_branches(merits)
         for count in (_NEAREST, _MORE) if len(chosen) == 1 else (1, _NEAREST, _MORE):
             for index in chosen:
                 untried = np.flatnonzero((branch == index) & ~tried)
                 rows = untried[distant_rows(merits[untried], self._starts.u[untried], branch[untried], count)]
                 tried[rows] = True
-                ends += self._ends(form, evaluators[index], index, rows)
+                ends += self._descend_from_starts(form, evaluators[index], index, rows)
             ends.sort(key=lambda end: end[0])
             order = list(dict.fromkeys(index for _, index, _ in ends))
             same = [value for value, index, _ in ends if index == order[0]] if ends else []
@@ -174,7 +174,7 @@ class Wishes:
         value, index, u = ends[0]
         return index, u, value
 
-    def _promising(self, merits: Array) -> list[int]:
+    def _promising_branches(self, merits: Array) -> list[int]:
         """Return the branches to try, best first."""
         merit_by_branch = {
             index: float(merits[self._starts.branch == index].min()) for index in set(self._starts.branch.tolist())
@@ -182,7 +182,9 @@ class Wishes:
         order = sorted(merit_by_branch, key=lambda index: (merit_by_branch[index], index))
         return [index for index in order if merit_by_branch[index] <= merit_by_branch[order[0]] + _WORSE][:_BRANCHES]
 
-    def _ends(self, form: Form, evaluator: Evaluator, index: int, rows: IntArray) -> list[tuple[float, int, Array]]:
+    def _descend_from_starts(
+        self, form: Form, evaluator: Evaluator, index: int, rows: IntArray
+    ) -> list[tuple[float, int, Array]]:
         """Return the feasible end points of the starts on a branch, with the achievement function's value there."""
         if not len(rows):
             return []
@@ -195,7 +197,7 @@ class Wishes:
             for at in np.flatnonzero(good).tolist()
         ]
 
-    def _why_none(self, wishes: Sequence[Wish]) -> str:
+    def _no_design_message(self, wishes: Sequence[Wish]) -> str:
         """Say that no design stays within the allowed values, and give the front's best values."""
         phrases = []
         for column, wish in enumerate(wishes):

@@ -52,38 +52,39 @@ class Outcome:
 
     def text(self, system: System = "metric") -> str:
         """Describe wish and outcome: "peak torque 109.2 N m of 110 N m wished"."""
-        reached = f"{self.quantity.title} {self._value(self.reached, system)}"
+        reached = f"{self.quantity.title} {self._value_text(self.reached, system)}"
         if self.kind == "value":
-            return reached + self._against_wish(system)
+            return reached + self._wish_comparison_text(system)
         if self.kind == "limit":
             worst = {"minimise": "most", "maximise": "least", "target": "worst"}[self.objective.sense]
-            return f"{reached}, at {worst} {self._value(cast(float, self.wished), system)} allowed"
+            return f"{reached}, at {worst} {self._value_text(cast(float, self.wished), system)} allowed"
         if self.kind == "free" and self.changed is None:
             return f"{reached}, free"
         free = ", free" if self.kind == "free" else ""
         changed = cast(float, self.changed)
         if abs(changed) <= _ROUNDING * self.range_:
             return f"{reached}, as before{free}"
-        return f"{reached}, {self._amount(changed, system)} {'worse' if changed > 0.0 else 'better'} than before{free}"
+        direction = "worse" if changed > 0.0 else "better"
+        return f"{reached}, {self._difference_text(changed, system)} {direction} than before{free}"
 
-    def _against_wish(self, system: System) -> str:
-        short, wished = cast(float, self.short), self._value(cast(float, self.wished), system)
+    def _wish_comparison_text(self, system: System) -> str:
+        short, wished = cast(float, self.short), self._value_text(cast(float, self.wished), system)
         if abs(short) <= _ROUNDING * self.range_:
             return ", as wished" if self.objective.sense != "target" else f", as near to its target as {wished} wished"
-        amount = self._amount(short, system)
+        amount = self._difference_text(short, system)
         if self.objective.sense == "target":
-            target = self._value(cast(float, self.objective.target), system)
+            target = self._value_text(cast(float, self.objective.target), system)
             far = f"{amount} {'farther from' if short > 0.0 else 'nearer to'} its target of {target} than"
             return f", {far} the {wished} wished"
         if short < 0.0:
             return f", {amount} better than the {wished} wished"
         return f" of {wished} wished: it must give way by {amount}"
 
-    def _value(self, value: float, system: System) -> str:
+    def _value_text(self, value: float, system: System) -> str:
         unit, factor = metric_unit_in(self.quantity.unit.symbol, system)
         return f"{value * self.quantity.unit.factor * factor:.4g} {unit}".rstrip()
 
-    def _amount(self, value: float, system: System) -> str:
+    def _difference_text(self, value: float, system: System) -> str:
         unit, factor = metric_unit_in(self.quantity.unit.symbol, system)
         return f"{abs(value) * self.quantity.unit.factor * factor:.3g} {unit}".rstrip()
 
@@ -120,9 +121,9 @@ class Wished:
         """Say whether the wishes can be met, then describe wish and outcome for each objective."""
         if not self.outcomes:
             return [self.message]
-        return [self._head(), *(outcome.text(system) for outcome in self.outcomes)]
+        return [self._first_sentence(), *(outcome.text(system) for outcome in self.outcomes)]
 
-    def _head(self) -> str:
+    def _first_sentence(self) -> str:
         wished = [outcome for outcome in self.outcomes if outcome.kind == "value"]
         if not wished:
             if any(outcome.kind == "improve" and outcome.gained for outcome in self.outcomes):

@@ -63,7 +63,7 @@ def read_wishes(front: ParetoFront, texts: Mapping[str, object], row: int | None
         wish = _read_wish(front, column, text)
         wishes_by_column[column] = Wish("free") if wish.kind == "free" else wish
     wishes = tuple(wishes_by_column.values())
-    _require_sense(front, wishes, row)
+    _require_consistent_wishes(front, wishes, row)
     return wishes
 
 
@@ -104,7 +104,7 @@ def _read_wish(front: ParetoFront, column: int, text_or_value: object) -> Wish:
     return Wish("limit" if limit else "value", value)
 
 
-def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None) -> None:
+def _require_consistent_wishes(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None) -> None:
     """Raise `InputError` for empty wishes, or for wishes that no design can meet."""
     kinds = [wish.kind for wish in wishes]
     names = [objective.quantity for objective in front.objectives]
@@ -127,7 +127,7 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
     for column, wish in enumerate(wishes):
         quantity = front.problem.quantity(names[column])
         reference = front.values[row, column]
-        if wish.kind == "limit" and aimed(front, column, wish) < reference - 1e-9 * abs(reference):
+        if wish.kind == "limit" and minimised_aim(front, column, wish) < reference - 1e-9 * abs(reference):
             raise InputError(
                 f"{names[column]} may worsen to a value worse than that of design {row + 1}; got "
                 f"{wish.value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()  # type: ignore[operator]
@@ -135,7 +135,7 @@ def _require_sense(front: ParetoFront, wishes: tuple[Wish, ...], row: int | None
             )
 
 
-def aimed(front: ParetoFront, column: int, wish: Wish) -> float:
+def minimised_aim(front: ParetoFront, column: int, wish: Wish) -> float:
     """Return a wish's value as minimised, SI: negated if maximised, or the distance from a target."""
     assert wish.value is not None
     return float(minimised(front.objectives[column], np.array([wish.value]))[0])

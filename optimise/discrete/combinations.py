@@ -58,7 +58,7 @@ class Axes:
         return cls(part, tuple(axes))
 
     @property
-    def is_complete(self) -> bool:
+    def has_no_free_number(self) -> bool:
         """Whether every combination is a complete design, without free numbers."""
         return all(values is not None for values in self.values)
 
@@ -72,9 +72,9 @@ class Axes:
 
         NaN where a number is free.
         """
-        return self.numbered(np.arange(begin, min(end, math.prod(self._sizes))))
+        return self.designs_of_numbers(np.arange(begin, min(end, math.prod(self._sizes))))
 
-    def numbered(self, numbers: IntArray) -> Array:
+    def designs_of_numbers(self, numbers: IntArray) -> Array:
         """Return combinations (n, 3 + v) by their indices."""
         places = np.unravel_index(numbers, self._sizes)
         columns = [
@@ -83,7 +83,7 @@ class Axes:
         ]
         return np.stack(columns, axis=1)
 
-    def next_to(self, designs: Array) -> IntArray:
+    def neighbour_numbers(self, designs: Array) -> IntArray:
         """Return the indices (n, s) of the combinations at designs (n, 3 + v) and next to them.
 
         They include the design itself, which also replaces neighbours beyond the ends.
@@ -93,7 +93,7 @@ class Axes:
         neighbours_at = np.clip(places[:, None] + ways, 0, np.array(self._sizes) - 1)
         return np.asarray(np.ravel_multi_index(tuple(np.moveaxis(neighbours_at, 2, 0)), self._sizes), np.int64)
 
-    def numbers(self, designs: Array) -> IntArray:
+    def combination_numbers(self, designs: Array) -> IntArray:
         """Return the index of each combination (n, 3 + v), as `designs` counts them."""
         return np.asarray(np.ravel_multi_index(tuple(self._places(designs)), self._sizes), np.int64)
 
@@ -215,17 +215,17 @@ def judge_near(
     best so far, until none are left or `limit` combinations are judged.
     """
     best, judged_numbers = Judged.empty(axes.part), np.zeros(0, np.int64)
-    fresh = np.unique(axes.numbers(neighbours(axes, designs, window)))
+    fresh = np.unique(axes.combination_numbers(neighbours(axes, designs, window)))
     while len(fresh):
         for begin in range(0, len(fresh), _BATCH):
             report(len(judged_numbers) + begin, limit)
-            batch = judge(axes.part, axes.numbered(fresh[begin : begin + _BATCH]))
+            batch = judge(axes.part, axes.designs_of_numbers(fresh[begin : begin + _BATCH]))
             best = best.merge(batch.best()).best()
         judged_numbers = np.union1d(judged_numbers, fresh)
         fresh = np.zeros(0, np.int64)
         for begin in range(0, len(best.dimensions), _EXPANDED):
             report(len(judged_numbers), limit)
-            next_numbers = axes.next_to(best.dimensions[begin : begin + _EXPANDED])
+            next_numbers = axes.neighbour_numbers(best.dimensions[begin : begin + _EXPANDED])
             fresh = np.union1d(fresh, np.setdiff1d(next_numbers, judged_numbers))
         fresh = fresh[: max(0, limit - len(judged_numbers))]
     return best, judged_numbers
@@ -233,7 +233,9 @@ def judge_near(
 
 def has_judged_neighbours(axes: Axes, designs: Array, judged_numbers: IntArray) -> Mask:
     """Return a mask of combinations (n, 3 + v) whose neighbours are all among the judged indices."""
-    return np.array([bool(np.isin(axes.next_to(row[None]), judged_numbers).all()) for row in designs], np.bool_)
+    return np.array(
+        [bool(np.isin(axes.neighbour_numbers(row[None]), judged_numbers).all()) for row in designs], np.bool_
+    )
 
 
 def _combinations_around(axes: Sequence[Array | None], design: Array, width: int) -> Array:

@@ -34,7 +34,7 @@ def result_message(front: ParetoFront) -> str:
     else:
         part = f"{summary.judged} of {summary.combinations} combinations of {rules}"
         left = summary.combinations - summary.judged
-        text = f"{count}, {summary.how}: {part} evaluated, the other {left} not"
+        text = f"{count}, {summary.extent_text}: {part} evaluated, the other {left} not"
     costs = []
     for place, objective in enumerate(front.objectives if summary.continuous else ()):
         quantity = problem.quantity(objective.quantity)

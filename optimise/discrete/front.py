@@ -18,7 +18,7 @@ from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.discrete_search import DiscreteSearch
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
-from ..front.hypervolume import ReportProgress, choose
+from ..front.hypervolume import ReportProgress, choose_designs
 from ..front.rounded import drop_conversion_rounding
 from ..problem.problem import Problem
 from ..problem.robust import asks_robust
@@ -46,7 +46,7 @@ def discrete_front(
     between steps.
     """
     axes = [Axes.of_problem(part) for part in problem.parts()]
-    is_complete, count = all(axis.is_complete for axis in axes), sum(axis.count for axis in axes)
+    is_complete, count = all(axis.has_no_free_number for axis in axes), sum(axis.count for axis in axes)
     limit = (_MOST_ROBUST if asks_robust(problem) else MOST) if is_complete else SOLVED
     exact = count <= limit
     judged: Judged | None = None
@@ -72,7 +72,9 @@ def discrete_front(
         chosen = _first_of_each_variant(chosen)
         for index, axis in enumerate(axes):
             rows_of_axis = [row for owner, row in chosen if owner == index]
-            judged_numbers.append(axis.numbers(np.array(rows_of_axis)) if rows_of_axis else np.zeros(0, np.int64))
+            judged_numbers.append(
+                axis.combination_numbers(np.array(rows_of_axis)) if rows_of_axis else np.zeros(0, np.int64)
+            )
     elif not exact:
         share, window = limit // len(axes), min(limit, _WINDOW) // len(axes)
         judged_parts = [
@@ -127,7 +129,7 @@ def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged])
     else:
         rows = rows[_distinct_rows(values[rows])]
         best = tuple(dict.fromkeys(np.argmin(values[rows], axis=0).tolist()))
-        rows = rows[choose(values[rows], problem.settings.designs, always=best)]
+        rows = rows[choose_designs(values[rows], problem.settings.designs, always=best)]
     return [(int(owner[row]), together.dimensions[row]) for row in rows], together
 
 

@@ -23,8 +23,8 @@ def require_meetable(problem: Problem) -> None:
     """
     if not problem.discrete:
         return
-    axes = [_of_dimensions(Axes.of_problem(part)) for part in problem.parts()]
-    if not all(axis.is_complete for axis in axes) or sum(axis.count for axis in axes) > MOST:
+    axes = [_dimension_axes(Axes.of_problem(part)) for part in problem.parts()]
+    if not all(axis.has_no_free_number for axis in axes) or sum(axis.count for axis in axes) > MOST:
         return
     judged = Judged.empty(axes[0].part)
     for axis in axes:
@@ -36,7 +36,7 @@ def require_meetable(problem: Problem) -> None:
         raise InfeasibleError(f"variables.{sizes[0].name}: {failure_message(replace(problem, discrete=sizes), judged)}")
 
 
-def _of_dimensions(axes: Axes) -> Axes:
+def _dimension_axes(axes: Axes) -> Axes:
     """Return axes with a single value for each other number; these requirements depend only on the dimensions."""
     fixed_values = [np.array([item.lower]) for item in axes.part.mechanism.varying]
     return Axes(axes.part, (*axes.values[:3], *fixed_values))

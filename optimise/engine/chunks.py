@@ -48,7 +48,7 @@ class Shared(Generic[Value]):
         return pickle.dumps(self.value, protocol=pickle.HIGHEST_PROTOCOL)
 
     @property
-    def portable(self) -> bool:
+    def can_be_pickled(self) -> bool:
         """Whether the value can leave this process; functions defined in Python code may not."""
         try:
             return bool(self.pickled)
@@ -74,7 +74,7 @@ class _Pace:
     row: float = 0.0
     seconds: float = -1.0
 
-    def measured(self, seconds: float, rows: int) -> None:
+    def add_measurement(self, seconds: float, rows: int) -> None:
         if self.seconds < 0.0:  # ignore the first time, which may include compilation
             self.row, self.seconds = seconds / rows, 0.0
         elif seconds >= _SURE or self.seconds < _SURE:
@@ -128,7 +128,7 @@ class Chunked(Generic[Subject]):
                 count = left if light else max(2 * count if pace.seconds > 0.0 else 1, int(CHUNK / pace.row))
             start = perf_counter()
             parts.append(work(self.shared.value, question, rows[begin : begin + count]))
-            pace.measured(perf_counter() - start, min(count, left))
+            pace.add_measurement(perf_counter() - start, min(count, left))
             begin += count
         return parts
 
@@ -136,7 +136,7 @@ class Chunked(Generic[Subject]):
         self, work: Work[Subject, Question, Part], question: Question, rows: Array, pace: _Pace, per_worker: int
     ) -> list[Part]:
         engine = self.engine
-        if not isinstance(engine, Serial) and not self.shared.portable:
+        if not isinstance(engine, Serial) and not self.shared.can_be_pickled:
             engine = Serial()
         seconds = pace.row * len(rows)
         limit = (

@@ -95,7 +95,7 @@ class Cluster:
         delay, self._reached = _DELAYS[0], time.monotonic()
         while len(results) < len(items):
             try:
-                self._round(self._connected(), function, items, results, killed, poll)
+                self._round(self._connected_client(), function, items, results, killed, poll)
             except (_Lost, OSError, CancelledError, TimeoutError) as error:
                 lost = self._client is not None
                 self.close()
@@ -133,7 +133,7 @@ class Cluster:
         self.workers = max(1, sum(client.nthreads().values()))
         pending: dict[Any, int] = {}
 
-        def give(indices: list[int]) -> None:
+        def submit(indices: list[int]) -> None:
             name = uuid.uuid4().hex
             keys = [f"slidercrank-{name}-{index}" for index in indices]
             futures = client.map(
@@ -141,7 +141,7 @@ class Cluster:
             )
             pending.update(zip(futures, indices, strict=True))
 
-        give([index for index in range(len(items)) if index not in results])
+        submit([index for index in range(len(items)) if index not in results])
         last_report = looked = time.monotonic()
         waits = False
         try:
@@ -171,7 +171,7 @@ class Cluster:
                             )
                         again.append(index)
                 if again:
-                    give(again)
+                    submit(again)
                 if poll is not None:
                     poll()
                 now = time.monotonic()
@@ -197,7 +197,7 @@ class Cluster:
                 client.cancel(list(pending), force=True)
             raise
 
-    def _connected(self) -> Any:
+    def _connected_client(self) -> Any:
         if self._client is None:
             dask = required("distributed", "a Dask cluster needs")
             for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:

@@ -58,7 +58,7 @@ class Processes:
             # Items running when processes ended are repeated one at a time: an item that ends a process alone is to
             # blame, not the items beside it.
             alone = next((index for index in left if index in suspects), None)
-            broken = self._take(function, items, left if alone is None else [alone], results, poll)
+            broken = self._collect_results(function, items, left if alone is None else [alone], results, poll)
             suspects.update(broken)
             for index in broken:
                 breaks[index] += len(broken) == 1
@@ -76,7 +76,7 @@ class Processes:
             self._pool.shutdown(cancel_futures=True)
             self._pool = None
 
-    def _take(
+    def _collect_results(
         self,
         function: Callable[[Item], Found],
         items: Sequence[Item],
@@ -93,7 +93,7 @@ class Processes:
         try:
             while True:
                 for index in islice(waiting, self.workers - len(running)):
-                    pool = self._started()
+                    pool = self._started_pool()
                     with block_interrupts():
                         running[pool.submit(function, items[index])] = index
                 if not running:
@@ -126,7 +126,7 @@ class Processes:
                 process.kill()
             pool.shutdown(cancel_futures=True)
 
-    def _started(self) -> ProcessPoolExecutor:
+    def _started_pool(self) -> ProcessPoolExecutor:
         """Return the pool once its first process is ready: a failed start is not the fault of an item."""
         for _ in range(_STARTS):
             if self._pool is not None:

@@ -33,7 +33,7 @@ class Best:
     design: Array
 
 
-def best_of(
+def find_best_design(
     problem: Problem,
     checkpoints: Checkpoints | None = None,
     engine: Engine | None = None,
@@ -77,30 +77,30 @@ def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator]
     return explore(full, evaluators, run)
 
 
-def best_on_dimensions(problem: Problem) -> Best | None:
+def find_best_dimensions(problem: Problem) -> Best | None:
     """Return the best value of a problem's only objective: a stroke, time ratio or other closed form.
 
     The design meets the requirements on the dimensions and the transmission angle's floor; loads and masses are
     ignored. None if there is no such design. The search takes about a tenth of a second.
     """
-    light = on_dimensions(problem)
-    return best_of(replace(light, settings=replace(light.settings, samples=_SAMPLES)))
+    light = reduce_to_dimensions(problem)
+    return find_best_design(replace(light, settings=replace(light.settings, samples=_SAMPLES)))
 
 
-def wanting(problem: Problem, name: str, sense: Sense, target: float | None = None) -> Problem:
+def with_single_objective(problem: Problem, name: str, sense: Sense, target: float | None = None) -> Problem:
     """Return the problem with one quantity as its only objective."""
     objective = Objective(quantity=name, sense=sense, target=target)
     return replace(problem, objectives=(objective,), settings=Settings(designs=1, seed=problem.settings.seed))
 
 
-def on_dimensions(problem: Problem) -> Problem:
+def reduce_to_dimensions(problem: Problem) -> Problem:
     """Return the problem for a massless machine, with only the requirements on the dimensions.
 
     The stroke times stay the same.
 
     Choices that affect neither the dimensions nor their requirements are merged.
     """
-    parts = list(dict.fromkeys(_without_masses(part) for part in problem.parts()))
+    parts = list(dict.fromkeys(_reduce_part_to_dimensions(part) for part in problem.parts()))
     if len(parts) == 1:
         return parts[0]
     variants = tuple(
@@ -122,7 +122,7 @@ def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     return tuple(c for c in problem.constraints if problem.quantity(c.quantity).of_dimensions)
 
 
-def _without_masses(part: Problem) -> Problem:
+def _reduce_part_to_dimensions(part: Problem) -> Problem:
     machine = massless_machine(part.mechanism)
     custom = tuple(quantity for quantity in part.own if quantity.of_dimensions)
     return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=custom, costs=None)

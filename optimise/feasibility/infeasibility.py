@@ -18,9 +18,9 @@ from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
 from ..search.violation import least_violation
 from .best import Best
-from .relaxation import Relaxation, missed, relaxations
-from .swinging import unswung
-from .valueless import valueless
+from .relaxation import Relaxation, relaxation_of_missed_bound, relaxations
+from .swinging import why_no_swing
+from .valueless import valueless_quantity_text
 
 _UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank rotates fully; allow a longer rod"
 _SAMPLES = 16384
@@ -59,7 +59,7 @@ def diagnose(
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
-        message = nearest or (_UNMOVED if problem.motion is None else unswung(problem))
+        message = nearest or (_UNMOVED if problem.motion is None else why_no_swing(problem))
         return Diagnosis(feasible, (), message)
     found = []
     stroke = {quantity.name for quantity in STROKE_TIME_RATIOS.values()} - {
@@ -111,7 +111,9 @@ def _least_violation(
         found = least_violation(evaluator, u, ranked=_RANKED, starts=_STARTS)
         if not len(found):
             turned = u[evaluator.valid(u)][:_RANKED]
-            blank = blank or (valueless(evaluator.problem, branch.dimensions(turned)) if len(turned) else "")
+            blank = blank or (
+                valueless_quantity_text(evaluator.problem, branch.dimensions(turned)) if len(turned) else ""
+            )
             continue
         turning = True
         dimensions = branch.dimensions(found.u)
@@ -119,20 +121,20 @@ def _least_violation(
         row = int(np.argmin(found.values[:, 0]))
         if found.values[row, 0] < least:
             least = float(found.values[row, 0])
-            nearest = _jointly_possible(problem, branch.variant, dimensions[row])
+            nearest = _nearest_design_text(problem, branch.variant, dimensions[row])
     return np.concatenate(feasible) if feasible else np.zeros((0, 3)), turning, nearest if turning else blank
 
 
-def _jointly_possible(problem: Problem, variant: int, design: Array) -> str:
+def _nearest_design_text(problem: Problem, variant: int, design: Array) -> str:
     """Describe a design, and the values it has for the requirements that it misses."""
     part = problem.part(variant)
     found = []
     for constraint in constraints_of(part):
         value = float(part.quantity(constraint.quantity).evaluate(part.mechanism, design[None]).values[0])
         for word, bound in constraint.sides:
-            item = missed(part, constraint, word, bound, value)
+            item = relaxation_of_missed_bound(part, constraint, word, bound, value)
             if item is not None:
-                found.append(replace(item, alone=constraint.equality).instead())
+                found.append(replace(item, alone=constraint.equality).replacement_text())
     labels = problem.variants[variant].labels if problem.variants else ()
     chosen = "".join(f"{name} {label}, " for name, label in zip(problem.choices, labels, strict=True))
     sizes = "crank {:.6g} mm, rod {:.6g} mm, offset {:.6g} mm".format(*(1e3 * design[:3]))

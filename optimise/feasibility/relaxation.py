@@ -11,8 +11,8 @@ from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merged
 from ..problem.restatement import restate
 from ..problem.violation import FEASIBLE
-from .best import Best, wanting
-from .safe_side import exact, safe
+from .best import Best, with_single_objective
+from .safe_side import isolated_value_text, round_to_safe_side
 
 _LOWEST = 0.02
 """Fraction of a floor that remains when it is dropped. Values closer to locking are not worth reporting."""
@@ -41,8 +41,8 @@ class Relaxation:
     def rounded_value(self) -> str:
         """The reachable value, in digits that can be required."""
         if self.alone:
-            return exact(self.reachable)
-        return safe(self.reachable, "down" if self.reachable < self.requested else "up")
+            return isolated_value_text(self.reachable)
+        return round_to_safe_side(self.reachable, "down" if self.reachable < self.requested else "up")
 
     @property
     def number(self) -> float:
@@ -63,7 +63,7 @@ class Relaxation:
             f"{requirement} {requested_value}, {limit_word} {self.with_unit} is possible with {other_requirements} met"
         )
 
-    def instead(self) -> str:
+    def replacement_text(self) -> str:
         """Return the reachable requirement that can replace this one, in words."""
         return f"{self.title} {self.relation} {self.with_unit} instead of {self._requested_number()}"
 
@@ -71,7 +71,9 @@ class Relaxation:
         return f"{self.requested:.10g} {self.unit}".rstrip()
 
 
-def missed(problem: Problem, constraint: Constraint, word: Word, bound: float, value: float) -> Relaxation | None:
+def relaxation_of_missed_bound(
+    problem: Problem, constraint: Constraint, word: Word, bound: float, value: float
+) -> Relaxation | None:
     """Return the violated side of a constraint with its reachable value (SI); None if the value meets it."""
     slack = FEASIBLE * (abs(bound) or 1.0)
     off = {"min": bound - value, "max": value - bound, "equals": abs(value - bound)}[word]
@@ -99,17 +101,19 @@ def relaxations(
         # A quantity without upper bound is brought close to the required value instead; values beyond it do not matter.
         unbounded = problem.quantity(constraint.quantity).in_line == math.inf
         sought: Sense = "target" if unbounded else sense
-        reached = best(wanting(free, constraint.quantity, sought, bound if sought == "target" else None))
+        reached = best(with_single_objective(free, constraint.quantity, sought, bound if sought == "target" else None))
         if reached is None:
             continue
-        item = missed(problem, constraint, word, bound, reached.value)
+        item = relaxation_of_missed_bound(problem, constraint, word, bound, reached.value)
         if item is None:
             yield reached.design
             continue
         if sense == "target":
             rounded = item.number / problem.quantity(constraint.quantity).unit.factor
-            again = best(wanting(free, constraint.quantity, "target", rounded))
-            alone = again is None or missed(problem, constraint, word, rounded, again.value) is not None
+            again = best(with_single_objective(free, constraint.quantity, "target", rounded))
+            alone = (
+                again is None or relaxation_of_missed_bound(problem, constraint, word, rounded, again.value) is not None
+            )
             item = replace(item, alone=alone)
         yield item
 

@@ -18,7 +18,7 @@ _ROUNDING = 1e-10
 """Relative: a value closer than this to a shorter number becomes that number; a tenth of what counts as violated."""
 
 
-def safe(value: float, side: Side, *, digits: int = DIGITS) -> str:
+def round_to_safe_side(value: float, side: Side, *, digits: int = DIGITS) -> str:
     """Return a limit in decimal digits, rounded to the side of the possible values.
 
     value: finite, in the display unit. A shorter number within rounding is used instead: 240 for 239.99999999999. It
@@ -29,7 +29,7 @@ def safe(value: float, side: Side, *, digits: int = DIGITS) -> str:
     return _number_text(rounded.plus(Decimal(repr(float(value))) + (size if side == "down" else -size)))
 
 
-def exact(value: float) -> str:
+def isolated_value_text(value: float) -> str:
     """Return an isolated possible value, in all digits that rounding errors leave certain."""
     return _number_text(Context(prec=_EXACT).plus(Decimal(repr(float(value)))))
 

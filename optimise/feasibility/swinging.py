@@ -25,12 +25,12 @@ _HALVINGS = 10  # bisections of the friction fraction, for three digits
 
 def require_swinging(problem: Problem) -> None:
     """Raise `InfeasibleError` if no design in a large sample makes the required swing, or if friction locks it."""
-    message = unswung(problem)
+    message = why_no_swing(problem)
     if message:
         raise InfeasibleError(f"motion: {message}")
 
 
-def unswung(problem: Problem) -> str:
+def why_no_swing(problem: Problem) -> str:
     """Return why no design within the ranges swings as required, in words; "" if one in a large sample does."""
     motion = problem.motion
     assert motion is not None
@@ -71,12 +71,12 @@ def unswung(problem: Problem) -> str:
             "crank"
         )
     return (
-        f"friction may lock every design within the ranges that can make {movement}; {_too_much(stuck, motion)}reduce "
-        "the friction, lengthen the rod, or drive the other end"
+        f"friction may lock every design within the ranges that can make {movement}; "
+        f"{_excessive_friction_text(stuck, motion)}reduce the friction, lengthen the rod, or drive the other end"
     )
 
 
-def _too_much(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
+def _excessive_friction_text(stuck: list[tuple[Mechanism, Array]], motion: Swing) -> str:
     """Describe the fraction of friction at which a locked machine first moves; "" if the friction varies."""
     if any(path.startswith("friction.") for machine, _ in stuck for item in machine.varying for path in item.paths):
         return ""

@@ -16,7 +16,7 @@ from ..search.sampling import first_samples
 _TRIED = 256  # designs of each branch that are checked for an infinite objective
 
 
-def valueless(part: Problem, designs: Array) -> str:
+def valueless_quantity_text(part: Problem, designs: Array) -> str:
     """Return the quantity that has no value for any of the designs (n, 3 + v), with a remedy, or "".
 
     part: a problem without choices. The designs must be able to move as required.
@@ -37,9 +37,9 @@ def valueless(part: Problem, designs: Array) -> str:
     return ""
 
 
-def valueless_in_all(problem: Problem, designs: Array) -> str:
-    """Return the answer of `valueless` if every variant of a problem has one."""
-    said = [valueless(part, designs) for part in problem.parts()] if len(designs) else []
+def valueless_quantity_text_of_variants(problem: Problem, designs: Array) -> str:
+    """Return the answer of `valueless_quantity_text` if every variant of a problem has one."""
+    said = [valueless_quantity_text(part, designs) for part in problem.parts()] if len(designs) else []
     return said[0] if said and all(said) else ""
 
 

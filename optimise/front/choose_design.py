@@ -44,7 +44,7 @@ class Priority:
                 )
 
 
-def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
+def scale_by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
     """Return objectives scaled by their range over the designs: 0 is best, 1 worst; 0 where all are the same."""
     _require_designs(values)
     span = column_ranges(values, size=size)
@@ -54,7 +54,7 @@ def by_range(values: Array, *, size: ArrayLike = 0.0) -> Array:
 
 def knee(values: Array, *, size: ArrayLike = 0.0) -> int:
     """Return the row nearest to the ideal point, with every objective scaled by its range over the designs."""
-    distances = np.linalg.norm(by_range(values, size=size), axis=1)
+    distances = np.linalg.norm(scale_by_range(values, size=size), axis=1)
     return int(np.flatnonzero(distances <= distances.min() + _TIE)[0])
 
 
@@ -81,7 +81,7 @@ def closeness(
             f"got {', '.join(f'{item:g}' for item in share.ravel())}"
         )
     if normalisation == "range":
-        scaled = by_range(values, size=size)
+        scaled = scale_by_range(values, size=size)
     else:
         norms = np.linalg.norm(values, axis=0)
         scaled = values / np.where(norms > 0.0, norms, 1.0)
@@ -113,7 +113,7 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
     columns = [column for column, _, _ in order]
     if not columns or len(set(columns)) < len(columns):
         raise InputError("a ranking must name at least one objective, each once; put the most important first")
-    span, scaled = column_ranges(values, size=size), by_range(values, size=size)
+    span, scaled = column_ranges(values, size=size), scale_by_range(values, size=size)
     rows = np.arange(len(values))
     for place, (column, absolute, share) in enumerate(order):
         last = place == len(order) - 1
@@ -124,7 +124,7 @@ def lexicographic(values: Array, order: Sequence[tuple[int, float, float]], *, s
 
 
 def _least_total(values: Array, rows: np.ndarray, size: ArrayLike) -> int:
-    totals = by_range(values, size=size)[rows].sum(axis=1)
+    totals = scale_by_range(values, size=size)[rows].sum(axis=1)
     return int(rows[np.flatnonzero(totals <= totals.min() + _TIE)[0]])
 
 

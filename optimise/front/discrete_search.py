@@ -23,6 +23,6 @@ class DiscreteSearch:
     continuous: tuple[float, ...]
 
     @property
-    def how(self) -> str:
+    def extent_text(self) -> str:
         """Extent of the search, in words."""
         return "exact" if self.exact else "neighbours of the continuous front"

@@ -45,7 +45,7 @@ def nondominated(values: Array) -> IntArray:
     _mark_prefixes(ordered, ranked, bits, upto)
     by_word = np.pad(ordered, ((0, 0), (0, words * _WORD - count))).reshape(-1, words, _WORD)
     undominated = np.ones(count, np.bool_)
-    in_chunks(count, lambda begin, end: _filter(by_word, bits, upto, begin, end, undominated), size=_CHUNK)
+    in_chunks(count, lambda begin, end: _mark_undominated(by_word, bits, upto, begin, end, undominated), size=_CHUNK)
     return np.sort(order[undominated])
 
 
@@ -73,7 +73,9 @@ def _mark_prefixes(ordered: Table, ranked: IntegerTable, bits: IntegerTable, upt
 
 
 @kernel
-def _filter(by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, undominated: Flags) -> None:
+def _mark_undominated(
+    by_word: Cube, bits: IntegerTable, upto: IntegerTable, begin: int, end: int, undominated: Flags
+) -> None:
     """Mark the designs from `begin` to `end` for which no earlier design is as good in all of these objectives."""
     candidates = np.empty(bits.shape[1], np.int64)
     for i in range(begin, end):

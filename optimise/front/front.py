@@ -29,7 +29,7 @@ from ..problem.problem import Problem
 from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import least_field
-from .choose_design import Normalisation, Priority, by_range, knee, lexicographic, topsis
+from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
 from .constant_numbers import column_ranges
 from .discrete_search import DiscreteSearch
 from .front_picture import figure, svg
@@ -198,7 +198,7 @@ class ParetoFront:
 
     def extremes(self) -> dict[str, int]:
         """Return the row of the best design for each objective; ties go to the better in the other objectives."""
-        scaled = by_range(self.values, size=self._sizes)
+        scaled = scale_by_range(self.values, size=self._objective_targets)
         best = {}
         for index, objective in enumerate(self.objectives):
             least = np.flatnonzero(scaled[:, index] <= scaled[:, index].min() + 1e-9)
@@ -207,7 +207,7 @@ class ParetoFront:
 
     def knee(self) -> int:
         """Return the row nearest to the ideal point, with every objective scaled by its range over the front."""
-        return knee(self.values, size=self._sizes)
+        return knee(self.values, size=self._objective_targets)
 
     def topsis(self, weights: Mapping[str, float], *, normalisation: Normalisation = "range") -> int:
         """Return the row chosen by weights for the objectives, see `choose_design.closeness`.
@@ -221,7 +221,7 @@ class ParetoFront:
             if not isinstance(weight, Real):
                 raise InputError(f"the weight of {name} must be a number; got {weight!r}; write it like 2.0")
         shares = [columns.get(column, 0.0) for column in range(len(self.objectives))]
-        return topsis(self.values, shares, normalisation=normalisation, size=self._sizes)
+        return topsis(self.values, shares, normalisation=normalisation, size=self._objective_targets)
 
     def lexicographic(self, *priorities: Priority | str) -> int:
         """Return the row that remains when objectives decide in turn; see `choose_design.lexicographic`.
@@ -235,10 +235,10 @@ class ParetoFront:
             if not isinstance(item, Priority):
                 raise InputError(f"a ranking may only contain names and Priority(...); got {item!r}; name an objective")
         ranking = [(self.column_of(item.quantity), item.absolute, item.share) for item in order]
-        return lexicographic(self.values, ranking, size=self._sizes)
+        return lexicographic(self.values, ranking, size=self._objective_targets)
 
     @property
-    def _sizes(self) -> list[float]:
+    def _objective_targets(self) -> list[float]:
         """The objectives' targets, SI, 0 for an objective without one: the scale for rounding distances from them."""
         return [abs(objective.target or 0.0) for objective in self.objectives]
 
@@ -339,7 +339,7 @@ class ParetoFront:
                 f"; the smallest one that suffices for the given design is {least}" if least not in ("", label) else ""
             )
             stay.append(f"{name} stays {label}{also}")
-        span = ranges_or_sizes(self.values, self.values[row], self._sizes)
+        span = ranges_or_sizes(self.values, self.values[row], self._objective_targets)
         yield (yield from rounding(part, design, span, to, count=count, allow=allow, notes=stay))
 
     def rates(self, row: int) -> Array:
@@ -354,7 +354,7 @@ class ParetoFront:
         owner, slopes = self.goals[row]
         m, k = len(self.objectives), slopes.shape[1]
         units = np.array([quantity.unit.factor for quantity in self._quantities])
-        ranges = column_ranges(self.values, size=self._sizes)
+        ranges = column_ranges(self.values, size=self._objective_targets)
         spans = units * np.where(ranges > 0.0, ranges, 1.0)
         left = self.values[row] - self.values.min(axis=0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
@@ -366,7 +366,7 @@ class ParetoFront:
         rates = np.full((m, m), np.nan)
         for b in range(m):
             gains = k and left[b] > _NOTHING * ranges[b] and (owner == b).any()
-            losses = _cheapest(slopes, owner, self.active[row], b, m) if gains else None
+            losses = _losses_of_cheapest_gain(slopes, owner, self.active[row], b, m) if gains else None
             if losses is not None:
                 rates[:, b] = np.where(losses > _NOTHING, losses, 0.0) * spans / spans[b]
                 rates[b, b] = np.nan
@@ -380,7 +380,7 @@ class ParetoFront:
         system of the display units.
         """
         require_word("system", system, System)
-        rates, ranges = self.rates(row), column_ranges(self.values, size=self._sizes)
+        rates, ranges = self.rates(row), column_ranges(self.values, size=self._objective_targets)
         units = np.array([quantity.unit.factor for quantity in self._quantities])
         better = (self.values[row] - self.values.min(axis=0)) * units
         worse = (self.values.max(axis=0) - self.values[row]) * units
@@ -391,31 +391,33 @@ class ParetoFront:
             if span == 0.0:
                 continue
             if better[b] <= _NOTHING * span:
-                sentences.append(self._best(gain))
+                sentences.append(self._nothing_to_gain_text(gain))
             elif payers:
                 largest = min(0.1 * span, better[b], *(worse[a] / rates[a, b] for a in payers))
                 if largest > _LEAST * span:
-                    factor = self._unit(gain, system)[1]
+                    factor = self._display_unit(gain, system)[1]
                     step = 10.0 ** np.floor(np.log10(largest * factor)) / factor  # round in the display unit
-                    costs = [self._change(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers]
-                    sentences.append(f"{self._change(gain, step, system, gain=True)} costs {' and '.join(costs)}")
+                    costs = [
+                        self._change_text(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers
+                    ]
+                    sentences.append(f"{self._change_text(gain, step, system, gain=True)} costs {' and '.join(costs)}")
         return sentences
 
-    def _best(self, objective: Objective) -> str:
+    def _nothing_to_gain_text(self, objective: Objective) -> str:
         """Say that no design on the front is better in an objective."""
         title = self.problem.quantity(objective.quantity).title
         if objective.sense == "target":
             return f"no design of the front is nearer to the target of {title}"
         return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
-    def _unit(self, objective: Objective, system: System) -> tuple[str, float]:
+    def _display_unit(self, objective: Objective, system: System) -> tuple[str, float]:
         """Return an objective's display unit in a unit system, and its metric unit expressed in that unit."""
         return metric_unit_in(self.problem.quantity(objective.quantity).unit.symbol, system)
 
-    def _change(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
+    def _change_text(self, objective: Objective, amount: float, system: System, *, gain: bool) -> str:
         """Describe a change in an objective; the change is given in the metric unit."""
         quantity = self.problem.quantity(objective.quantity)
-        unit, factor = self._unit(objective, system)
+        unit, factor = self._display_unit(objective, system)
         size = f"{amount * factor:.3g} {unit}".strip()
         if objective.sense == "target":
             return f"{quantity.title} {size} {'nearer to' if gain else 'farther from'} its target"
@@ -423,7 +425,7 @@ class ParetoFront:
         return f"{size} {'more' if is_more else 'less'} {quantity.title}"
 
 
-def _cheapest(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
+def _losses_of_cheapest_gain(slopes: Array, owner: Array, active: Array, b: int, m: int) -> Array | None:
     """Return the losses (m,) for the cheapest direction in which objective b gains one unit; None if there is none.
 
     Solves a linear programme, min c x subject to G x <= h with some x >= 0, by its optimality conditions with

@@ -21,8 +21,8 @@ def svg(values: Array, labels: Sequence[str]) -> str:
     x = values[:, 0]
     y = values[:, 1] if values.shape[1] > 1 else np.arange(len(values), dtype=np.float64)
     names = [*labels, "design"][:2]
-    horizontal = _MARGIN + (_WIDTH - 2 * _MARGIN) * _share(x)
-    down = _MARGIN + (_HEIGHT - 2 * _MARGIN) * (1.0 - _share(y))
+    horizontal = _MARGIN + (_WIDTH - 2 * _MARGIN) * _fraction_of_range(x)
+    down = _MARGIN + (_HEIGHT - 2 * _MARGIN) * (1.0 - _fraction_of_range(y))
     spots = "".join(
         f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="currentColor" fill-opacity="0.6"/>'
         for a, b in zip(horizontal, down, strict=True)
@@ -60,6 +60,6 @@ def figure(values: Array, labels: Sequence[str], title: str) -> Figure:
     return drawing
 
 
-def _share(values: Array) -> Array:
+def _fraction_of_range(values: Array) -> Array:
     low, span = values.min(initial=np.inf), np.ptp(values) if len(values) else 0.0
     return np.full(len(values), 0.5) if not span > 0.0 else (values - low) / span

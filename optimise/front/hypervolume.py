@@ -79,7 +79,7 @@ def _shared_corners(chosen: Table, count: int, point: Row, corners: Table) -> in
     return corner_count
 
 
-class Bounds:
+class GainBounds:
     """Upper bounds on the hypervolume that scaled designs (n, m) add to the selected ones.
 
     The gain is the design's box minus the part that it shares with the selected designs. Inclusion and exclusion over
@@ -95,7 +95,7 @@ class Bounds:
         n = len(scaled)
         self.most, self.more, self.both = np.zeros(n), np.zeros(n), np.zeros(n)
 
-    def with_design(self, index: int) -> Array:
+    def add_selected_design(self, index: int) -> Array:
         """Return the bounds (n,) after another design is selected."""
         shared = np.minimum(self.margins, self.margins[:, index : index + 1])
         size = shared.prod(axis=0)
@@ -114,7 +114,7 @@ class Bounds:
         return np.asarray(self.boxes - union + _ROUNDING)
 
 
-def choose(
+def choose_designs(
     values: Array, count: int, *, always: tuple[int, ...] = (), report: ReportProgress = ignore_progress
 ) -> IntArray:
     """Return `count` ascending indices of non-dominated designs, `always` included, selected by hypervolume.
@@ -134,7 +134,7 @@ def choose(
 
     ideal, span = scaling(values)
     scaled = np.ascontiguousarray((values - ideal) / span)
-    bounds = Bounds(scaled)
+    bounds = GainBounds(scaled)
     gains, fresh = bounds.boxes.copy(), np.full(n, -1)
     chosen, corners = np.empty((count, scaled.shape[1])), np.empty((count, scaled.shape[1]))
     picked: list[int] = []
@@ -143,7 +143,7 @@ def choose(
         chosen[len(picked)] = scaled[index]
         picked.append(index)
         if n <= _BOUNDED:
-            np.minimum(gains, bounds.with_design(index), out=gains)
+            np.minimum(gains, bounds.add_selected_design(index), out=gains)
         gains[index] = -np.inf
 
     for index in list(dict.fromkeys(always))[:count]:

@@ -47,7 +47,7 @@ def _reflect_column(mirror: Row, pivot: int, up: float, column: Row) -> None:
 
 
 @analytic
-def _leave(columns: Table, target: Row, order: Integers, free: int, leaving: int) -> None:
+def _remove_free_column(columns: Table, target: Row, order: Integers, free: int, leaving: int) -> None:
     """Fix the column at position `leaving` among the `free` columns; rotations of row pairs restore the triangle."""
     column = order[leaving]
     for place in range(leaving + 1, free):
@@ -143,7 +143,7 @@ def _solve_nonnegative(columns: Table, target: Row, max_steps: int, solution: Ro
                 solution[column] += share * (unconstrained[place] - solution[column])
             while leaving >= 0:
                 solution[order[leaving]] = 0.0
-                _leave(columns, target, order, free, leaving)
+                _remove_free_column(columns, target, order, free, leaving)
                 free -= 1
                 leaving = -1
                 for place in range(free):

@@ -37,7 +37,7 @@ class Progress:
     steps: int = 0
 
     @property
-    def prepares(self) -> bool:
+    def is_preparing(self) -> bool:
         """Whether the search is still loading, or repeating the rounds of an earlier run."""
         return self.stage in (LOADING, REPEATING)
 

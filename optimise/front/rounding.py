@@ -65,7 +65,7 @@ def rounding(
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
     allowed = _allowed_misses(part, allow or {})
-    moved, remarks = _moved(part, given, _rounding_steps(to, part))
+    moved, remarks = _steps_of_movable_numbers(part, given, _rounding_steps(to, part))
     search = RoundingSearch(part, given, span, moved, allowed)
     best = yield from search.best(int(count))
     return Rounded(
@@ -86,7 +86,9 @@ def rounding(
     )
 
 
-def _moved(part: Problem, given: Array, steps: Mapping[str, float]) -> tuple[dict[str, float], list[str]]:
+def _steps_of_movable_numbers(
+    part: Problem, given: Array, steps: Mapping[str, float]
+) -> tuple[dict[str, float], list[str]]:
     """Return the steps for numbers that vary over a range, and reasons why others stay.
 
     Raises `InputError` if all stay.
@@ -122,7 +124,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
     """Return both readings of allowed misses without a unit that are large compared with the required value."""
     plain_misses, doubts = (
-        {name: value for name, value in _require_names(allow).items() if not isinstance(value, str)},
+        {name: value for name, value in _require_misses_by_quantity(allow).items() if not isinstance(value, str)},
         [],
     )
     bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
@@ -139,7 +141,7 @@ def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[st
     quantities = {name: part.quantity(name) for name in constraints}
     names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
     allowed: dict[str, float] = {}
-    for name, value in _require_names(misses).items():
+    for name, value in _require_misses_by_quantity(misses).items():
         if name not in names:
             raise InputError(
                 f"only requirements of this job may be missed: {', '.join(constraints) or 'it has none'}; got "
@@ -154,7 +156,7 @@ def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[st
     return allowed
 
 
-def _require_names(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
+def _require_misses_by_quantity(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
     """Return allowed misses. Raises `InputError` unless they are given by quantity."""
     if not isinstance(misses, Mapping):
         raise InputError(

@@ -80,15 +80,15 @@ class RoundingSearch:
         self.most = _MOST_ROBUST if asks_robust(part) else _MOST
         self.design_objectives = all_minimised(part, self.values(design[None]))[0]
         self.window, self.judged, self.feasible_count = 0, 0, 0
-        self._ladders(1)
+        self._possible_values(1)
 
     def best(self, count: int) -> Steps[Array]:
         """Return the best designs (n, 3 + v) from the smallest window with feasible ones; otherwise the nearest.
 
         Yields a `Stage` before every block of designs.
         """
-        for window in self._reaches():
-            designs, self.window = self._window(window), window
+        for window in self._window_widths():
+            designs, self.window = self._designs_in_window(window), window
             misses = yield from self._in_blocks(
                 "screening combinations", designs, self._violation_function(self.quick), _BLOCK
             )
@@ -105,7 +105,7 @@ class RoundingSearch:
             misses[feasible_rows] = np.inf  # an objective has no value
         self.judged, self.feasible_count = len(designs), int(has_values.sum())
         if not has_values.any():
-            return (yield from self._nearest(designs, misses, rows, count))
+            return (yield from self._nearest_by_miss(designs, misses, rows, count))
         best = self._ranked(designs[feasible_rows[has_values]], values[has_values])[:count]
         loss = float(self.losses(self.values(best[:1])).max())
         if len(best) == count or loss <= _ACCEPTED_LOSS:
@@ -113,7 +113,9 @@ class RoundingSearch:
         misses[feasible_rows] = np.inf
         near = misses <= _LITTLE
         place = np.flatnonzero(np.isin(np.flatnonzero(near), rows))
-        missing = yield from self._nearest(designs[near], misses[near], place, count - len(best), _CLEARLY * loss)
+        missing = yield from self._nearest_by_miss(
+            designs[near], misses[near], place, count - len(best), _CLEARLY * loss
+        )
         return np.concatenate([best, missing])
 
     def values(self, designs: Array) -> Array:
@@ -148,7 +150,7 @@ class RoundingSearch:
             blocks.append(function(designs[begin : begin + size]))
         return np.concatenate(blocks)
 
-    def _ladders(self, window: int) -> list[list[float]]:
+    def _possible_values(self, window: int) -> list[list[float]]:
         """Return the possible values of each number of a design."""
         ladders = [[float(value)] for value in self.design]
         for place, name in enumerate(self.ranges):
@@ -175,10 +177,10 @@ class RoundingSearch:
             )
         return multiples
 
-    def _reaches(self) -> list[int]:
+    def _window_widths(self) -> list[int]:
         """Return the increasing half-widths of the windows; fewer than usual for very many numbers."""
         every = (*range(1, REACHES[0]), *REACHES)
-        fitting = [window for window in every if math.prod(map(len, self._ladders(window))) <= self.most]
+        fitting = [window for window in every if math.prod(map(len, self._possible_values(window))) <= self.most]
         if not fitting:
             raise InputError(
                 f"at most {int(math.log2(self.most))} numbers may be rounded together; got {len(self.steps)}; leave "
@@ -186,9 +188,9 @@ class RoundingSearch:
             )
         return [window for window in fitting if window >= REACHES[0]] or fitting[-1:]
 
-    def _window(self, window: int) -> Array:
+    def _designs_in_window(self, window: int) -> Array:
         """Return the combinations (n, 3 + v) of multiples near the design that rotate fully or make the swing."""
-        grid = np.meshgrid(*self._ladders(window), indexing="ij")
+        grid = np.meshgrid(*self._possible_values(window), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
             return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
@@ -209,7 +211,7 @@ class RoundingSearch:
         free = nondominated(all_minimised(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
-    def _nearest(
+    def _nearest_by_miss(
         self, designs: Array, misses: Array, exact: IntArray, count: int, max_loss: float = math.inf
     ) -> Steps[Array]:
         """Return the nearest designs, see `rounding.rounding`; only those that lose at most `max_loss`.
@@ -236,7 +238,7 @@ class RoundingSearch:
             placed = placed[
                 (losses[placed] <= max_loss) & (misses[placed] <= (_LITTLE if math.isfinite(max_loss) else np.inf))
             ]
-            ranked = self._staircase(designs, placed, misses[placed], losses[placed])[:count]
+            ranked = self._rows_with_falling_loss(designs, placed, misses[placed], losses[placed])[:count]
             if len(ranked) == count or (len(ranked) and losses[ranked[-1]] <= 0.0):
                 break
             if len(ranked):
@@ -252,7 +254,7 @@ class RoundingSearch:
                 losses = np.fmax(losses, (now - self.design_objectives[place]) / self.span[place])
         return losses
 
-    def _staircase(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:
+    def _rows_with_falling_loss(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:
         """Return the row with the least miss, then rows that miss more but lose clearly less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         ranked: list[int] = []

@@ -24,7 +24,7 @@ _SAME = 1e-6
 _AS_THEY_ARE = ("status", "message", "hypervolume", "evaluations", "seconds", "seed", "versions")
 
 
-def saved_front(fields: Mapping[str, Any]) -> str:
+def front_to_json(fields: Mapping[str, Any]) -> str:
     """Return a front as JSON fields: arrays in SI, columns in their units; "inf", "-inf", "nan" as text."""
     columns, dimensions, active = fields["columns"], fields["dimensions"], fields["active"]
     record = {
@@ -50,7 +50,7 @@ def saved_front(fields: Mapping[str, Any]) -> str:
 def write_front(fields: Mapping[str, Any], file: Path) -> None:
     """Write a front's fields to a file, completely or not at all. Raises `OSError`."""
     unfinished = file.with_name(f".{file.name}.part")
-    unfinished.write_text(saved_front(fields), encoding="utf-8")
+    unfinished.write_text(front_to_json(fields), encoding="utf-8")
     unfinished.replace(file)
 
 
@@ -70,7 +70,7 @@ def front_fields(file: Path, problem: Problem) -> dict[str, Any]:
             f"{file} must be a front that `save` wrote; got another or a damaged file ({type(error).__name__}); solve "
             "its problem again"
         ) from None
-    _require_same(fields, objectives, problem, file)
+    _require_same_objectives(fields, objectives, problem, file)
     return fields
 
 
@@ -106,7 +106,7 @@ def _front_fields(record: dict[str, Any], problem: Problem) -> dict[str, Any]:
     }
 
 
-def _require_same(fields: dict[str, Any], objectives: list[Any], problem: Problem, file: Path) -> None:
+def _require_same_objectives(fields: dict[str, Any], objectives: list[Any], problem: Problem, file: Path) -> None:
     """Raise `InputError` unless a problem has a front's objectives, with the values of its first design."""
     remedy = "load it with the problem that it was solved for"
     if objectives != _objective_fields(problem):

@@ -41,7 +41,7 @@ def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     return residual, convex, pushing * size / lengths
 
 
-def strict_multipliers(
+def multipliers_with_positive_weights(
     goals: Array, owner: IntArray, active: Array, *, exactly: bool = False
 ) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,) and mu (q,) with weight on every objective.

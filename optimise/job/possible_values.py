@@ -176,13 +176,13 @@ def _nearest_relaxation(
     None if nothing is reachable even then. Each active constraint is a single bound; none are reported if there are
     choices.
     """
-    from ..feasibility.best import Best, best_on_dimensions
+    from ..feasibility.best import Best, find_best_dimensions
     from ..feasibility.relaxation import Relaxation, relaxations
 
     tried: list[Best] = []
 
     def best(relaxed_problem: Problem) -> Best | None:
-        reachable = best_on_dimensions(relaxed_problem)
+        reachable = find_best_dimensions(relaxed_problem)
         tried.extend([reachable] if reachable else [])
         return reachable
 

@@ -13,7 +13,7 @@ from ...objectives.catalogue_amount import Amount
 from ...objectives.count_text import counted
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
-from ..front.hypervolume import ReportProgress, choose, hypervolume, ignore_progress, scaling
+from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ignore_progress, scaling
 from ..front.slack import slack_of
 from ..front.stationarity import STATIONARY, multipliers
 from ..problem.problem import Problem
@@ -114,7 +114,7 @@ def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: Repo
     if len(problem.objectives) == 1:
         return rows
     best = tuple(dict.fromkeys(np.argmin(candidates.values[rows], axis=0).tolist()))
-    return rows[choose(candidates.values[rows], problem.settings.designs, always=best, report=report)]
+    return rows[choose_designs(candidates.values[rows], problem.settings.designs, always=best, report=report)]
 
 
 def columns_of(

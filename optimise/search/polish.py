@@ -21,7 +21,7 @@ from typing import Protocol
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, row_lengths
-from ..front.stationarity import multipliers, strict_multipliers
+from ..front.stationarity import multipliers, multipliers_with_positive_weights
 from .candidates import Polished, ragged
 from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
 from .polish_programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots, solve_step
@@ -181,7 +181,9 @@ class _Batch:
         goals, limits = alone(self.goals, row), alone(self.limits, row)
         pieces = active_pieces(goals, self.chosen, tolerance=_TIGHT)
         edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], tolerance=_TIGHT)])
-        return strict_multipliers(goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold)[0]
+        return multipliers_with_positive_weights(
+            goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold
+        )[0]
 
     def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""

@@ -21,7 +21,7 @@ from ...model.cycle.stroke_times import massless_machine, slow_stroke
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...objectives.registry import QUANTITIES
-from ...optimise.feasibility.best import wanting
+from ...optimise.feasibility.best import with_single_objective
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.problem.violation import FEASIBLE, constraints_of
@@ -262,9 +262,9 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
     constraint = next(item for item in constraints_of(problem) if item.quantity == name)
     others = tuple(item for item in problem.constraints if item.quantity != name)
     if constraint.lower is not None and constraint.upper is not None:
-        sought = wanting(problem, name, "target", 0.5 * (constraint.lower + constraint.upper))
+        sought = with_single_objective(problem, name, "target", 0.5 * (constraint.lower + constraint.upper))
     else:
-        sought = wanting(problem, name, "minimise" if constraint.lower is None else "maximise")
+        sought = with_single_objective(problem, name, "minimise" if constraint.lower is None else "maximise")
     sample = screened(replace(sought, constraints=others))
     rows = np.flatnonzero(sample.is_feasible)
     if not len(rows):

@@ -11,7 +11,7 @@ from typing import Any
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.count_text import counted
-from ...optimise.feasibility.relaxation import Relaxation, missed
+from ...optimise.feasibility.relaxation import Relaxation, relaxation_of_missed_bound
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
 from ...optimise.job.file import require_few
@@ -194,7 +194,7 @@ def _none_sentence(problem: Problem, possible_values: Possible, fixed_names: Seq
         constraint = next(item for item in constraints_of(problem) if item.quantity == name)
         nearest = possible_values.nearest
         for word, bound in constraint.sides:
-            item = None if nearest is None else missed(problem, constraint, word, bound, nearest)
+            item = None if nearest is None else relaxation_of_missed_bound(problem, constraint, word, bound, nearest)
             if item is not None:
                 hardest += f", and one in ten that meet all others has {item.relation} {item.with_unit}"
                 change = _asking(problem, constraint, word, item)
@@ -241,7 +241,7 @@ def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> l
     for word, bound in constraint.sides:
         nearest = min(max(bound, ends[0]), ends[1])
         is_beyond = {"min": bound > nearest, "max": bound < nearest, "equals": True}[word]
-        item = missed(problem, constraint, word, bound, nearest) if is_beyond else None
+        item = relaxation_of_missed_bound(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
             item = replace(item, alone=bool(is_constant(ends)))
             sentences.append(Remark(item.sentence(other_requirements=_REST), _asking(problem, constraint, word, item)))

@@ -216,7 +216,7 @@ def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
             best_value * quantity.unit.factor
         )
     return {
-        "how": summary.how,
+        "how": summary.extent_text,
         "combinations": summary.combinations,
         "judged": summary.judged,
         "values": dict(summary.rules),

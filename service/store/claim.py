@@ -94,7 +94,7 @@ class Claim:
         front: some designs of the front so far, as JSON. Only the latest is stored, with the job: a front in each event
         would inflate a store with many runs.
         """
-        self.has_started = self.has_started or not progress.prepares
+        self.has_started = self.has_started or not progress.is_preparing
         data = json_ready(asdict(progress), gaps=True)
         standing = data if front is None else {**data, "front": json_ready(front, gaps=True)}
         self._write({"progress": text_of(standing)}, [("progress", data)])

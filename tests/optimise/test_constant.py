@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.choose_design import by_range, knee, lexicographic, topsis
+from slidercrank.optimise.front.choose_design import knee, lexicographic, scale_by_range, topsis
 from slidercrank.optimise.front.constant_numbers import SAME, column_ranges, is_constant
 from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
 from slidercrank.optimise.front.slack import slack_of
@@ -64,7 +64,7 @@ def test_a_last_bit_of_a_constant_objective_changes_no_choice() -> None:
         assert knee(bits) == knee(values)
         assert topsis(bits, [1.0, 2.0, 3.0]) == topsis(values, [1.0, 2.0, 3.0])
         assert lexicographic(bits, order) == lexicographic(values, order)
-        assert (by_range(bits)[:, 2] == 0.0).all()
+        assert (scale_by_range(bits)[:, 2] == 0.0).all()
         assert hypervolume(bits, *scaling(bits)) == pytest.approx(hypervolume(values, *scaling(values)), rel=1e-8)
 
 

@@ -151,7 +151,7 @@ def test_of_too_many_combinations_neighbours_of_the_continuous_front_are_judged(
     monkeypatch.setattr(discrete, "MOST", 800)
     near = solve(given)
     assert near.discrete is not None
-    assert (near.discrete.exact, near.discrete.how) == (False, "neighbours of the continuous front")
+    assert (near.discrete.exact, near.discrete.extent_text) == (False, "neighbours of the continuous front")
     assert re.search(
         r"neighbours of the continuous front: \d+ of 1230 combinations .* evaluated, the other \d+ not", near.message
     )
@@ -183,7 +183,7 @@ def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_b
     found, seen = judge_near(axes, exact.dimensions[:1], 30, 10_000)
     assert len(seen) == found.judged < axes.count
     assert has_judged_neighbours(axes, found.dimensions, seen).all()
-    around = judge(part, axes.numbered(np.unique(axes.next_to(found.dimensions))))
+    around = judge(part, axes.designs_of_numbers(np.unique(axes.neighbour_numbers(found.dimensions))))
     for values in around.values:
         assert not ((values <= found.values).all(axis=1) & (values < found.values).any(axis=1)).any()
 

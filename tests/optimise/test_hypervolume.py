@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, Bounds, choose, hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import REFERENCE, GainBounds, choose_designs, hypervolume, scaling
 
 UNIT = (np.zeros(3), np.ones(3))
 
@@ -38,7 +38,7 @@ def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:
             hypervolume(values[[*picked, i]], ideal, span) if i not in picked else -1.0 for i in range(len(values))
         ]
         picked.append(int(np.argmax(gains)))
-    assert choose(values, 6, always=(0,)).tolist() == sorted(picked)
+    assert choose_designs(values, 6, always=(0,)).tolist() == sorted(picked)
 
 
 @pytest.mark.parametrize("objectives", [2, 3, 4, 6])
@@ -47,11 +47,11 @@ def test_no_design_gains_more_than_its_bound(objectives: int) -> None:
     values = random.random((60, objectives))
     values = values[nondominated(values)]
     ideal, span = scaling(values)
-    scaled, bounds = (values - ideal) / span, Bounds((values - ideal) / span)
+    scaled, bounds = (values - ideal) / span, GainBounds((values - ideal) / span)
     chosen: list[int] = []
     for index in random.permutation(len(values))[:12].tolist():
         chosen.append(index)
-        found = bounds.with_design(index)
+        found = bounds.add_selected_design(index)
         before = moocore.hypervolume(scaled[chosen], ref=REFERENCE)
         gains = [moocore.hypervolume(scaled[[*chosen, row]], ref=REFERENCE) - before for row in range(len(values))]
         assert (found >= gains).all()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.feasibility.best import best_of, wanting
+from slidercrank.optimise.feasibility.best import find_best_design, with_single_objective
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search import evaluation
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -56,6 +56,6 @@ def test_the_best_of_one_objective_takes_few_cycles(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(evaluation, "screen_quantities", counted)
     held: dict[str, Bounds] = {"transmission_angle": (degrees(40.0), None), "peak_torque": (None, 20.0)}
-    found = best_of(wanting(problem({"peak_torque": "minimise"}, held), "stroke", "maximise"))
+    found = find_best_design(with_single_objective(problem({"peak_torque": "minimise"}, held), "stroke", "maximise"))
     assert found is not None
     assert sum(judged) < 5000

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.decisions.like import Ends, distance, extended, like
+from slidercrank.optimise.decisions.like import Ends, distance, extend_problem, like
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import scaling
 from slidercrank.optimise.problem.problem import Settings
@@ -71,7 +71,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
 
 
 def test_conditions_join_those_of_the_problem() -> None:
-    asked, contradiction = extended(
+    asked, contradiction = extend_problem(
         front(False).problem,
         (
             Constraint(quantity="transmission_angle", upper=degrees(60.0)),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls
 
-from slidercrank.optimise.front.front import _cheapest
+from slidercrank.optimise.front.front import _losses_of_cheapest_gain
 from slidercrank.optimise.front.neighbours import neighbours
 from slidercrank.optimise.front.nonnegative import nonnegative_least_squares
 from tests.optimise.independent import Array
@@ -101,7 +101,7 @@ def test_the_cheapest_direction_costs_what_a_linear_programme_says() -> None:
         if case % 3 == 0:  # stationary: no direction gains for nothing
             slopes[-1] = -(random.random(len(owner) - 1) @ slopes[:-1])
         gaining = int(random.integers(m))
-        found, expected = (ask(slopes, owner, active, gaining, m) for ask in (_cheapest, by_linprog))
+        found, expected = (ask(slopes, owner, active, gaining, m) for ask in (_losses_of_cheapest_gain, by_linprog))
         assert (found is None) == (expected is None)
         if found is not None and expected is not None:
             assert found.sum() == pytest.approx(expected.sum(), rel=1e-6, abs=1e-6)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import kind_of, to_si
-from slidercrank.optimise.feasibility.safe_side import Side, exact, safe
+from slidercrank.optimise.feasibility.safe_side import Side, isolated_value_text, round_to_safe_side
 
 UNITS = sorted({(quantity.unit.symbol, quantity.unit.factor) for quantity in QUANTITIES.values()})
 
@@ -21,7 +21,7 @@ def test_a_limit_typed_again_lies_on_its_safe_side_and_hardly_gives_anything_awa
 ) -> None:
     symbol, factor = unit
     value = sign * size / factor
-    text = safe(value * factor, side)
+    text = round_to_safe_side(value * factor, side)
     kind = kind_of(symbol)
     again = to_si(f"{text} {symbol}" if symbol else text, kind)
     beyond = (again - value) * (1.0 if side == "down" else -1.0)
@@ -46,10 +46,10 @@ def test_a_limit_typed_again_lies_on_its_safe_side_and_hardly_gives_anything_awa
     ],
 )
 def test_limits_read_as_people_write_numbers(value: float, side: Side, text: str) -> None:
-    assert safe(value, side) == text
+    assert round_to_safe_side(value, side) == text
 
 
 def test_a_value_that_is_possible_alone_is_told_to_rounding() -> None:
     value = 1e3 * (math.sqrt(0.4**2 - 0.05**2) - math.sqrt(0.2**2 - 0.05**2))
-    assert float(exact(value)) == pytest.approx(value, rel=1e-11)
-    assert exact(240.0) == "240"
+    assert float(isolated_value_text(value)) == pytest.approx(value, rel=1e-11)
+    assert isolated_value_text(240.0) == "240"

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.front.stationarity import multipliers, strict_multipliers
+from slidercrank.optimise.front.stationarity import multipliers, multipliers_with_positive_weights
 
 Array = NDArray[np.float64]
 cp: Any = cvxpy  # its own types know neither `sum` nor `norm`
@@ -49,7 +49,7 @@ def test_the_residual_is_the_least_norm_of_a_cone_programme(seed: int) -> None:
 def test_the_strict_residual_lets_every_objective_carry_weight(seed: int) -> None:
     """The sums of weights are held by stiff rows. So the residual is right to 1e-6 of the gradients' size."""
     goals, owner, active = instance(seed)
-    residual, weights, pushing = strict_multipliers(goals, owner, active)
+    residual, weights, pushing = multipliers_with_positive_weights(goals, owner, active)
     groups = [np.flatnonzero(owner == name).tolist() for name in range(3)]
     size = np.linalg.norm(goals, axis=1).max()
     assert residual == pytest.approx(least(goals, active, groups), abs=1e-4 * size)
@@ -79,11 +79,13 @@ def test_a_constraint_is_not_pulled() -> None:
 def test_the_residual_scales_with_the_gradients_and_not_with_the_constraints(size: float) -> None:
     for seed in (1, 2, 4):
         goals, owner, active = instance(seed)
-        plain, strict = multipliers(goals, active)[0], strict_multipliers(goals, owner, active)[0]
+        plain, strict = multipliers(goals, active)[0], multipliers_with_positive_weights(goals, owner, active)[0]
         assert plain > 0.1
         assert multipliers(size * goals, active)[0] == pytest.approx(size * plain, rel=1e-9)
         assert multipliers(goals, size * active)[0] == pytest.approx(plain, rel=1e-9)
-        assert strict_multipliers(size * goals, owner, active)[0] == pytest.approx(size * strict, rel=1e-9)
+        assert multipliers_with_positive_weights(size * goals, owner, active)[0] == pytest.approx(
+            size * strict, rel=1e-9
+        )
 
 
 def test_a_design_without_freedom_is_stationary() -> None:
@@ -92,4 +94,4 @@ def test_a_design_without_freedom_is_stationary() -> None:
 
 def test_vanishing_gradients_are_stationary() -> None:
     assert multipliers(np.zeros((2, 3)), NOTHING)[0] == 0.0
-    assert strict_multipliers(np.zeros((2, 3)), np.arange(2), NOTHING)[0] == 0.0
+    assert multipliers_with_positive_weights(np.zeros((2, 3)), np.arange(2), NOTHING)[0] == 0.0

@@ -11,7 +11,7 @@ from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.decisions.wish import Wishes, wish
 from slidercrank.optimise.decisions.wished import Wished
-from slidercrank.optimise.decisions.wishes import aimed
+from slidercrank.optimise.decisions.wishes import minimised_aim
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job.tables import problem as stated
 from slidercrank.optimise.methods.scalar_objective import SUM
@@ -94,7 +94,7 @@ def independent(of: ParetoFront, answer: Wished) -> list[Independent]:
     for column, item in enumerate(answer.wishes):
         own = np.inf if answer.row is None else (of.values[answer.row, column] - ideal[column]) / span[column]
         if item.kind in ("value", "limit"):
-            scaled = (aimed(of, column, item) - ideal[column]) / span[column]
+            scaled = (minimised_aim(of, column, item) - ideal[column]) / span[column]
             if item.kind == "value":
                 weights[column], reference[column] = 1.0, scaled
             else:

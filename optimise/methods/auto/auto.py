@@ -13,7 +13,7 @@ import numpy as np
 from ....model.arrays import Array, IntArray, Mask, distinct
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
-from ...front.hypervolume import ReportProgress, choose
+from ...front.hypervolume import ReportProgress, choose_designs
 from ...front.neighbours import neighbours
 from ...problem.problem import Problem
 from ...problem.violation import FEASIBLE
@@ -132,7 +132,7 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     values, report = group.values[rows], run.stage_reporter(SELECTING)
 
     def compute() -> tuple[IntArray]:
-        return (choose(values, _candidate_count(problem), always=always, report=report),)
+        return (choose_designs(values, _candidate_count(problem), always=always, report=report),)
 
     return rows[evaluator.step("choice", (values,), compute)[0]]
 
@@ -233,7 +233,7 @@ def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int
     if front.shape[1] == 1:
         return rows[np.argsort(screened[rows, 0], kind="stable")[:count]]
     union = np.concatenate([front, screened[rows]])
-    picked = choose(union, len(front) + count, always=tuple(range(len(front))), report=report)
+    picked = choose_designs(union, len(front) + count, always=tuple(range(len(front))), report=report)
     return rows[picked[picked >= len(front)] - len(front)]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....optimise.decisions.like import Ends, common, distance, nearest
+from ....optimise.decisions.like import Ends, distance, intersect_ranges, nearest_optimal_design
 from ....optimise.front.front import ParetoFront
 from ....optimise.front.hypervolume import scaling
 from ....optimise.problem.problem import Problem
@@ -28,12 +28,12 @@ _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 
 
 def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
-    """Return the nearest design that meets the conditions. Raises the errors of `optimise.decisions.like.nearest`."""
+    """Return the nearest design that meets the conditions. Raises the errors of `like.nearest_optimal_design`."""
     front.part(row)  # raises an error for an invalid row
     before = rows_of(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
     values, span = front.values[row], scaling(front.values)[1]
-    similar = nearest(front.problem, before, values, span, constraints, ranges)
+    similar = nearest_optimal_design(front.problem, before, values, span, constraints, ranges)
     record: dict[str, Any] = {"status": similar.status, "message": similar.message}
     if not len(similar):
         return Answer(
@@ -68,7 +68,7 @@ def _added_constraints(texts: Sequence[str], row: Row, problem: Problem) -> tupl
                 f"like {_EXAMPLE}"
             )
         factor = 1e3 if name in DIMENSIONS else 1.0 if formula else problem.quantity(name).unit.factor
-        ends = common(ends_by_name.get(name, (None, None)), _ends_of_condition(condition, factor, text))
+        ends = intersect_ranges(ends_by_name.get(name, (None, None)), _ends_of_condition(condition, factor, text))
         if ends is None:
             raise InputError(
                 f"the conditions on {name} must not contradict each other; got {text!r} last; leave one out"

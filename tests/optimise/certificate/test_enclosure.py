@@ -20,7 +20,7 @@ from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.certificate.cycle import CycleCurve
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
-from slidercrank.optimise.certificate.machine import interpolated
+from slidercrank.optimise.certificate.machine import interpolate_force
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "sum": lambda x, y, z: 3.0 - (x + y) * 2.0 + z / 7.0 - x,
@@ -106,7 +106,7 @@ def test_a_division_by_what_may_be_zero_says_nothing() -> None:
 def test_a_table_over_an_enclosed_position_holds_every_sample(width: float) -> None:
     at, force = np.array([0.8, 1.0, 1.3, 1.3, 1.31, 2.0]), np.array([2.0, -1.0, 4.0, 6.0, 0.0, 0.5])
     low, high = boxes(width)
-    least, most = interpolated(coordinate(low[:, 0], high[:, 0], 0, 3), at, force).ends()
+    least, most = interpolate_force(coordinate(low[:, 0], high[:, 0], 0, 3), at, force).ends()
     for part in np.linspace(0.0, 1.0, 200):
         value = np.interp(low[:, :1] + (high[:, :1] - low[:, :1]) * part, at, force)
         assert not ((value < least) | (value > most)).any()
