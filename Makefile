@@ -1,4 +1,4 @@
-# What a fresh machine needs: make and Python 3.11 or newer with its venv module (Debian: python3-venv).
+# Requirements: make and Python 3.11 or newer with its venv module (Debian: python3-venv).
 # Another interpreter: make run PYTHON=python3.12
 PYTHON ?= python3
 VENV := .venv
@@ -13,7 +13,7 @@ run: $(VENV)/.installed
 # Tests start hundreds of processes, and each would compile all sources.
 export PYTHONDONTWRITEBYTECODE :=
 
-# Two a processor, since many tests wait for processes and pages; at most 8: each one loads its own numba.
+# Two per processor, because many tests wait for processes and pages; at most 8, because each loads its own numba.
 WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
 MARKED := not slow
@@ -21,7 +21,7 @@ test: $(VENV)/.installed-test
 	@$(BIN)/python -m slidercrank.model.kernel.compile_all slidercrank.optimise slidercrank.model
 	$(PYTEST) -m '$(MARKED)'
 
-# Faults, installed copies, long walks through API and documentation, and whatever else takes over a second a test.
+# Faults, installed copies, long runs through API and documentation, and every other test over a second.
 test-slow: $(VENV)/.installed-test
 	$(PYTEST) -m slow
 
@@ -29,7 +29,7 @@ test-slow: $(VENV)/.installed-test
 test-all: MARKED :=
 test-all: test
 
-# The numbers with another rounding: neither fused multiply-add nor this processor's wide vectors. A part that takes a
+# Results under different rounding, without fused multiply-add or this processor's wide vectors. A part that takes a
 # minute; all of them: make test-rounding ROUNDING="tests/model tests/objectives tests/optimise"
 ROUNDING ?= tests/optimise/test_shipped_jobs.py tests/optimise/test_known_optima.py
 test-rounding: $(VENV)/.installed-test
@@ -64,7 +64,7 @@ docs: $(VENV)/.installed-test
 benchmark: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks
 
-# The pictures of README and docs, on a quiet machine: their times are seen.
+# The pictures in README and docs; use a quiet machine, because they show times.
 pictures: $(VENV)/.installed-benchmark
 	$(BIN)/python -m benchmarks.pictures
 
@@ -72,7 +72,7 @@ pictures: $(VENV)/.installed-benchmark
 screens: $(VENV)/.installed-test
 	$(BIN)/python -m benchmarks.screens
 
-# Requests made from the description of the API: about twenty minutes.
+# Requests generated from the API description: about twenty minutes.
 requests: $(VENV)/.installed-test
 	$(BIN)/python -m tests.service.api.schema_cases 10000 1
 
@@ -84,7 +84,7 @@ clean:
 	rm -rf $(VENV) .package/typing build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
 	find .package model objectives optimise service tests benchmarks -name __pycache__ -prune -exec rm -rf {} +
 
-# The pip that Python brings may be years old, and take twice the time.
+# The pip included with Python may be years old and take twice as long.
 $(VENV)/.created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and \
 	  "Python 3.11 or newer is needed, this is %d.%d; name another one: make PYTHON=python3.12" % sys.version_info[:2])'
@@ -96,7 +96,7 @@ $(VENV)/.created:
 , := ,
 
 # Editable: the folders are used where they are, so that a change needs no new installation. pip would compile all
-# sources on one processor, which is half of its time; the tests that packages bring are a third of them.
+# sources on one processor, which is half of its time; a third of the sources are the packages' own tests.
 define install
 	@echo 'Installing into $(VENV) (about a minute) ...'
 	@$(BIN)/python .package/links.py
