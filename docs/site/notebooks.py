@@ -21,7 +21,9 @@ def notebook_page(file: Path) -> str:
     for number, cell in enumerate(_cells(file)):
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
-            parts.append(source)
+            parts.append(source.replace("<details>", '<details markdown="1">'))
+            continue
+        if not source:  # room for the answer to an exercise
             continue
         code = "\n".join([f"```python\n{source}\n```", *_outputs(file, number, cell)])
         hidden = "answer" in cell["metadata"].get("tags", ())

@@ -49,19 +49,39 @@ def test_every_cell_prints_what_the_notebook_says(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_notebook_has_exercises_with_collapsed_answers_and_is_small(name: str) -> None:
+def test_a_notebook_has_exercises_with_room_and_is_small(name: str) -> None:
     file = FOLDER / name
     page = notebook_page(file)
     exercises, _, answers = page.partition("## Answers")
-    assert 3 <= exercises.count("**Exercise ") <= 4
-    for number in range(1, exercises.count("**Exercise ") + 1):
+    count = exercises.count("**Exercise ")
+    assert 3 <= count <= 4
+    for number in range(1, count + 1):
         assert f"**Exercise {number}.**" in exercises
-        assert f"**{number}.**" in answers
-    hidden = [cell for cell in cells(name) if cell["metadata"].get("tags") == ["answer"]]
-    assert page.count("<details") == len(hidden) >= 3
-    assert all(cell["metadata"]["jupyter"]["source_hidden"] for cell in hidden)
+        assert f"<summary>Answer {number}</summary>" in answers
+    room = [cell for cell in cells(name) if cell["metadata"].get("tags") == ["exercise"]]
+    assert len(room) == count
+    assert not any(cell["source"] or cell["outputs"] for cell in room)
+    assert "```python\n\n" not in page
     assert file.stat().st_size < 200_000
     assert notebook_pictures(file)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_answers_are_closed_and_go_with_their_tag(name: str) -> None:
+    whole = json.loads((FOLDER / name).read_text(encoding="utf-8"))["cells"]
+    tagged = [cell for cell in whole if cell["metadata"].get("tags") == ["answer"]]
+    head, *answers = tagged
+    assert whole[-len(tagged) :] == tagged  # nothing else stands among them
+    assert "".join(head["source"]).startswith("## Answers\n")
+    for cell in answers:
+        text = "".join(cell["source"])
+        if cell["cell_type"] == "code":
+            assert cell["metadata"]["jupyter"] == {"source_hidden": True, "outputs_hidden": True}
+        else:
+            assert text.startswith("<details>\n<summary>")
+            assert text.endswith("\n\n</details>")
+    page = notebook_page(FOLDER / name)
+    assert page.count('<details markdown="1">') == page.count("<details") == len(answers) >= 6
 
 
 def test_the_course_links_every_notebook() -> None:
