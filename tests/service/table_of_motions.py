@@ -181,7 +181,7 @@ def table(of: Callable[[Motion], Refusals]) -> str:
     for (name, rule), on in motions.items():
         names.setdefault((rule, "; ".join(on)), []).append(name)
     rows = [f"| {_listed(refused)} | {rule} | {on} |" for (rule, on), refused in names.items()]
-    return "\n".join(["| refused | because | on |", "|---|---|---|", *rows]) + "\n"
+    return "\n".join(["| rejected | reason | on |", "|---|---|---|", *rows]) + "\n"
 
 
 TABLES = {"quantities": quantities, "certificates": certificates}

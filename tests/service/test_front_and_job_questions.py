@@ -435,7 +435,7 @@ def test_the_recipe_adds_a_question_that_python_and_agents_have(
 ) -> None:
     root = pytestconfig.rootpath
     page = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
-    section = page.split("## A new question to a front or a job")[1].split("\n## ")[0]
+    section = page.split("## A new question about a front or a job")[1].split("\n## ")[0]
     (tmp_path / "reach").mkdir()
     codes = re.findall(r"^```python\n(.*?)^```$", section, flags=re.MULTILINE | re.DOTALL)
     for name, code in zip(("__init__.py", "analysis.py"), codes, strict=True):
