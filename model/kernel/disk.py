@@ -31,6 +31,8 @@ INTO = "--into"
 _PATIENCE = 300.0  # s; a process that compiles for longer has stopped or failed
 _TICK = 0.05  # s
 _REPORT_INTERVAL = 3.0  # s
+_LINE = 120
+"""Characters of a progress line in a notebook; blanks erase the end of a longer one before it."""
 _SIDE_BY_SIDE = 4
 """Maximum number of compiling processes; each takes 200 MB."""
 _STATES = 8
@@ -174,7 +176,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := building(folder, packages).read_text():
-                    _log.warning(f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far")
+                    report_progress(f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far")
         time.sleep(_TICK)
         ask()
 
@@ -195,6 +197,15 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
 @cache
 def _report_compilation() -> None:
     _log.warning("slidercrank is compiling its formulas (only once after installation)")
+
+
+def report_progress(text: str) -> None:
+    """Report the progress of compilation: in a notebook on one line that is updated, elsewhere in the log."""
+    if "ipykernel" in sys.modules:
+        sys.stderr.write(f"\r{text:<{_LINE}}")
+        sys.stderr.flush()
+    else:
+        _log.warning(text)
 
 
 _waits: list[float] = []

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
-from types import FunctionType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numba
@@ -27,7 +27,7 @@ from slidercrank.model.kernel import compile_all, compiler, disk
 from slidercrank.model.kernel.arithmetic import arcsine
 from slidercrank.model.kernel.closure import digest
 from slidercrank.model.kernel.compile_all import compile_missing
-from slidercrank.model.kernel.disk import KernelSource, keep, read
+from slidercrank.model.kernel.disk import KernelSource, keep, read, report_progress
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
@@ -98,6 +98,22 @@ def test_compiling_ahead_is_told_by_who_waits_for_it(program: list[str], tmp_pat
         ended = started(program, folder)
         assert ended.communicate() == ("", "")
         assert ended.returncode == 3
+
+
+def test_progress_stays_on_one_line_of_a_notebook(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    report_progress("1 of 2 done")
+    assert caplog.messages == ["1 of 2 done"]
+    monkeypatch.setitem(sys.modules, "ipykernel", ModuleType("ipykernel"))
+    capsys.readouterr()
+    for text in ("0 of 2 done, now long_name", "1 of 2 done"):
+        report_progress(text)
+    first, second = capsys.readouterr().err.split("\r")[1:]
+    assert (first.rstrip(), second.rstrip()) == ("0 of 2 done, now long_name", "1 of 2 done")
+    assert len(first) == len(second)
+    assert caplog.messages == ["1 of 2 done"]
 
 
 def test_a_kernel_is_compiled_where_nothing_can_be_kept_and_no_process_started(
