@@ -11,10 +11,12 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field, ValidationError
 
 from ...model.cycle.stroke_times import massless_machine, slow_stroke, time_ratio
+from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
+from ...objectives.tables.curve_extremes import curve_extremes
 from ...optimise.problem.remark import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
@@ -100,6 +102,13 @@ class MotionModel(BaseModel):
     transmission_angle_deg: list[float]
 
 
+class ExtremeModel(BaseModel):
+    """Minimum or maximum of a curve over the continuous crank angle, in the unit of its key."""
+
+    value: float = Field(examples=[0.38])
+    crank_angle_deg: float = Field(examples=[298.7])
+
+
 class ExampleModel(BaseModel):
     """Linkage within the ranges. feasible: whether it meets all checked requirements.
 
@@ -118,6 +127,12 @@ class ExampleModel(BaseModel):
     time_ratio: float | None = Field(description="time ratio; null if cylinders differ", examples=[1.2])
     least_transmission_angle_deg: float
     motion: MotionModel
+    extremes: dict[str, tuple[ExtremeModel, ExtremeModel]] | None = Field(
+        description="minimum and maximum of each curve in motion; null unless all three lengths are fixed",
+        examples=[
+            {"slider_velocity_m_s": ({"value": -0.31, "crank_angle_deg": 87}, {"value": 0.38, "crank_angle_deg": 299})}
+        ],
+    )
 
 
 class SwingCurve(BaseModel):
@@ -271,6 +286,7 @@ def _example(look: Look) -> ExampleModel | None:
     machine = look.stated.mechanism
     linkage = Linkage(*look.possible.example, machine.branch)
     inner, outer = (math.degrees(float(angle)) for angle in linkage.dead_centre_angles)
+    turning = replace(massless_machine(machine), speed=machine.speed or 1.0)
     return ExampleModel(
         crank_mm=1e3 * float(linkage.crank),
         rod_mm=1e3 * float(linkage.rod),
@@ -283,7 +299,8 @@ def _example(look: Look) -> ExampleModel | None:
         dead_centres_deg=(inner, outer),
         time_ratio=float(time_ratio(machine, linkage)) if ONE_TIMING.is_met(machine) else None,
         least_transmission_angle_deg=math.degrees(float(linkage.least_transmission_angle)),
-        motion=_motion(machine, linkage),
+        motion=_motion(turning, linkage),
+        extremes=_extremes(turning, linkage) if all(look.stated.ranges[name].fixed for name in DIMENSIONS) else None,
     )
 
 
@@ -332,7 +349,19 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
     )
 
 
-def _motion(machine: Mechanism, linkage: Linkage) -> MotionModel:
-    turning = replace(massless_machine(machine), speed=machine.speed or 1.0)
+def _motion(turning: Mechanism, linkage: Linkage) -> MotionModel:
     curves = {column.key: column.values for column in cycle_table(turning, linkage, angles=_ANGLES)}
     return MotionModel(**{key: curves[key] for key in _CURVES})
+
+
+def _extremes(turning: Mechanism, linkage: Linkage) -> dict[str, tuple[ExtremeModel, ExtremeModel]]:
+    extremes = {}
+    for curve in curve_extremes(turning, linkage):
+        key = f"{curve.name}{curve.kind.metric.suffix}"
+        if key in _CURVES:
+            least, greatest = (
+                ExtremeModel(value=curve.kind.metric.factor * end.value, crank_angle_deg=math.degrees(end.crank_angle))
+                for end in (curve.least, curve.greatest)
+            )
+            extremes[key] = (least, greatest)
+    return extremes

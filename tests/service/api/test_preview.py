@@ -82,6 +82,7 @@ def test_the_example_is_a_linkage_within_the_ranges_that_meets_the_requirements(
 ) -> None:
     found = preview(shared, feeder)
     assert set(found["allowed"]["met_by_all"]) == {"stroke", "rod_to_offset"}
+    assert found["example"]["extremes"] is None
     example = found["example"]
     assert example["feasible"]
     assert example["clockwise"]
@@ -114,6 +115,22 @@ def test_curves_of_three_fixed_lengths_are_those_of_the_linkage_and_rest_at_its_
     assert curves["slider_velocity_m_s"] == pytest.approx(omega * (after - before) / (2 * step), abs=1e-7)
     acceleration = omega**2 * (after - 2 * at + before) / step**2
     assert curves["slider_acceleration_m_s2"] == pytest.approx(acceleration, abs=1e-5)
+    fine = np.linspace(0.0, 2.0 * math.pi, 200_001)
+    speeds = (position(fine + step) - position(fine - step)) * omega / (2 * step)
+    accelerations = (position(fine + step) - 2 * position(fine) + position(fine - step)) * omega**2 / step**2
+    angles = np.degrees(np.arccos((0.04 - 0.05 * np.sin(fine)) / 0.15))
+    transmission = np.minimum(angles, 180.0 - angles)
+    for key, values, tolerance in (
+        ("slider_position_mm", 1e3 * position(fine), 1e-6),
+        ("slider_velocity_m_s", speeds, 1e-7),
+        ("slider_acceleration_m_s2", accelerations, 1e-5),
+        ("transmission_angle_deg", transmission, 1e-3),  # a cusp: the greatest value lies between the points
+    ):
+        least, greatest = example["extremes"][key]
+        assert (least["value"], greatest["value"]) == pytest.approx((values.min(), values.max()), abs=tolerance)
+        for end in (least, greatest):
+            there = np.interp(math.radians(end["crank_angle_deg"]), fine, values)
+            assert there == pytest.approx(end["value"], abs=10 * tolerance)
     centres = position(np.radians(example["dead_centres_deg"]))
     assert 1e3 * centres == pytest.approx(example["slider_ends_mm"], rel=1e-12)
     assert example["slider_ends_mm"] == pytest.approx([1e3 * math.sqrt(d) for d in (0.0084, 0.0384)], rel=1e-12)

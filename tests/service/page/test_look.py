@@ -59,6 +59,15 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     least = math.degrees(math.acos((r + e) / l))
     expect(fact(page, "Least transmission angle")).to_have_text(f"{least:.4g}°")
     expect(page.locator(".curves .chart .curve")).to_have_count(4)
+    angles = [2.0 * math.pi * k / 100_000 for k in range(100_000)]
+    omega = -3.0 * math.pi
+    rises = [(e - r * math.sin(angle)) / math.sqrt(l**2 - (e - r * math.sin(angle)) ** 2) for angle in angles]
+    speeds = [
+        1e-3 * omega * (-r * math.sin(angle) + r * math.cos(angle) * rise)
+        for angle, rise in zip(angles, rises, strict=True)
+    ]
+    ends = [f"{end:.4g}".replace("-", "−") for end in (min(speeds), max(speeds))]
+    expect(fact(page, "Slider velocity")).to_have_text(f"{ends[0]} to {ends[1]}\xa0m/s")
     require_accessible(page)
 
     crank, slider, guide = (
@@ -83,6 +92,15 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     needed = number(page, "Crank") + number(page, "Offset")
     expect(page.get_by_role("alert")).to_contain_text(f"lengthen the rod by more than {needed - 60.0:g} mm")
     expect(page.get_by_role("link", name="Search from here")).to_be_hidden()
+    lengthen = page.get_by_role("button", name="Lengthen the rod to")
+    longer = float(lengthen.inner_text().split()[-2])
+    assert longer == pytest.approx(1.25 * needed, abs=0.01)
+    lengthen.press("Enter")
+    expect(lengthen).to_be_hidden()
+    assert number(page, "Rod") == longer
+    expect(page.get_by_role("link", name="Search from here")).to_be_visible()
+    page.get_by_label("Rod", exact=True).fill("60")
+    expect(lengthen).to_be_visible()
     drag(page, guide, 0.0, -800.0)  # no further than the links reach
     assert needed < number(page, "Offset") < number(page, "Crank") + 60.0
     expect(page.locator(".curves .chart").first).to_be_hidden()

@@ -17,7 +17,6 @@ import { range, scale } from "./scale.js";
  */
 
 const HEIGHTS = { large: 250, small: 140 };
-const MOST_LARGE = 3;
 const SOON = 150; // ms after a change, until charts that are out of sight follow
 const EVERY = 100; // ms between two readouts while it moves; faster ones cannot be read
 
@@ -25,15 +24,16 @@ const EVERY = 100; // ms between two readouts while it moves; faster ones cannot
  * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
  * - show(series, panels, abscissa): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
  *   panels: each {key, title, unit}, a curve of the API; abscissa: what they are drawn over. - turn({angle, settled}). - close().
- * large: keys of the curves that are large, told(keys) as the reader chooses others.
+ * large: keys of the curves that are large, at most `most`; onChoice(keys): the reader chose others.
  * @param {HTMLElement} place @param {(angle: number, taken: boolean) => void} turned
- * @param {{ large: string[], onChoice: (large: string[]) => void }} sizes
+ * @param {{ large: string[], most?: number, onChoice: (large: string[]) => void }} sizes
  */
 export function curveCharts(place, turned, sizes) {
   const [wide, grid] = ["curves large", "curves small"].map((name) => h("div", { class: name }));
   place.append(wide, grid);
   let abscissa = abscissaOf("angle", 0);
   let { large } = sizes;
+  const { most = 3 } = sizes;
   /** @type {{ series: Shown[], panels: Panel[] } | null} */
   let content = null;
   /** @type {ReturnType<typeof chart>[]} */
@@ -72,7 +72,7 @@ export function curveCharts(place, turned, sizes) {
   /** Put the charts into their places: those that are large, in their order, before the others. */
   function sort() {
     const first = large.flatMap((key) => charts.find((one) => one.panel.key === key) ?? []);
-    const chosen = (first.length ? first : charts).slice(0, MOST_LARGE);
+    const chosen = (first.length ? first : charts).slice(0, most);
     for (const one of charts) one.size(chosen.includes(one));
     fill(
       wide,
@@ -90,7 +90,7 @@ export function curveCharts(place, turned, sizes) {
       .filter((one) => one.figure.parentElement === wide)
       .map((one) => one.panel.key);
     const rest = now.filter((one) => one !== key);
-    large = now.includes(key) ? (rest.length ? rest : now) : [key, ...rest].slice(0, MOST_LARGE);
+    large = now.includes(key) ? (rest.length ? rest : now) : [key, ...rest].slice(0, most);
     sizes.onChoice(large);
     sort();
     arrange();

@@ -69,8 +69,8 @@ export function restoreScroll(signal) {
   };
   const refocus = () => {
     const node = focus && document.querySelector(focus);
-    if (node && [document.body, byId("main")].includes(document.activeElement))
-      node.focus({ preventScroll: true });
+    const at = document.activeElement;
+    if (node && (at === document.body || at === byId("main"))) node.focus({ preventScroll: true });
     return node || !focus;
   };
   const reach = () => {

@@ -221,11 +221,11 @@ function movingParts() {
       measure(pins[1], { cx: linkage.crank_mm * view.unit });
       measure(pins[2], { cx: linkage.rod_mm * view.unit });
       const long = linkage.rod_mm * view.unit;
-      length.textContent = written && long > 110 ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
-      // Along the rod, which never stands on its head: on the crossed branch it points the other way.
+      length.textContent = written && long > 150 ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
+      // Along the rod outside the guide, and never on its head: on the crossed branch it points the other way.
       length.setAttribute(
         "transform",
-        `translate(${long / 2} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`,
+        `translate(${0.28 * long} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`,
       );
       const line = view.y(linkage.offset_mm);
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value

@@ -9,7 +9,7 @@ import { mechanismsPanel } from "../design/mechanisms.js";
 import { keep, link } from "../lib/address.js";
 import { isAbort, post } from "../lib/api.js";
 import { fill, h, markInvalid, numberField, typeInto } from "../lib/dom.js";
-import { readySystem, text, unitOf } from "../lib/numbers.js";
+import { inDisplayUnits, readySystem, text, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { readyKinds } from "../lib/units.js";
@@ -51,6 +51,7 @@ export async function show(place, { query, signal }) {
     h("dl", { class: "facts" }),
     h("a", { class: "button primary", hidden: true }, "Search from here"),
   ];
+  const mend = h("button", { type: "button", hidden: true });
   const machines = mechanismsPanel(
     stage,
     strip,
@@ -71,7 +72,7 @@ export async function show(place, { query, signal }) {
       if (taken) angle.pause();
       if (!angle.playing) angle.set(at);
     },
-    { large: PANELS.slice(0, 3).map(({ key }) => key), onChoice: () => {} },
+    { large: PANELS.map(({ key }) => key), most: PANELS.length, onChoice: () => {} },
   );
   angle.listen(charts.turn);
   signal.addEventListener("abort", () => [machines, charts].forEach((part) => part.close()));
@@ -140,6 +141,7 @@ export async function show(place, { query, signal }) {
     nothing.hidden = !fault;
     for (const part of [stage, strip]) part.hidden = Boolean(fault);
     for (const part of [curves, facts, next]) part.hidden ||= Boolean(fault) || locks;
+    mend.hidden ||= Boolean(fault);
     if (fault) {
       wrong.textContent = fault;
       return false;
@@ -193,6 +195,7 @@ export async function show(place, { query, signal }) {
               .filter(({ path }) => /^(variables|mechanism)/.test(path))
               .map(({ sentence }) => sentence),
           ].map((one) => `${capital(inWords(one))}.`),
+          allowed?.changes.find(({ path }) => path === "variables.rod"),
         );
     } catch (error) {
       if (isAbort(error)) return;
@@ -203,8 +206,14 @@ export async function show(place, { query, signal }) {
     }
   }
 
-  /** Show what the service says. @param {Api.Example | null} example @param {string[]} faults */
-  function update(example, faults) {
+  /** Show what the service says. @param {Api.Example | null} example @param {string[]} faults @param {Api.Change} [change] to a rod that lets the crank rotate */
+  function update(example, faults, change) {
+    mend.hidden = !change;
+    if (change) {
+      const { value } = parseQuantity(String(change.value), "mm");
+      mend.textContent = inDisplayUnits(change.label);
+      mend.onclick = () => take({ rod_mm: value });
+    }
     if (!draw(example)) return;
     wrong.textContent = example ? "" : faults.join(" ");
     for (const part of [curves, facts, next]) part.hidden = !example;
@@ -246,6 +255,7 @@ export async function show(place, { query, signal }) {
           h("span", { class: "quiet" }, unitOf("rpm")),
         ),
         wrong,
+        mend,
         facts,
         h(
           "p",
@@ -265,19 +275,13 @@ export async function show(place, { query, signal }) {
   if (!facts.hidden && !matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
 }
 
-/**
- * Return the extremes to mark on the curves: those of the position are exact; those of samples would contradict the facts.
- * @param {Api.Example} example @returns {Record<string, Page.Ends | null>}
- */
-function marked({ slider_ends_mm, dead_centres_deg }) {
-  const [low, high] = slider_ends_mm.map((value, n) => ({
-    value,
-    angle: turned(dead_centres_deg[n]),
-  }));
-  return {
-    ...Object.fromEntries(PANELS.map(({ key }) => [key, null])),
-    slider_position_mm: { low, high },
-  };
+/** Return the exact extremes of each curve, to mark them. @param {Api.Example} example @returns {Record<string, Page.Ends | null>} */
+function marked({ extremes }) {
+  const ends = Object.entries(extremes ?? {}).map(([key, found]) => {
+    const [low, high] = found.map(({ value, crank_angle_deg: angle }) => ({ value, angle }));
+    return [key, { low, high }];
+  });
+  return Object.fromEntries(ends);
 }
 
 /** Return where the slider is innermost and outermost, deg. @param {(number | null)[]} positions @returns {Page.Point} */
