@@ -78,13 +78,15 @@ def load_job(
 def warn_of(problem: Problem) -> None:
     """Issue a Python warning for each warning of a problem, attributed to the caller's caller.
 
-    Also warn about loads that drive it, loaded strokes that are fast in every design, and offsets that a slow stroke
-    excludes.
+    Also warn about loads that drive it, or that are stated for more than the whole stroke, about loaded strokes that
+    are fast in every design, and about offsets that a slow stroke excludes.
     """
     from ..search.driving_loads import driven_by_loads
     from ..search.loaded_stroke import expected_warnings
+    from ..search.whole_stroke_loads import loads_over_whole_strokes
 
-    for sentence in (*problem.warnings, *driven_by_loads(problem), *expected_warnings(problem, certain=True)):
+    sentences = [*driven_by_loads(problem), *loads_over_whole_strokes(problem)]
+    for sentence in (*problem.warnings, *sentences, *expected_warnings(problem, certain=True)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 
 

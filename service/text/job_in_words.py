@@ -32,6 +32,7 @@ from ...optimise.problem.violation import constraints_of
 from ...optimise.search.driving_loads import driven_by_loads
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.loaded_stroke import expected_warnings
+from ...optimise.search.whole_stroke_loads import loads_over_whole_strokes
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 
@@ -48,6 +49,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     warnings = [
         *problem.warnings,
         *driven_by_loads(problem),
+        *loads_over_whole_strokes(problem),
         *expected_warnings(problem),
         *idle_rules(problem),
         *idle_options(problem),

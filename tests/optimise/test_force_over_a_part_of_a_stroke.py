@@ -8,13 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
+import slidercrank as sc
 from slidercrank.model.errors import JobError
+from slidercrank.model.input_warning import InputWarning
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.optimise.job import Job, job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.driving_loads import net_work
+from slidercrank.optimise.search.whole_stroke_loads import loads_over_whole_strokes
 
 LENGTHS = {"crank": ["20 mm", "100 mm"], "rod": ["200 mm", "400 mm"], "offset": ["0 mm", "50 mm"]}
 
@@ -100,6 +103,57 @@ def test_the_part_may_be_a_choice_and_says_that_it_cannot_be_a_range() -> None:
     assert [part.mechanism.loads[0].knots()[0] for part in asked.parts()] == [(0.0, 0.06, 0.06), (0.0, 0.02, 0.02)]
     with pytest.raises(JobError, match=r"load\.1\.over: must name a number; got last 0\.02 m; make it a choice"):
         problem(load, **{"load.1.over": ["last 20 mm", "last 60 mm"]})
+
+
+@pytest.mark.parametrize(
+    ("load", "place"),
+    [
+        ({"opposes": "outward stroke", "over": "last 140 mm"}, "last 140 mm of the outward stroke"),
+        ({"opposes": "inward stroke", "over": "last 140 mm"}, "last 140 mm of the inward stroke"),
+        ({"helps": "outward stroke", "over": "first 140 mm"}, "first 140 mm of the outward stroke"),
+    ],
+)
+def test_a_part_longer_than_every_stroke_is_warned_of(load: dict[str, Any], place: str) -> None:
+    asked = problem(load, crank=["20 mm", "60 mm"], offset="0 mm")  # strokes from 40 to 120 mm
+    (warning,) = loads_over_whole_strokes(asked)
+    assert warning.startswith(f"load #1 acts over the {place}, but the longest stroke of the sampled designs is ")
+    assert warning.endswith(" mm, so it acts over the whole stroke; shorten this part, or leave it out")
+    longest = float(warning.partition("designs is ")[2].partition(" mm")[0])
+    assert 110.0 < longest <= 120.0
+    whole = problem({key: value for key, value in load.items() if key != "over"})
+    designs = np.array([[0.06, 0.3, 0.0], [0.02, 0.3, 0.0]])
+    assert net_work(asked, designs, [0]) == pytest.approx(net_work(whole, designs, [0]), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("load", "crank"),
+    [
+        ({"opposes": "outward stroke", "over": "last 100 mm"}, ["20 mm", "60 mm"]),  # some strokes are longer
+        ({"opposes": "outward stroke", "over": "last 120 mm"}, "60 mm"),  # the whole stroke, exactly
+        ({"opposes": "outward stroke"}, "60 mm"),
+    ],
+)
+def test_a_part_that_a_stroke_can_contain_is_not_warned_of(load: dict[str, Any], crank: Any) -> None:
+    assert loads_over_whole_strokes(problem(load, crank=crank, offset="0 mm")) == []
+
+
+def test_a_part_that_a_choice_shortens_is_not_warned_of() -> None:
+    load = {"opposes": "outward stroke", "over": "last 300 mm"}
+    short, long = ({"choices": ["last 300 mm", over]} for over in ("last 60 mm", "last 400 mm"))
+    assert loads_over_whole_strokes(problem(load, **{"load.1.over": short})) == []
+    (warning,) = loads_over_whole_strokes(problem(load, **{"load.1.over": long}))
+    assert "last 300 mm" in warning
+
+
+def test_a_table_that_is_longer_than_the_stroke_is_not_warned_of() -> None:
+    table = {"positions": ["0 mm", "300 mm"], "forces": ["-10 N", "-20 N"], "measured_from": "outer dead centre"}
+    job = tables({}) | {"load": [table]}
+    assert loads_over_whole_strokes(parse_job(job)) == []
+
+
+def test_python_warns_of_a_part_longer_than_every_stroke() -> None:
+    with pytest.warns(InputWarning, match="load #1 acts over the last 300 mm"):
+        sc.problem(tables({"opposes": "inward stroke", "over": "last 300 mm"}))
 
 
 def test_a_job_with_a_part_of_a_stroke_that_was_read_is_a_job_again() -> None:
