@@ -1,40 +1,40 @@
-"""Sizes offset slider-crank mechanisms: from what a machine must do to the Pareto front of designs.
+"""Sizes offset slider-crank mechanisms: from a machine's requirements to the Pareto front of designs.
 
 State a problem
     problem              the tables of a job file as a dict: values with units, or numbers in SI
     load_job             a job file, .toml or .json
     job_schema           JSON Schema of a job: every key, with its meaning
-    Problem              what is given, what may vary, what must hold, what is wanted
+    Problem              given values, variables, constraints and objectives
     Constraint           a quantity within bounds
     Objective            a quantity to minimise, to maximise or to bring to a target
-    quantities           table of the quantities that both may name
+    quantities           table of the quantities that both may use
 
 Solve it
     solve                the Pareto front of a problem
     ParetoFront          designs as a table, picks, trade-offs
     Priority             one step of a pick by priorities
-    like                 the design nearest to one of a front that meets further requirements
-    wish                 the optimal design that comes nearest to wished values of the objectives
+    like                 the design nearest to one on a front that meets further requirements
+    wish                 the optimal design nearest to aspiration levels for the objectives
 
 Evaluate designs
-    evaluate             quantities of many designs of a machine, with derivatives (`Problem.evaluate` of a problem)
-    analyse              everything about one design of a machine (`Problem.analyse` of a problem)
-    Analysis             its quantities, reasons for undefined ones, its cycle as a table
+    evaluate             quantities of many designs of a machine, with derivatives (for a problem, `Problem.evaluate`)
+    analyse              everything about one design of a machine (for a problem, `Problem.analyse`)
+    Analysis             the quantities of a design, reasons for undefined quantities, the cycle as a table
     Mechanism            speed, masses, loads and tolerances of a machine
-    Linkage              crank, rod, offset: closed forms and motion, also for arrays and complex numbers
+    Linkage              crank, rod, offset: closed-form results and motion, also for arrays and complex numbers
     crank_from_stroke    the crank that gives a stroke
 
 Use other optimisers
     standard_form        bounds, objectives and requirements as arrays, with derivatives; `.scipy()` for scipy.optimize
-    StandardForm         what it returns
+    StandardForm         the result of `standard_form`
     jax_function, torch_function, openmdao_component, pymoo_problem, optuna_objective
-                         a problem within these frameworks, each an extra of the installation
+                         a problem for these frameworks, each of which is an extra of the installation
 
 Errors
-    SlidercrankError     any of this software; `InputError`, `AssemblyError` and `JobError` among them
+    SlidercrankError     base of all errors: `InputError`, `AssemblyError`, `JobError`, ...
     InfeasibleError      a `JobError` for a valid job that no design can meet
 
-Every name is imported when it is first used. Values are in SI and radians unless a name or a column carries a unit.
+Every name is imported on first use. Values are in SI and radians unless a name or a column carries a unit.
 """
 
 from importlib import import_module
@@ -100,7 +100,7 @@ if TYPE_CHECKING:
 
     __version__: str
 else:
-    # Not shown to type checkers: they would take every misspelt name for a known one.
+    # Hidden from type checkers, which would accept every misspelt name.
     _HOMES = {
         "model.errors": ("AssemblyError", "InfeasibleError", "InputError", "JobError", "SlidercrankError"),
         "model.linkage.inverse": ("crank_from_stroke",),
