@@ -46,6 +46,8 @@ class SwingQuantity(Quantity):
 
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
+        if swing.driver == "cylinder":
+            return "it is of a crank with rod and slider; got a lever moved by a cylinder that turns; leave it out"
         if self.driver is not None and swing.driver != self.driver:
             return (
                 f'it is of a swing that the {self.driver} drives; got driver = "{swing.driver}"; use {self.instead}, '
@@ -155,15 +157,16 @@ class SwingForm(SwingQuantity):
 
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if all designs have the same value; see `SwingQuantity`."""
-        if swing.stated_for == self.stated:
-            stated_value = self.unit.factor * abs(swing.end - swing.start)
-            keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
-            return (
-                f"[motion] fixes it by {keys} for all designs; got {stated_value:.6g} {self.unit.symbol} there; leave "
-                f"it out, or state {'the two slider positions' if swing.stated_for == 'crank' else 'crank angles'} "
-                "instead and let it follow"
-            )
-        return super().unfit(swing)
+        reason = super().unfit(swing)
+        if reason is not None or swing.stated_for != self.stated:
+            return reason
+        stated_value = self.unit.factor * abs(swing.end - swing.start)
+        keys = "from and to" if swing.stated_for == "crank" else "slider_from and slider_to"
+        return (
+            f"[motion] fixes it by {keys} for all designs; got {stated_value:.6g} {self.unit.symbol} there; leave "
+            f"it out, or state {'the two slider positions' if swing.stated_for == 'crank' else 'crank angles'} "
+            "instead and let it follow"
+        )
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -16,6 +16,7 @@ def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     Raises `InputError` for an array of linkages, for a linkage on another branch than the mechanism's, and for a spring
     on a fully rotating crank; `AssemblyError` for one that does not rotate fully.
     """
+    require_slider(mechanism)
     linkage.require_full_rotation()
     require_no_winding(mechanism)
     return one_linkage(mechanism, linkage)
@@ -37,3 +38,12 @@ def one_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
             "set branch in both"
         )
     return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
+
+
+def require_slider(mechanism: Mechanism) -> None:
+    """Raise `InputError` for a lever moved by a cylinder that turns, for an analysis of a slider-crank."""
+    if mechanism.lever is not None:
+        raise InputError(
+            'this needs a crank with rod and slider; got inversion = "turning cylinder", which has neither; ask for '
+            "quantities of the lever, or use `slidercrank lever`"
+        )

@@ -22,8 +22,8 @@ class Cylinder:
 
     closed_length: least length between the pins A and B along the line, m. stroke: m. bore, rod: diameters, m.
     supply_pressure: Pa above that of the other side. seal_friction: N, against the motion. modulus: modulus of
-    elasticity of the piston rod, Pa. barrel_mass, rod_mass: kg, uniform bars as long as the closed cylinder, or as its
-    least length in the swing. length_tolerance: of its length, m.
+    elasticity of the piston rod, Pa. barrel_mass, piston_rod_mass: kg, uniform bars as long as the closed cylinder, or
+    as its least length in the swing. length_tolerance: of its length, m.
     """
 
     closed_length: float | None = None
@@ -34,7 +34,7 @@ class Cylinder:
     seal_friction: float = 0.0
     modulus: float = STEEL
     barrel_mass: float = 0.0
-    rod_mass: float = 0.0
+    piston_rod_mass: float = 0.0
     length_tolerance: float = 0.0
 
     def __post_init__(self) -> None:
@@ -42,7 +42,7 @@ class Cylinder:
             require_numbers(self, name, phrase=f"the {name.replace('_', ' ')} of a cylinder", above=0.0, unit="m")
         require_numbers(self, "supply_pressure", "modulus", phrase="the {} of a cylinder", above=0.0, unit="Pa")
         require_numbers(self, "seal_friction", phrase="the friction of a seal", least=0.0, unit="N")
-        require_numbers(self, "barrel_mass", "rod_mass", phrase="the {} of a cylinder", least=0.0, unit="kg")
+        require_numbers(self, "barrel_mass", "piston_rod_mass", phrase="the {} of a cylinder", least=0.0, unit="kg")
         require_numbers(self, "length_tolerance", phrase="the {} of a cylinder", least=0.0, unit="m")
         if (self.closed_length is None) != (self.stroke is None):
             given = "no stroke" if self.stroke is None else "no closed length"
@@ -65,6 +65,17 @@ class Cylinder:
                 f"a supply pressure needs a cylinder bore; got {1e-5 * self.supply_pressure:.6g} bar and no bore; "
                 "give the bore"
             )
+
+    @property
+    def text(self) -> str:
+        """What is known of it, in words."""
+        lengths = (*tuple(self.__dataclass_fields__)[:4], "length_tolerance")
+        given = [(name, 1e3, "mm") for name in lengths] + [("supply_pressure", 1e-5, "bar")]
+        given += [("seal_friction", 1.0, "N"), ("barrel_mass", 1.0, "kg"), ("piston_rod_mass", 1.0, "kg")]
+        numbers = ((name, getattr(self, name), factor, unit) for name, factor, unit in given)
+        return ", ".join(
+            f"{name.replace('_', ' ')} {factor * number:.6g} {unit}" for name, number, factor, unit in numbers if number
+        )
 
     @property
     def areas(self) -> tuple[float, float] | None:

@@ -13,6 +13,7 @@ from .arrangement import Arrangement
 from .clearance import Clearance
 from .drive import Drive
 from .friction import Friction
+from .lever import Lever, require_lever_alone
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .loads.load_text import range_text
@@ -105,7 +106,7 @@ _KINDS = {
     **{"crank": Bar | RigidLink, "rod": Bar | RigidLink, "counterweight": Counterweight, "tolerances": Tolerances},
     **{"friction": Friction, "drive": Drive | None, "clearance": Clearance | None, "arrangement": Arrangement | None},
     **{"speed_profile": Profile | None, "strength": Strength | None, "start": Start},
-    "slider": SliderDistances,
+    **{"slider": SliderDistances, "lever": Lever | None},
 }
 
 
@@ -122,9 +123,10 @@ class Mechanism:
     `signals.shaft_statistics` says which signals add up and which belong to one cylinder. clearance: a loose joint, for
     `clearance.run.simulate`; all other analyses treat every joint as ideal. strength: material and pins, used only to
     judge the strength of bars. start: start of a swing if designs choose it; used only for that. slider: distances from
-    a dead centre, used only by slider quantities defined there. varying: numbers that differ from design to design.
-    Such a machine is evaluated for designs (n, 3 + k): crank, rod, offset and the value of each variable. Analyses of
-    one machine use `at(values)` or `nominal`.
+    a dead centre, used only by slider quantities defined there. lever: frame and cylinder if the rod is fixed as the
+    frame and a turning cylinder moves the crank; None for a slider-crank. varying: numbers that differ from design to
+    design. Such a machine is evaluated for designs (n, 3 + k): crank, rod, offset and the value of each variable.
+    Analyses of one machine use `at(values)` or `nominal`.
     """
 
     speed: float = 0.0
@@ -145,6 +147,7 @@ class Mechanism:
     strength: Strength | None = None
     start: Start = Start()
     slider: SliderDistances = SliderDistances()
+    lever: Lever | None = None
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
@@ -171,6 +174,8 @@ class Mechanism:
                 "a speed that repeats every turn must not have a constant acceleration too; got "
                 f"{self.acceleration:g} rad/s^2 with a profile; leave out one of the two"
             )
+        if self.lever is not None:
+            require_lever_alone(self)
         if self.varying:
             require_possible(self)
 

@@ -78,6 +78,15 @@ _DRIVE = {
 DRIVE = {name: 10**8 + 5 + place for place, name in enumerate(_DRIVE)}
 """Slots for the drive train, which no kernel needs, either."""
 _SLOTS |= {f"drive.{name}": (slot, _DRIVE[name]) for name, slot in DRIVE.items()}
+_LEVER = {
+    **{"frame_angle": "rad", "pin_angle": "rad"},
+    **dict.fromkeys(("cylinder.closed_length", "cylinder.stroke", "cylinder.bore", "cylinder.rod"), "m"),
+    **{"cylinder.supply_pressure": "Pa", "cylinder.seal_friction": "N", "cylinder.length_tolerance": "m"},
+    **{"cylinder.barrel_mass": "kg", "cylinder.piston_rod_mass": "kg", "cylinder.modulus": "Pa"},
+}
+LEVER = {name: 10**8 + 5 + len(_DRIVE) + place for place, name in enumerate(_LEVER)}
+"""Slots of a lever and its cylinder, which read their own."""
+_SLOTS |= {f"lever.{name}": (slot, _LEVER[name]) for name, slot in LEVER.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import one_linkage
+from ..linkage.single_linkage import one_linkage, require_slider
 from ..machine.mechanism import Mechanism
 from ..tolerance.sources import SOURCES, limits
 from .swing import Swing
@@ -26,6 +26,7 @@ def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_ang
     If the crank drives: |dx/di| T_i for the slider position. If the slider drives: the same divided by |x'| for the
     crank angle, with the actuator among the sources. Sources without tolerance are left out.
     """
+    require_slider(mechanism)
     checked = one_linkage(mechanism, linkage)
     i, source_limits = checked.error_influences(crank_angle), limits(mechanism, checked)
     crank, rod, offset, turn = (abs(float(share)) for share in (i.crank, i.rod, i.offset, i.crank_angle))

@@ -16,12 +16,12 @@ from ..arrays import Array
 from ..checks import keep_tuples, require_all_finite, require_numbers
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import one_linkage
+from ..linkage.single_linkage import one_linkage, require_slider
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .angles_from_position import crank_angles_at
-from .law import NO_TABLE, spline
-from .swing_types import Driver, Law, Side, Stated
+from .law import NO_TABLE, spline, way
+from .swing_types import Law, Side, Stated, SwingDriver
 
 STARTS = {"crank": "start.angle", "slider": "start.place"}
 """Number of a machine that states the start of a swing, by the link for which the ends are stated."""
@@ -37,14 +37,15 @@ class Swing:
     angles, "slider" if they are slider positions; then `side` says on which side of the line from crank pivot to slider
     pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a start that
     designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force on the slider
-    along its line. law: law of the driver's motion over time, in each stroke. duration: time of one stroke, s; none for
-    slow motion. actuator_tolerance: tolerance of the slider position if the slider drives, m. points: points of a
-    tabulated law: fractions of time and travel, see `law.spline`.
+    along its line, or the cylinder of a lever, whose angles start and end then are. law: law of the driver's motion
+    over time, in each stroke. duration: time of one stroke, s; none for slow motion. actuator_tolerance: tolerance of
+    the slider position if the slider drives, m. points: points of a tabulated law: fractions of time and travel, see
+    `law.spline`.
     """
 
     start: float
     end: float
-    driver: Driver = "crank"
+    driver: SwingDriver = "crank"
     law: Law = "slow"
     duration: float | None = None
     actuator_tolerance: float = 0.0
@@ -58,7 +59,7 @@ class Swing:
         require_all_finite("start and end of a swing", (self.start, self.end))
         require_numbers(self, "duration", phrase="the duration of a swing", above=0.0, unit="s")
         require_numbers(self, "actuator_tolerance", phrase="the tolerance of the actuator", least=0.0, unit="m")
-        require_word("driver", self.driver, Driver)
+        require_word("driver", self.driver, SwingDriver)
         require_word("law", self.law, Law)
         require_word("stated_for", self.stated_for, Stated)
         require_word("side", self.side, Side)
@@ -90,16 +91,42 @@ class Swing:
                 f"and {len(self.points)} points; give both, or neither"
             )
         _ = self.table
+        if self.driver == "cylinder":
+            self._require_lever_swing(angle)
         if self.actuator_tolerance and self.driver == "crank":
             raise InputError(
                 f"an actuator tolerance needs a slider that drives; got {1e3 * self.actuator_tolerance:g} mm with "
                 "the crank driven; let the slider drive, or leave the tolerance out"
             )
 
+    def _require_lever_swing(self, angle: float) -> None:
+        """Raise `InputError` for a swing that no lever makes. angle: its size, rad."""
+        excluded = {
+            "slider positions": self.stated_for == "slider",
+            "a table of its law": self.law == "table",
+            "a tolerance of the actuator": self.actuator_tolerance > 0.0,
+        }
+        stated = [name for name, is_stated in excluded.items() if is_stated]
+        if stated:
+            raise InputError(
+                f"the swing of a lever has two lever angles and a law with a name; got {' and '.join(stated)}; give "
+                "from and to, and the tolerance of the cylinder's length in [cylinder]"
+            )
+        if angle >= math.pi:
+            raise InputError(
+                "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
+                f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; swing less far"
+            )
+
     @cached_property
     def table(self) -> Array:
         """Pieces (k, 7) of a tabulated law, see `law.spline`; empty for other laws."""
         return spline(self.points) if self.points else NO_TABLE
+
+    @property
+    def fastest(self) -> float:
+        """Greatest ds/dt of a law with a name, half-way: all are symmetric and slow down towards their ends."""
+        return float(way(self.law, np.array([0.5]))[1][0])
 
     @property
     def way(self) -> float:
@@ -177,7 +204,13 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     Raises `InputError` for arrays, another branch than the mechanism's, a dead point if the slider drives, and loads
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
+    require_slider(mechanism)
     checked = one_linkage(mechanism, linkage)
+    if swing.driver == "cylinder":
+        raise InputError(
+            "a cylinder drives a lever; got one as the driver of a slider-crank; drive the crank or the slider, or set "
+            '[mechanism] inversion = "turning cylinder"'
+        )
     _require_passing(mechanism, checked, placed(mechanism, checked, swing))
     return checked
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 Driver = Literal["crank", "slider"]
+SwingDriver = Literal[Driver, "cylinder"]
+"""Driver of a swing; the cylinder is that of a lever, a machine with `lever`."""
 Stated = Literal["crank", "slider"]
 """Kind of both ends: crank angles, or slider positions."""
 Side = Literal["left", "right"]

@@ -55,6 +55,13 @@ class LeverBatch:
         """Number of levers."""
         return len(self.plain.crank)
 
+    def part(self, begin: int, end: int) -> LeverBatch:
+        """Return some of the levers."""
+        plain, *stepped = (
+            LeverNumbers(*(number[begin:end] for number in numbers)) for numbers in (self.plain, *self.stepped)
+        )
+        return LeverBatch(plain, self.law, tuple(stepped))
+
 
 @dataclass(frozen=True)
 class LeverPeaks:

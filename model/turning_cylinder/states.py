@@ -21,7 +21,8 @@ class LeverNumbers(NamedTuple):
 
     rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
     annular area; NaN without a bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN without one.
-    supply: pressure; NaN without one.
+    supply: pressure; NaN without one, as closed_length and
+    stroke.
     """
 
     crank: Any
@@ -51,6 +52,8 @@ class LeverNumbers(NamedTuple):
     annular_area: Any
     supply: Any
     buckling: Any
+    closed_length: Any = np.nan
+    stroke: Any = np.nan
 
     def length(self, lever_angle: Any) -> Any:
         """Return the length of the cylinder, m, at lever angles, rad."""

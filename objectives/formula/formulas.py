@@ -25,7 +25,7 @@ from .parser import parse
 from .quantity import FormulaQuantity, key_of, leaves_of
 from .ranges import FormulaBounds, Interval
 
-ROOTS = ("mechanism", "load", "friction", "drive", "tolerances", "sections", "motion")
+ROOTS = ("mechanism", "cylinder", "load", "friction", "drive", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and then begin the names in formulas."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3

@@ -15,12 +15,13 @@ from ...model.signals.peaks import ANGLES
 from ...model.swing.closure import passes
 from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import driven
+from ...model.turning_cylinder.batch import lever_passes
 from ..cycle_peak import screened
 from ..formula.quantity import leaves_of, with_formulas
 from ..formula.resolve import resolve_quantities
 from ..quantity import Array, Quantity, Values
 from .design_input import countable, given_designs, numbers_of, require_machine, warn_of_lengths
-from .swinging import require_in_motion, require_of_swing
+from .swinging import require_in_motion, require_of_swing, require_same_driver
 
 
 @overload
@@ -95,11 +96,12 @@ def evaluated(
     if isinstance(quantities, str):
         raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
+    require_same_driver(mechanism, swing)
     require_in_motion(quantities, own, swing)
     chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
         if swing is not None:
-            require_of_swing(item.name, item)
+            require_of_swing(item.name, item, of_lever=mechanism.lever is not None)
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
@@ -127,7 +129,7 @@ def evaluated(
 def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
-        return passes(mechanism, swing, designs)
+        return (lever_passes if swing.driver == "cylinder" else passes)(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
@@ -135,7 +137,9 @@ def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
 
 def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
-    return moving(mechanism, None, designs) if swing is None else driven(mechanism, swing, designs)
+    if swing is None or swing.driver == "cylinder":
+        return moving(mechanism, swing, designs)
+    return driven(mechanism, swing, designs)
 
 
 def _evaluate_leaves(

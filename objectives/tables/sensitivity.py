@@ -15,12 +15,12 @@ from ...model.kinematics import geometry
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing, require_swing, started
+from ...model.swing.swing import Swing, started
 from ...model.tolerance.sources import limits
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
-from .swinging import swing_quantities, swinging
+from .swinging import require_motion, swing_quantities, swinging
 
 _TIE = 1e-9  # relative to a quantity: pieces that differ by less count as equal
 _ROUNDING = 1e-12  # in units of a quantity over the rod: smaller changes are rounding errors
@@ -79,7 +79,7 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     linkage = Linkage(design[0], design[1], design[2], mechanism.branch)
     design[2] = float(linkage.offset)
     if swing is not None:
-        require_swing(mechanism, linkage, swing)
+        require_motion(mechanism, linkage, swing)
     tolerances = limits(mechanism, linkage)[:3]
     rows = []
     ends = None if swing is None else started(mechanism, swing)

@@ -11,10 +11,14 @@ from numpy.typing import NDArray
 
 from ...model.errors import InputError
 from ...model.kinematics.in_line import without_rounding
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single_linkage import single
 from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing
+from ...model.swing.swing import Swing, require_swing
+from ...model.turning_cylinder.machine import lever_linkage
 from ..formula.quantity import leaves_of
+from ..lever_quantity import LeverQuantity
 from ..quantity import Array, Quantity
 from ..registry import FACTS, QUANTITIES
 from ..swing_quantity import SwingQuantity
@@ -37,6 +41,11 @@ def why_not(name: str, swing: Swing | None) -> str | None:
     if not isinstance(fact, SwingQuantity):
         return None
     if swing is None:
+        if isinstance(fact, LeverQuantity):
+            return (
+                'needs a lever that swings; this crank rotates fully; set [mechanism] inversion = "turning cylinder" '
+                'and [motion] kind = "swing", or leave it out'
+            )
         return (
             'needs a swinging crank; this crank rotates fully; add [motion] kind = "swing" with from and to, '
             "or leave it out"
@@ -51,6 +60,33 @@ def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: S
         reason = None if name in custom_names else why_not(name, swing)
         if reason is not None:
             raise InputError(f"{name}: {reason}")
+
+
+def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
+    """Raise `InputError` unless a cylinder drives a lever, and nothing else does."""
+    by_cylinder = swing is not None and swing.driver == "cylinder"
+    if (mechanism.lever is not None) == by_cylinder:
+        return
+    if by_cylinder:
+        raise InputError(
+            "a cylinder drives a lever; got one with a slider-crank; set [mechanism] inversion, or another driver"
+        )
+    got = "a crank that rotates fully" if swing is None else f"a swing that the {swing.driver} drives"
+    raise InputError(
+        f'inversion = "turning cylinder" needs a swing of its lever; got {got}; add [motion] kind = "swing" with from '
+        "and to"
+    )
+
+
+def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:
+    """Return one linkage with dimensions as floats, which rotates fully, or makes a swing.
+
+    Raises `AssemblyError` or `InputError` if it does not.
+    """
+    require_same_driver(mechanism, swing)
+    if swing is None:
+        return single(mechanism, linkage)
+    return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
 
 
 def require_loads(mechanism: Mechanism) -> None:
@@ -83,11 +119,11 @@ def require_loads(mechanism: Mechanism) -> None:
             )
 
 
-def require_of_swing(key: str, quantity: Quantity) -> None:
+def require_of_swing(key: str, quantity: Quantity, *, of_lever: bool = False) -> None:
     """Raise `InputError` for a quantity that needs a fully rotating crank."""
     for leaf in leaves_of([quantity]):
         if leaf.turning:
-            swing_names = ", ".join(fact.name for fact in swing_facts())
+            swing_names = ", ".join(fact.name for fact in swing_facts() if isinstance(fact, LeverQuantity) == of_lever)
             raise InputError(
                 f'{key}: {leaf.name} is of a crank that rotates fully; got [motion] kind = "swing"; '
                 f"use a quantity of a swing ({swing_names}), or leave it out"

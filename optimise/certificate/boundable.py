@@ -27,6 +27,8 @@ def unbounded_reason(problem: Problem, objective: Objective) -> str:
 
 def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
     quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
+    if mechanism.lever is not None:
+        return f"{quantity.title} has no bound over a range of designs where a cylinder moves a lever"
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
     if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | SwingForm):

@@ -16,7 +16,7 @@ from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import driven
 from ...objectives.tables.evaluate import moving
 from ..problem.problem import Problem
-from ..search.elimination import elimination_branches
+from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.sampling import first_samples
 
 _SAMPLES = 4096
@@ -34,13 +34,12 @@ def why_no_swing(problem: Problem) -> str:
     """Return why no design within the ranges swings as required, in words; "" if one in a large sample does."""
     motion = problem.motion
     assert motion is not None
+    if motion.driver == "cylinder":
+        return _unswung_lever(problem, motion)
     closing = passing = 0
     stuck: list[tuple[Mechanism, Array]] = []
     for index, branch in enumerate(elimination_branches(problem)):
-        part = problem.part(branch.variant)
-        machine = part.mechanism
-        designs = branch.dimensions(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
-        designs = designs[np.isfinite(designs).all(axis=1)]
+        machine, designs = problem.part(branch.variant).mechanism, _samples(problem, branch, index)
         closing += int(closes(machine, motion, designs).sum())
         passing += int(passes(machine, motion, designs).sum())
         able = designs[moving(machine, motion, designs)]
@@ -73,6 +72,26 @@ def why_no_swing(problem: Problem) -> str:
     return (
         f"friction may lock every design within the ranges that can make {movement}; "
         f"{_excessive_friction_text(stuck, motion)}reduce the friction, lengthen the rod, or drive the other end"
+    )
+
+
+def _samples(problem: Problem, branch: EliminationBranch, index: int) -> Array:
+    """Return designs (n, 3 + k) of a branch, whatever they can do."""
+    designs = branch.dimensions(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
+    return np.asarray(designs[np.isfinite(designs).all(axis=1)])
+
+
+def _unswung_lever(problem: Problem, motion: Swing) -> str:
+    """Return why no lever of the ranges swings as asked, in words; "" if one of many does."""
+    for index, branch in enumerate(elimination_branches(problem)):
+        machine = problem.part(branch.variant).mechanism
+        if moving(machine, motion, _samples(problem, branch, index)).any():
+            return ""
+    start, end = (f"{180.0 / math.pi * angle:.6g}" for angle in (motion.start, motion.end))
+    return (
+        f"no design within the ranges makes the swing of the lever from {start} to {end} deg: both pivots and the pin "
+        "must not be in line within it, and the offset must be less than the distance from the cylinder's pivot to the "
+        "pin; change frame_angle, the ranges, or swing less far"
     )
 
 

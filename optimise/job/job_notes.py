@@ -48,7 +48,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
             'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
         )
     notes += _pin_notes(job)
-    if job.motion.build() is not None:
+    if job.swing() is not None:
         notes += [
             f"mechanism.{key}: a swing is set by [motion] instead; leave out the {words}"
             for key, words in _SPEED_WORDS.items()

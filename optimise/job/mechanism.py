@@ -198,6 +198,20 @@ class MechanismPart(CrankSpeedPart):
         default="open",
     )
 
+    inversion: Literal["turning cylinder"] | None = optional(
+        "turning cylinder: the rod is fixed as the frame, and a cylinder that turns about its end moves the crank, a "
+        "lever; default a slider-crank",
+        "turning cylinder",
+    )
+    frame_angle: Angle | None = optional(
+        "of this inversion: direction from the lever's pivot to the cylinder's, counter-clockwise from +x", "-60 deg"
+    )
+    pin_angle: Angle = optional(
+        "of this inversion: angle from the crank's own line, whose angle is the lever angle, to its pin",
+        "10 deg",
+        default=0.0,
+    )
+
     @model_validator(mode="after")
     def _complete(self) -> MechanismPart:
         if self.gravity_direction is not None and self.gravity is None:

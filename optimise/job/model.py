@@ -12,6 +12,7 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.slider_distances import SliderDistances
 from ...model.machine.two_turns import turns_per_cycle
+from ...model.swing.swing import Swing
 from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
@@ -19,6 +20,7 @@ from .costs import CostsPart
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, named, require_one_line
 from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
+from .lever import CylinderPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
@@ -107,6 +109,10 @@ class Job(Part):
         {"kind": "turn"},
         default=MotionPart(),
     )
+    cylinder: CylinderPart | None = optional(
+        'cylinder of inversion = "turning cylinder": its size, pressure, friction and masses',
+        {"bore": "40 mm", "rod": "25 mm", "supply_pressure": "160 bar"},
+    )
     load: tuple[Load, ...] = optional(
         "loads on the slider along its line, or on the crank; several add up",
         [{"force": "200 N", "opposes": "outward stroke"}],
@@ -169,6 +175,10 @@ class Job(Part):
     )
     optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 
+    def swing(self) -> Swing | None:
+        """Return the swing of its crank or lever; None for a crank that rotates fully."""
+        return swing_of(self.mechanism, self.motion)
+
     def machine(self) -> Mechanism:
         """Return the machine of the job with its numbers as stated."""
         mechanism = self.mechanism
@@ -192,6 +202,7 @@ class Job(Part):
             branch=mechanism.branch,
             strength=None if self.sections is None else self.sections.strength(),
             start=self.motion.start,
+            lever=lever_of(mechanism, self.cylinder),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

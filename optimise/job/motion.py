@@ -15,10 +15,11 @@ from ...model.machine.varying import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.swing_types import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
+from ...objectives.lever_geometry import LEVER_TRANSMISSION_ANGLE
 from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
-from ...objectives.tables.swinging import swing_facts
+from ...objectives.tables.swinging import swing_facts, why_not
 from ..problem.requirements import Constraint
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
 from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
@@ -211,14 +212,7 @@ def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Par
     """Raise JobError if a job requires a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
         for quantity in swing_facts():
-            if getattr(part, quantity.name) is None:
-                continue
-            if swing is None:
-                raise JobError(
-                    f"{table}.{quantity.name}: needs a swinging crank; this crank rotates fully; add "
-                    '[motion] kind = "swing" with from and to, or leave it out'
-                )
-            reason = quantity.unfit(swing)
+            reason = why_not(quantity.name, swing) if getattr(part, quantity.name) is not None else None
             if reason is not None:
                 raise JobError(f"{table}.{quantity.name}: {reason}")
 
@@ -291,11 +285,14 @@ def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...])
             )
 
 
-def with_margin(constraints: tuple[Constraint, ...], margin: float | None) -> tuple[Constraint, ...]:
+def with_margin(
+    constraints: tuple[Constraint, ...], margin: float | None, swing: Swing | None
+) -> tuple[Constraint, ...]:
     """Return constraints with a swing's margin. Raises JobError if both tables require one."""
     if margin is None:
         return constraints
-    name = SWING_TRANSMISSION_ANGLE.name
+    of_lever = swing is not None and swing.driver == "cylinder"
+    name = (LEVER_TRANSMISSION_ANGLE if of_lever else SWING_TRANSMISSION_ANGLE).name
     constraint = next((item for item in constraints if item.quantity == name), None)
     if constraint is not None and constraint.lower is not None:
         raise JobError(f"motion.margin: same as the min of constraints.{name}; got both; leave out one of the two")

@@ -49,7 +49,7 @@ def problem_of(
     require_feasible: whether to raise `InfeasibleError` if no design can meet the job; a search needs that, a given
     design does not.
     """
-    variables, motion = job.variables, job.motion.build()
+    variables, motion = job.variables, job.swing()
     machine = _machine_of(job, motion)
     amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
     custom = (
@@ -63,7 +63,7 @@ def problem_of(
     choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_margin(
-        _join_by_formula(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin
+        _join_by_formula(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin, motion
     )
     named_quantities = {item.quantity for item in objectives} | {item.quantity for item in constraints}
     missing = [of for of in amounts if of.name in named_quantities]

@@ -16,10 +16,9 @@ from ...model.input_warning import both_readings, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import numbers
-from ...model.linkage.single_linkage import single
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
-from ...model.swing.swing import Swing, require_swing
+from ...model.swing.swing import Swing
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.formula.resolve import resolve_quantities
 from ...objectives.kinds import ANGLE, unit_text
@@ -38,7 +37,7 @@ from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive, swing_table
-from ...objectives.tables.swinging import require_in_motion, swinging
+from ...objectives.tables.swinging import require_in_motion, require_motion, swinging
 from ...objectives.tables.violations import violations
 
 if TYPE_CHECKING:
@@ -285,7 +284,7 @@ def analysed(
 ) -> Analysis:
     """Return the result of `analyse`. machine: machine of the design with the numbers `sizes` (3 + k,)."""
     given = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-    linkage = single(machine, given) if swing is None else require_swing(machine, given, swing)
+    linkage = require_motion(machine, given, swing)
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}
     chosen = (*QUANTITIES.values(), *own) if swing is None else swinging(own)

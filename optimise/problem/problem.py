@@ -29,6 +29,7 @@ from ...objectives.tables.swinging import (
     require_in_motion,
     require_loads,
     require_of_swing,
+    require_same_driver,
     swing_quantities,
     why_not,
 )
@@ -160,6 +161,8 @@ class Problem:
         require_kinds(self, _KINDS, _CHANGE)
         require_kinds(self, _EACH, _CHANGE, item_by_item=True)
         require_known(self.discrete, [*self.ranges])
+        for own in self.variants or (self,):
+            require_same_driver(own.mechanism, self.motion)
         if self.motion is not None:
             self._take(self.motion)
         else:
@@ -218,7 +221,7 @@ class Problem:
             reason = why_not(name, swing)
             if reason is not None:
                 raise InputError(f"{table}.{name}: {reason}")
-            require_of_swing(f"{table}.{name}", self.quantity(name))
+            require_of_swing(f"{table}.{name}", self.quantity(name), of_lever=swing.driver == "cylinder")
 
     def _take_formulas(self) -> None:
         """Add the formulas that objectives and constraints name."""

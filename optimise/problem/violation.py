@@ -9,6 +9,8 @@ import numpy as np
 from ...model.arrays import Array, Mask
 from ...model.cycle.gas_cycle import may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
+from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
+from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
 from ...objectives.quantity import Quantity
 from ...objectives.robust.quantity import RobustQuantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
@@ -33,7 +35,10 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     nothing, also to the volumetric efficiency. For a required slow stroke, a floor applies to the time ratio or, along
     a speed profile, to that stroke's ratio. A swing has only one, on its transmission angle, as the margin from dead
     points.
+    A lever has further ones as far as its cylinder is known: it must be long, strong and stiff enough.
     """
+    if problem.mechanism.lever is not None:
+        return _with_floors_of_lever(problem, problem.constraints)
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
     constraints = _with_floor(problem, problem.constraints, TRANSMISSION_ANGLE)
@@ -43,6 +48,14 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
         constraints = _with_floor(problem, constraints, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
         constraints = _with_slow_stroke(problem, constraints)
+    return constraints
+
+
+def _with_floors_of_lever(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
+    """Return constraints with the floors of a lever, as far as its cylinder is known."""
+    for quantity in (LEVER_TRANSMISSION_ANGLE, CYLINDER_LENGTH_MARGIN, PRESSURE_MARGIN, BUCKLING_MARGIN):
+        if not quantity.undefined_because([problem.mechanism]):
+            constraints = _with_floor(problem, constraints, quantity)
     return constraints
 
 

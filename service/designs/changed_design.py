@@ -11,9 +11,8 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.swing.closure import passes
-from ...model.swing.swing import require_swing
-from ...objectives.tables.evaluate import evaluated
+from ...objectives.tables.evaluate import evaluated, moving
+from ...objectives.tables.swinging import require_motion
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
@@ -74,7 +73,7 @@ def with_numbers(
     if changed.part.motion is None:
         changed.linkage.require_full_rotation()
     else:
-        require_swing(changed.mechanism, changed.linkage, changed.part.motion)
+        require_motion(changed.mechanism, changed.linkage, changed.part.motion)
     return changed
 
 
@@ -187,7 +186,7 @@ def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tup
 def _moves(part: Problem, values: Array) -> bool:
     """Return whether a design rotates fully, or swings as far as its job requires."""
     if part.motion is not None:
-        return bool(passes(part.mechanism, part.motion, values[None])[0])
+        return bool(moving(part.mechanism, part.motion, values[None])[0])
     crank, rod, offset = values[:3]
     return bool(crank > 0.0 and rod > crank + abs(offset))
 

@@ -11,6 +11,8 @@ import numpy as np
 from ...model.cycle.crank_speed import turn_time
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import placed, require_swing
+from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
+from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import (
     POINTS,
@@ -147,8 +149,30 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
     return rows
 
 
+def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]:
+    """Return a row for each point of the way out of a lever, metric, at even times."""
+    found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
+    time = {} if swing.duration is None else {"time_s": swing.duration * found.share}
+    columns = {
+        **time,
+        "lever_angle_deg": np.degrees(found.lever_angle),
+        "length_mm": 1e3 * found.length,
+        "cylinder_angle_deg": np.degrees(found.cylinder_angle),
+        "cylinder_speed_m_s": found.speed,
+        "push_N": found.push,
+        "transmission_angle_deg": np.degrees(found.transmission),
+    }
+    for name, force in (("pin", found.pin), ("pivot", found.pivot), ("cylinder_pivot", found.cylinder_pivot)):
+        columns |= {f"{name}_x_N": force.real, f"{name}_y_N": force.imag}
+    lists = {key: values.tolist() for key, values in columns.items()}
+    return [{key: values[i] for key, values in lists.items()} for i in range(POINTS)]
+
+
 def design_csv(design: StoredDesign, system: System = "metric") -> str:
-    """Return the curves as CSV: those of `cycle_csv`, or those of both strokes of a swing."""
+    """Return the curves as CSV: those of `cycle_csv`, those of both strokes of a swing, or of the way of a lever."""
     if design.part.motion is None:
         return cycle_csv(design.mechanism, design.linkage, system)
+    if design.mechanism.lever is not None:
+        machine, _ = lever_machine(design.mechanism, design.linkage, design.part.motion)
+        return csv_text(rows_in(lever_rows(machine, lever_swing(design.mechanism, design.part.motion)), system))
     return csv_text(rows_in(swing_rows(design.mechanism, design.linkage, design.part.motion), system))

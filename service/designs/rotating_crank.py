@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 def require_rotating_crank(swing: Swing | None, subject: str) -> None:
     """Raise an error for a swinging crank. subject: analysis over a full revolution, the subject of the message."""
     if swing is not None:
+        crank, command = ("lever", "lever") if swing.driver == "cylinder" else ("crank", "swing")
         raise InputError(
-            f"{subject} needs a rotating crank; the crank of this job swings; use swing to analyse its designs"
+            f"{subject} needs a rotating crank; the {crank} of this job swings; use {command} to analyse its designs"
         )

@@ -16,6 +16,7 @@ from ..designs.stored_designs import StoredDesign
 from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned, dimension
+from .lever_drawing import lever_drawing
 from .linkage_shapes import Look, fixed_shapes, lengths_in_words, look_of, moving_shapes, pin_positions
 from .shapes import Anchor, Arc, Dimension, Drawing, Label, Line, Point, Shape
 from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
@@ -28,13 +29,14 @@ CRANK_ANGLE = math.radians(60.0)
 def design_drawing(
     stored: StoredDesign, *, name: str, design: str = "", crank_angle: float | None = None, system: System = "metric"
 ) -> Drawing:
-    """Return a design at true scale; see `linkage_drawing`, and `swing_drawing` for a swinging crank.
+    """Return a design at true scale; see `linkage_drawing`, `swing_drawing` and `lever_drawing`.
 
     crank_angle: crank angle of the drawing, rad; None for the default. system: unit system of texts.
     """
     texts: dict[str, Any] = {"name": name, "design": design, "system": system}
     if stored.part.motion is not None:
-        return swing_drawing(stored.mechanism, stored.linkage, stored.part.motion, **texts, crank_angle=crank_angle)
+        draw = swing_drawing if stored.mechanism.lever is None else lever_drawing
+        return draw(stored.mechanism, stored.linkage, stored.part.motion, **texts, crank_angle=crank_angle)
     angle = CRANK_ANGLE if crank_angle is None else crank_angle
     return linkage_drawing(stored.mechanism, stored.linkage, **texts, crank_angle=angle)
 

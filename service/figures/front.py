@@ -20,6 +20,7 @@ from ..resources.garbage import uncollected
 from .comparison import robustness_figure
 from .datasheet import design_datasheet
 from .design_marks import marks
+from .lever import lever_datasheet
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
 from .style import save
@@ -92,6 +93,8 @@ def datasheet_of(
     else:
         design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
     title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
+    if swing is not None and swing.driver == "cylinder":
+        return lever_datasheet(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)
     if swing is not None:
         return swing_figure(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)
     quantities = [front.problem.quantity(objective.quantity) for objective in front.objectives]

@@ -7,20 +7,42 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from ...model.linkage.linkage import Linkage
 from ...model.machine.lever_cylinder import Cylinder
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
+from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import ANGLE, FORCE, LENGTH, SPEED, System
 from ...objectives.tables.swing_curves import POINTS
 from ..drawings.lever_parts import lever_extent, lever_shapes
-from ..render.blocks import Value, words
+from ..render.blocks import Value, joined, words
 from .panel_figure import DASHED, Line, Panel, PanelFigure
 from .swing import figure_below_machine
 
 _X = "lever angle, deg"
 
 
-def lever_figure(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, system: System = "metric") -> Figure:
+def lever_datasheet(
+    mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric", *, title: str, subtitle: str
+) -> Figure:
     """Return the lever at mid-swing with both ends dashed, above its curves."""
+    assert mechanism.lever is not None
+    machine, _ = lever_machine(mechanism, linkage, swing)
+    cylinder, placed = mechanism.lever.cylinder, lever_swing(mechanism, swing)
+    return lever_figure(machine, placed, cylinder, system, title=title, subtitle=subtitle)
+
+
+def lever_figure(
+    machine: LeverMachine,
+    swing: LeverSwing,
+    cylinder: Cylinder,
+    system: System = "metric",
+    *,
+    title: str = "Lever moved by a cylinder that turns",
+    subtitle: str = "",
+) -> Figure:
+    """Return the lever half-way between both ends, which are dashed, above its curves."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
     degrees, rub = np.degrees(found.lever_angle), cylinder.seal_friction
     forces = [Line("extending", degrees, found.push + rub), Line("retracting", degrees, found.push - rub, DASHED)]
@@ -32,7 +54,7 @@ def lever_figure(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, s
     if swing.duration is not None:
         panels.append(Panel("speed of the cylinder", _X, (Line("", degrees, found.speed),), SPEED))
     sizes = machine.sizes
-    subtitle = words(
+    dimensions = words(
         "crank {crank}, frame {frame} at {angle}, offset {offset}",
         crank=Value(sizes.crank, LENGTH),
         frame=Value(sizes.frame, LENGTH),
@@ -40,8 +62,8 @@ def lever_figure(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, s
         offset=Value(sizes.offset, LENGTH),
     )
     figure = PanelFigure(
-        "Lever moved by a cylinder that turns",
-        subtitle,
+        title,
+        joined([subtitle, dimensions], "; ") if subtitle else dimensions,
         tuple(panels),
         columns=2 if len(panels) > 3 else 1,
         width=5.2,

@@ -56,15 +56,16 @@ class PossibleSwing:
 def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
     """Return the values that the ranges of a job allow; None for full rotation, and while the job is unreadable.
 
-    full_problem: the problem of the whole job, if it is valid. Of several options the first is used.
+    None for a lever too. full_problem: the problem of the whole job, if it is valid. Of several options the first is
+    used.
     """
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
         swing, ranges = part.build(), ranges_of(tables)
-        margin = with_margin((), part.requested_margin)
+        margin = with_margin((), part.requested_margin, swing)
     except (InputError, ValidationError):
         return None
-    if swing is None or ranges is None:
+    if swing is None or ranges is None or table_in(tables, "mechanism").get("inversion") is not None:
         return None
     crossed = table_in(tables, "mechanism").get("branch") == "crossed"
     cheap = ACTUATOR_TRAVEL if swing.stated_for == "crank" else SWING_ANGLE

@@ -19,6 +19,7 @@ from .design_section import design_section, linkage_picture, numbers_section
 from .document import Facts, Report, Section
 from .evidence_section import sensitivity_section, tolerance_section
 from .job_and_front import front_section, job_section, search_section
+from .lever_section import lever_section
 from .measured_section import measured_section
 from .subject import Subject
 from .swing_section import SwingOfSubject
@@ -28,9 +29,11 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
     """Return the report on a design. created: time of the report, s since 1970; None for now."""
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
-    swing = None if motion is None else SwingOfSubject(subject, motion)
+    swing = None if motion is None or motion.driver == "cylinder" else SwingOfSubject(subject, motion)
     is_decided = subject.bookmark is not None and subject.bookmark.decided
-    tolerances = tolerance_section(subject) if swing is None else swing.tolerances()
+    tolerances = None if motion is not None else tolerance_section(subject)
+    if swing is not None:
+        tolerances = swing.tolerances()
     return Report(
         title=f"{subject.result.name}: {subject.name}",
         subtitle=f"{'Decided design' if is_decided else 'Design report'} for review; run {subject.run}",
@@ -42,7 +45,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
             search_section(subject, when),
             front_section(subject),
             design_section(subject),
-            *([] if swing is None else [swing.section()]),
+            *([] if motion is None else [lever_section(subject, motion) if swing is None else swing.section()]),
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
             sensitivity_section(subject),

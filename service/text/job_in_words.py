@@ -149,14 +149,18 @@ def _mechanism_lines(mechanism: Mechanism) -> list[str]:
         lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities follow this profile")
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
-    lines += [f"{name}: {_link_text(getattr(mechanism, name))}" for name in ("crank", "rod")]
+    links = ("crank", "rod") if mechanism.lever is None else ("crank",)
+    lines += [f"{name}: {_link_text(getattr(mechanism, name))}" for name in links]
     if mechanism.counterweight.mass:
         weight = mechanism.counterweight
         lines.append(
             f"counterweight: {weight.mass:.6g} kg, {1e3 * weight.radius:.6g} mm from the pivot "
             f"at {math.degrees(weight.angle):.6g} deg from the crank"
         )
-    lines.append(f"slider: {mechanism.slider_mass:.6g} kg{mechanism.slider.text}")
+    if mechanism.lever is None:
+        lines.append(f"slider: {mechanism.slider_mass:.6g} kg{mechanism.slider.text}")
+    else:
+        lines += mechanism.lever.texts
     if mechanism.arrangement is not None:
         lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
         lines.append(
@@ -189,6 +193,8 @@ def _motion_lines(problem: Problem) -> list[str]:
     if swing.stated_for == "slider":
         ends += f", the crank pin {swing.side} of the line to the slider pin"
     timed = "" if swing.duration is None else f", {swing.duration:.6g} s per stroke"
+    if swing.driver == "cylinder":
+        ends = ends.replace("crank swings", "lever swings")
     lines = [f"{ends}; driven at the {swing.driver}, law {swing.law}{timed}"]
     if swing.actuator_tolerance:
         lines.append(f"tolerance of the actuator {1e3 * swing.actuator_tolerance:.6g} mm")

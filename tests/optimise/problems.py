@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -40,6 +41,26 @@ MACHINE = Mechanism(
         crank_angle=Tolerance(absolute=1e-3),
     ),
 )
+
+LEVER: dict[str, Any] = {
+    "name": "Tipper",
+    "mechanism": {
+        "inversion": "turning cylinder",
+        "frame_angle": "-60 deg",
+        "crank": {"mass": "80 kg", "centre": "700 mm"},
+        "gravity": "9.81 m/s^2",
+    },
+    "motion": {"kind": "swing", "from": "-20 deg", "to": "50 deg", "law": "harmonic", "duration": "8 s"},
+    "cylinder": {
+        **{"bore": "40 mm", "rod": "25 mm", "supply_pressure": "160 bar", "seal_friction": "30 N"},
+        **{"closed_length": "640 mm", "stroke": "440 mm", "length_tolerance": "1 mm"},
+    },
+    "tolerances": {"crank": "0.5 mm"},
+    "variables": {"crank": ["300 mm", "450 mm"], "rod": ["700 mm", "1100 mm"], "offset": ["-50 mm", "50 mm"]},
+    "objectives": {"peak_cylinder_force": "minimise", "lever_angle_error": "minimise"},
+    "optimiser": {"designs": 6, "samples": 256, "seed": 1},
+}
+"""Tables of a lever moved by a cylinder that turns."""
 
 Ends = tuple[float, float] | float
 Bounds = tuple[float | None, float | None] | float

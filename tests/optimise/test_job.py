@@ -21,6 +21,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Tolerance, Window
+from slidercrank.objectives.lever_quantity import LeverQuantity
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.objectives.swing_quantity import SwingQuantity
@@ -30,6 +31,7 @@ from slidercrank.optimise.job.sections import EXAMPLE as SECTIONS
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from tests.model.cases import with_example
+from tests.optimise.problems import LEVER
 
 RUNS = Path(__file__).parents[2] / "runs"
 TURNING = Path(__file__).parents[1] / "data" / "turning_support.toml"
@@ -346,12 +348,15 @@ def test_the_examples_of_the_schema_are_valid() -> None:
     properties = job_schema()["properties"]
     for key, node in properties.items():
         for example in node["examples"]:
-            parse_job(small(tolerances={"crank": "0.05 mm"}) | {key: example})
+            given = small(tolerances={"crank": "0.05 mm"}) if key != "cylinder" else deepcopy(LEVER)
+            parse_job(given | {key: example})
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
             given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
             fact = FACTS[name]
-            if isinstance(fact, SwingQuantity):
+            if isinstance(fact, LeverQuantity):
+                parse_job(LEVER | {"objectives": {name: example}})
+            elif isinstance(fact, SwingQuantity):
                 ends = {"from": "20 deg", "to": "80 deg"}
                 if name == "swing_angle":
                     ends = {"slider_from": "130 mm", "slider_to": "100 mm"}

@@ -15,6 +15,7 @@ from typing import Any
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError, InputWarning
+from slidercrank.objectives.lever_quantity import LeverQuantity
 from slidercrank.objectives.registry import FACTS
 from slidercrank.optimise.certificate.boundable import unbounded_reason
 from slidercrank.optimise.problem.requirements import Objective, Sense
@@ -74,6 +75,21 @@ def _swing(tables: dict[str, Any], driver: str) -> None:
     tables["objectives"] = dict.fromkeys(names, "minimise")
 
 
+def _lever(tables: dict[str, Any]) -> None:
+    for key in ("load", "drive", "target_motion", "sections", "costs"):
+        tables.pop(key, None)
+    tables["mechanism"] = {
+        **{"inversion": "turning cylinder", "frame_angle": "-40 deg"},
+        **{"crank": {"mass": "2 kg"}, "counterweight": {"mass": "1 kg", "radius": "41 mm"}, "gravity": "9.81 m/s^2"},
+    }
+    tables["motion"] = dict(_SWING)
+    tables["cylinder"] = {
+        **{"bore": "16 mm", "rod": "8 mm", "supply_pressure": "200 bar", "closed_length": "100 mm", "stroke": "90 mm"},
+    }
+    tables["tolerances"] = {"crank": "0.05 mm"}
+    tables["objectives"] = dict.fromkeys(("peak_cylinder_force", "lever_angle_error"), "minimise")
+
+
 MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
     "one turn": lambda tables: None,
     "720 deg": lambda tables: tables["load"].append(_SECOND),
@@ -84,6 +100,7 @@ MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
     "crank acceleration": lambda tables: tables["mechanism"].update(acceleration="9 rad/s^2"),
     "swing, driven crank": partial(_swing, driver="crank"),
     "swing, driven slider": partial(_swing, driver="slider"),
+    "lever": _lever,
     "sections and pins": lambda tables: tables["variables"].update(
         {"mechanism.rod.width": ["28 mm", "32 mm"], "sections.pins.crank_pin": ["10 mm", "13 mm"]}
     ),
@@ -162,12 +179,16 @@ def _rule(name: str, reason: str) -> str:
 
 def _listed(names: list[str]) -> str:
     """Return names in words; all of a kind of motion as such."""
+    levers = {name for name, fact in FACTS.items() if isinstance(fact, LeverQuantity)}
     every = {
-        "all quantities of a swing": {name for name, fact in FACTS.items() if fact.table == "motion"},
+        "all quantities of a lever": levers,
+        "all quantities of a swing": {name for name, fact in FACTS.items() if fact.table == "motion"} - levers,
         "all quantities of a crank that rotates fully": {name for name, fact in FACTS.items() if fact.turning}
         - {name for name, fact in FACTS.items() if fact.table},
     }
-    return next((words for words, of in every.items() if set(names) == of), ", ".join(f"`{name}`" for name in names))
+    words = [words for words, of in every.items() if of.issubset(names)]
+    rest = [name for name in names if not any(name in every[of] for of in words)]
+    return ", ".join([*(f"`{name}`" for name in rest), *words])
 
 
 def table(of: Callable[[Motion], Refusals]) -> str:

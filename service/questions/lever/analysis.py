@@ -6,17 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-import numpy as np
-
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import RigidLink
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing_types import LeverLaw
-from ....model.turning_cylinder.forces import lever_curves
 from ....model.turning_cylinder.summary import LeverPoint, LeverSummary, summarise
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind
-from ....objectives.tables.swing_curves import POINTS
+from ...designs.design_curves import lever_rows
 from ...designs.display_units import rows_in
 from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, recorded, sentence, words
 from ..record_types import Keys, Note
@@ -238,21 +235,7 @@ def curves(
     mechanism: Mechanism, linkage: Linkage, *, units: System, request: LeverRequest, **_: Any
 ) -> list[dict[str, Any]]:
     """Return rows of the curves from start to end, at evenly spaced times."""
-    found = lever_curves(request.machine, request.swing, np.linspace(0.0, 1.0, POINTS))
-    time = {} if request.swing.duration is None else {"time_s": request.swing.duration * found.share}
-    columns = {
-        **time,
-        "lever_angle_deg": np.degrees(found.lever_angle),
-        "length_mm": 1e3 * found.length,
-        "cylinder_angle_deg": np.degrees(found.cylinder_angle),
-        "cylinder_speed_m_s": found.speed,
-        "push_N": found.push,
-        "transmission_angle_deg": np.degrees(found.transmission),
-    }
-    for name, force in (("pin", found.pin), ("pivot", found.pivot), ("cylinder_pivot", found.cylinder_pivot)):
-        columns |= {f"{name}_x_N": force.real, f"{name}_y_N": force.imag}
-    lists = {key: values.tolist() for key, values in columns.items()}
-    return rows_in([{key: values[i] for key, values in lists.items()} for i in range(POINTS)], units)
+    return rows_in(lever_rows(request.machine, request.swing), units)
 
 
 def figure(

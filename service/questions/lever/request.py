@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ....model.cycle.cycle import design_of
@@ -19,6 +19,12 @@ from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwin
 from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
 
 _GRAVITY = 9.81  # m/s^2
+_CYLINDER = {
+    **{name: name for name in ("closed_length", "bore", "supply_pressure", "seal_friction")},
+    **{name: name for name in ("barrel_mass", "piston_rod_mass", "length_tolerance")},
+    **{name: name.partition("_")[2] for name in ("cylinder_stroke", "piston_rod")},
+}
+"""Inputs, and what they are of a `Cylinder`."""
 
 
 @dataclass(frozen=True)
@@ -44,41 +50,40 @@ def lever_request(
     The crank is the lever, the rod the distance between the pivots. swing: swing of the job. Raises `InputError` for
     missing inputs and a swing with a dead point, `AssemblyError` if the linkage does not close.
     """
-    labels, pin_angle = dict(words or {}), inputs.get("pin_angle", 0.0)
+    labels = dict(words or {})
     lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
+    own = mechanism.lever
+    pin_angle = inputs.get("pin_angle", 0.0 if own is None else own.pin_angle)
+    # By default farthest from both dead points.
+    usual_angle = 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi
     sizes = TurningCylinder(
         crank=float(linkage.crank),
         frame=float(linkage.rod),
-        # The default start is farthest from both dead points.
-        frame_angle=inputs.get("frame_angle", 0.5 * (lever_swing.start + lever_swing.end) + pin_angle - 0.5 * math.pi),
+        frame_angle=inputs.get("frame_angle", usual_angle if own is None else own.frame_angle),
         offset=float(linkage.offset),
         pin_angle=pin_angle,
     )
     sizes.require_swing(lever_swing.start, lever_swing.end)
     design = design_of(mechanism, linkage)
-    cylinder = Cylinder(
-        closed_length=inputs.get("closed_length"),
-        stroke=inputs.get("cylinder_stroke"),
-        bore=inputs.get("bore"),
-        rod=inputs.get("piston_rod"),
-        supply_pressure=inputs.get("supply_pressure"),
-        seal_friction=inputs.get("seal_friction", 0.0),
-    )
+    given = {name: inputs[key] for key, name in _CYLINDER.items() if key in inputs}
+    cylinder = replace(_cylinder_of_job(mechanism, swing), **given)
     closed = cylinder.closed_length or min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
     machine = LeverMachine(
         sizes=sizes,
         lever=_lever(design, labels, inputs),
-        barrel=UniformBar(mass=inputs.get("barrel_mass", 0.0), length=closed),
-        piston_rod=UniformBar(mass=inputs.get("piston_rod_mass", 0.0), length=closed),
+        barrel=UniformBar(mass=cylinder.barrel_mass, length=closed),
+        piston_rod=UniformBar(mass=cylinder.piston_rod_mass, length=closed),
         gravity=_gravity(mechanism, inputs.get("gravity")),
     )
-    errors = DimensionErrors(
-        float(design.crank_error),
-        float(design.rod_error),
-        float(design.offset_error),
-        inputs.get("length_tolerance", 0.0 if swing is None else swing.actuator_tolerance),
-    )
-    return LeverRequest(machine, lever_swing, cylinder, errors)
+    errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
+    return LeverRequest(machine, lever_swing, cylinder, DimensionErrors(*errors))
+
+
+def _cylinder_of_job(mechanism: Mechanism, swing: Swing | None) -> Cylinder:
+    """Return the cylinder of a job; of a slider-crank that its slider drives, the tolerance of the actuator."""
+    if mechanism.lever is not None:
+        return mechanism.lever.cylinder
+    return Cylinder(length_tolerance=0.0 if swing is None else swing.actuator_tolerance)
 
 
 def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any]) -> LeverBody:

@@ -1,0 +1,62 @@
+"""A lever moved by a cylinder that turns, as a machine: the slider-crank with its rod fixed as the frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ..checks import require_kinds, require_numbers
+from ..errors import InputError
+from .lever_cylinder import Cylinder
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lever:
+    """What this inversion has besides crank (the lever), rod (the frame) and offset.
+
+    frame_angle: direction from the lever's pivot to the cylinder's, rad from +x. pin_angle: angle from the crank's own
+    line to its pin, rad. cylinder: what is known of it.
+    """
+
+    frame_angle: float
+    pin_angle: float = 0.0
+    cylinder: Cylinder = Cylinder()
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "frame_angle", "pin_angle", phrase="the {} of a lever")
+        require_kinds(self, {"cylinder": Cylinder}, "the table [cylinder] of a job states it")
+
+    @property
+    def texts(self) -> list[str]:
+        """Sentences on frame and cylinder."""
+        pin = f", pin {math.degrees(self.pin_angle):.6g} deg from the crank's line" if self.pin_angle else ""
+        frame = f"the rod is the frame, at {math.degrees(self.frame_angle):.6g} deg from the lever's pivot{pin}"
+        return [frame, *([f"cylinder: {self.cylinder.text}"] if self.cylinder != Cylinder() else [])]
+
+
+def require_lever_alone(machine: Any) -> None:
+    """Raise `InputError` for features of a slider-crank that a lever does not have. machine: a `Mechanism`."""
+    tolerances = machine.tolerances
+    features = {
+        "mechanism.speed": machine.speed,
+        "mechanism.acceleration": machine.acceleration,
+        "mechanism.speed_profile": machine.speed_profile,
+        "mechanism.rod": machine.rod != type(machine)().rod,
+        "mechanism.slider": machine.slider_mass or machine.slider != type(machine)().slider,
+        "mechanism.cylinders": machine.arrangement,
+        'mechanism.branch = "crossed"': machine.branch == "crossed",
+        "[[load]]": machine.loads,
+        "[drive]": machine.drive,
+        "[friction]": machine.friction != type(machine)().friction,
+        "[clearance]": machine.clearance,
+        "[sections]": machine.strength,
+        "tolerances.crank_angle": tolerances.crank_angle.absolute,
+        "tolerances.clearances": tolerances.clearances != type(tolerances)().clearances,
+    }
+    stated = [name for name, value in features.items() if value]
+    if stated:
+        raise InputError(
+            'inversion = "turning cylinder" has a lever and a cylinder, but neither rod nor slider, and its cylinder '
+            f"drives it; got {', '.join(stated)}; leave it out"
+        )

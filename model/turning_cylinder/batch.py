@@ -1,0 +1,106 @@
+"""Many levers with their turning cylinders from the designs of a machine, and which of them can make a swing."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array, Mask
+from ..kernel.arithmetic import STEP
+from ..machine.derived import derived
+from ..machine.design import Design
+from ..machine.lever_cylinder import buckling_number, piston_areas
+from ..machine.mechanism import Mechanism
+from ..machine.memoise import memoise_by_batch
+from ..machine.numbers import LEVER, START, Numbers, numbers_of
+from ..machine.raw import fullest_inputs
+from ..machine.varying import number_at
+from ..swing.swing import Swing
+from .peaks import LeverBatch
+from .states import LeverNumbers
+
+_FIELDS = Design._fields
+_MARGIN = 1e-9
+"""Distance, rad, from a dead point within which rounding decides."""
+
+
+@memoise_by_batch
+def lever_batch(
+    mechanism: Mechanism, designs: Array, /, swing: Swing, *, gradients: bool
+) -> tuple[LeverBatch, Numbers]:
+    """Return levers of designs (n, 3 + k), and the raw numbers that these set. gradients: whether to step each."""
+    raw, loads = fullest_inputs(mechanism)
+    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
+    inside = np.flatnonzero(numbers.columns < len(raw))
+    values = np.ascontiguousarray(numbers.values[:, inside])
+    blocks, steps = derived(raw, loads, numbers.columns[inside], values, steps=gradients)
+    own = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
+    plain = _lever_numbers(mechanism, swing, blocks[:, :, 0], own)
+    stepped = []
+    by_number = steps.reshape(len(designs), len(inside) if gradients else 0, blocks.shape[1])
+    for place, slot in enumerate(numbers.columns.tolist() if gradients else ()):
+        block = by_number[:, int(np.searchsorted(inside, place))] if slot < len(raw) else blocks[:, :, 0]
+        moved = own if slot < len(raw) else own | {slot: own[slot] + 1j * STEP}
+        stepped.append(_lever_numbers(mechanism, swing, block, moved))
+    law: Any = swing.law
+    return LeverBatch(plain, law, tuple(stepped)), numbers
+
+
+def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int, Any]) -> LeverNumbers:
+    """Return numbers (n,). block: (n, rows), see `machine.design`. own: raw numbers that designs set, by slot."""
+    machine = mechanism.nominal
+
+    def part(name: str) -> Any:
+        slot = LEVER[name]
+        number = own[slot] if slot in own else number_at(machine, f"lever.{name}")
+        return np.nan if number is None else number
+
+    def of_block(*names: str) -> list[Any]:
+        return [block[:, _FIELDS.index(name)] for name in names]
+
+    crank, frame, offset = of_block("r", "l", "e")
+    start = own.get(START["crank"], swing.start)
+    end = start + (swing.end - swing.start) if swing.follows else swing.end
+    own_parts = {name.removeprefix("cylinder."): part(name) for name in LEVER if name.startswith("cylinder.")}
+    cylinder = SimpleNamespace(**own_parts)
+    bore, rod = cylinder.bore, cylinder.rod
+    rod_of_area = 0.0 if machine.lever is not None and machine.lever.cylinder.rod is None else rod
+    angles = part("frame_angle"), offset, part("pin_angle"), start, end
+    sizes = LeverNumbers(crank, frame, *angles, *[0.0] * (len(LeverNumbers._fields) - 7))
+    length = cylinder.closed_length
+    if np.isnan(np.real(length)).all():
+        first, last = sizes.ends
+        length = np.where(np.real(last - first) > 0.0, first, last)
+    found = LeverNumbers(
+        *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
+        *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
+        *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
+        *of_block("crank_error", "rod_error", "offset_error"),
+        *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
+        *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
+        *(cylinder.closed_length, cylinder.stroke),
+    )
+    return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
+
+
+def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) close over the whole swing without a dead point."""
+    return _passes(mechanism, np.ascontiguousarray(designs, dtype=np.float64), swing).copy()
+
+
+@memoise_by_batch
+def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
+    passing = np.isfinite(designs).all(axis=1) & (designs[:, 0] > 0.0) & (designs[:, 1] > 0.0)
+    rows = np.flatnonzero(passing)
+    if not len(rows):
+        return passing
+    c = lever_batch(mechanism, designs[rows], swing, gradients=False)[0].plain
+    first, last = (end + c.pin_angle - c.frame_angle for end in (c.start, c.end))
+    between = np.floor(first / np.pi) == np.floor(last / np.pi)
+    off = np.minimum(*(np.abs(np.sin(angle)) for angle in (first, last))) > _MARGIN
+    with np.errstate(invalid="ignore"):
+        closing = np.minimum(*c.ends) > 0.0
+    passing[rows] = between & off & closing & (np.abs(last - first) < np.pi)
+    return passing

@@ -1,0 +1,68 @@
+"""One design of a machine as a lever with its cylinder: what an analysis of a single swing takes."""
+
+from __future__ import annotations
+
+from ..cycle.cycle import design_of
+from ..errors import InputError
+from ..linkage.linkage import Linkage
+from ..machine.mechanism import Mechanism
+from ..swing.swing import Swing, started
+from .forces import LeverBody, LeverMachine, LeverSwing, UniformBar
+from .lever import DimensionErrors, TurningCylinder
+
+
+def lever_sizes(mechanism: Mechanism, linkage: Linkage) -> TurningCylinder:
+    """Return the fixed dimensions of the lever of a design."""
+    lever = mechanism.lever
+    assert lever is not None
+    return TurningCylinder(
+        crank=float(linkage.crank),
+        frame=float(linkage.rod),
+        frame_angle=lever.frame_angle,
+        offset=float(linkage.offset),
+        pin_angle=lever.pin_angle,
+    )
+
+
+def lever_swing(mechanism: Mechanism, swing: Swing) -> LeverSwing:
+    """Return the swing of the lever of a design."""
+    placed = started(mechanism, swing)
+    if placed.law == "table":
+        raise InputError("the law of a lever's swing has a name; got a table; name a law such as cycloidal")
+    return LeverSwing(placed.start, placed.end, placed.law, placed.duration)
+
+
+def lever_linkage(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
+    """Return crank, frame and offset of one lever as floats.
+
+    Raises `InputError` for a dead point within its swing, `AssemblyError` where it does not close.
+    """
+    placed = lever_swing(mechanism, swing)
+    lever_sizes(mechanism, linkage).require_swing(placed.start, placed.end)
+    return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
+
+
+def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[LeverMachine, DimensionErrors]:
+    """Return the lever of one design with its masses, and its tolerances."""
+    assert mechanism.lever is not None
+    design, sizes, placed = (
+        design_of(mechanism, linkage),
+        lever_sizes(mechanism, linkage),
+        lever_swing(mechanism, swing),
+    )
+    cylinder = mechanism.lever.cylinder
+    length = cylinder.closed_length or min(float(sizes.length(end)) for end in (placed.start, placed.end))
+    machine = LeverMachine(
+        sizes=sizes,
+        lever=LeverBody(
+            mass=float(design.crank_mass),
+            moment_along=float(design.crank_along),
+            moment_across=float(design.crank_across),
+            inertia=float(design.crank_inertia),
+        ),
+        barrel=UniformBar(mass=cylinder.barrel_mass, length=length),
+        piston_rod=UniformBar(mass=cylinder.piston_rod_mass, length=length),
+        gravity=mechanism.gravity,
+    )
+    errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
+    return machine, DimensionErrors(*errors)

@@ -1,0 +1,156 @@
+"""Quantities of a lever moved by a cylinder that turns, over its swing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..model.kernel.arithmetic import STEP
+from ..model.kernel.batches import in_chunks
+from ..model.machine.mechanism import Mechanism
+from ..model.swing.swing import Swing
+from ..model.turning_cylinder.batch import lever_batch, lever_passes
+from ..model.turning_cylinder.peaks import lever_peaks
+from ..model.turning_cylinder.states import LeverNumbers
+from .machine_needs import Consequence
+from .quantity import Array, Pieces, Values
+from .swing_quantity import SwingQuantity
+
+Form = Callable[[LeverNumbers, Any], Any]
+"""A formula of the numbers of levers and the greatest ds/dt of their law."""
+_CHUNK = 512
+_PEAKS = 4
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeverQuantity(SwingQuantity):
+    """A number of a lever's swing. known: numbers of its cylinder that it needs."""
+
+    known: tuple[str, ...] = field(default=(), compare=False)
+
+    def unfit(self, swing: Swing) -> str | None:
+        """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
+        if swing.driver != "cylinder":
+            return (
+                "it is of a lever moved by a cylinder that turns; got a slider-crank; set [mechanism] "
+                'inversion = "turning cylinder", or leave it out'
+            )
+        if self.timed and swing.duration is None:
+            return "it is of a swing in a time; got a slow one; give [motion] a law and a duration"
+        return None
+
+    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
+        """Return why a machine does not define it; see `Quantity`."""
+        lever = mechanism.fullest.lever
+        if consequence == "undefined" and lever is not None:
+            for name in self.known:
+                if getattr(lever.cylinder, name) is None:
+                    words = name.replace("_", " ")
+                    return f"it needs the {words} of the cylinder; got none; give [cylinder] {name}"
+            if self.tolerated:
+                stated = mechanism.fullest.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
+                return None if stated else 'it needs tolerances; got none; add for example [tolerances] crank = "1 mm"'
+        return None
+
+    def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
+        designs = np.ascontiguousarray(dimensions, dtype=np.float64)
+        return designs, np.flatnonzero(lever_passes(mechanism, self._required_swing, designs))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeverPeak(LeverQuantity):
+    """The greatest value of some curves of `turning_cylinder.peaks` over the swing.
+
+    curves: their names. least_value: value where it would be less. inverse: whether the quantity is the inverse of that
+    value: a margin, which is infinite where nothing loads the cylinder.
+    """
+
+    curves: tuple[str, ...]
+    least_value: float | None = None
+    inverse: bool = False
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        pieces = self._pieces(mechanism, dimensions, gradients, 1)
+        best = (np.argmin if pieces.least else np.argmax)(pieces.values, axis=1)
+        rows = np.arange(len(best))
+        return Values(pieces.values[rows, best], pieces.gradients[rows, best] if gradients else None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return the highest local peaks; see `Quantity`."""
+        return self._pieces(mechanism, dimensions, True, _PEAKS)
+
+    def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool, limit: int) -> Pieces:
+        designs, rows = self._passing(mechanism, dimensions)
+        width = len(self.curves) * (limit + 2)
+        absent = np.inf if self.inverse else -np.inf
+        floor = [] if self.least_value is None else [self.least_value]
+        values = np.full((len(designs), width + len(floor)), absent)
+        values[:, width:] = floor
+        labels = np.zeros(values.shape)
+        slopes = np.zeros((*values.shape, designs.shape[1] if gradients else 0))
+        values[np.setdiff1d(np.arange(len(designs)), rows), 0] = np.nan
+
+        batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
+        by_number = np.zeros((len(rows), width, len(numbers.columns) if gradients else 0))
+
+        def work(begin: int, end: int) -> None:
+            chunk = rows[begin:end]
+            peaks = lever_peaks(batch.part(begin, end), self.curves, gradients=gradients, limit=limit)
+            labels[chunk, :width] = np.nan_to_num(peaks.places)
+            found, slope = peaks.values, peaks.gradients
+            if self.inverse:
+                is_loaded = found > 0.0
+                found = np.where(is_loaded, 1.0 / np.where(is_loaded, found, 1.0), np.inf)
+                slope = np.where(is_loaded[..., None], -slope * np.where(is_loaded, found, 0.0)[..., None] ** 2, 0.0)
+            values[chunk, :width] = found
+            by_number[begin:end] = slope
+
+        in_chunks(len(rows), work, size=_CHUNK)
+        if gradients:
+            slopes[rows, :width] = numbers.chain(by_number)
+        return Pieces(values, slopes, labels, least=self.inverse)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeverForm(LeverQuantity):
+    """The greatest, or least, of closed forms in a lever's numbers."""
+
+    forms: tuple[Form, ...]
+    least: bool = False
+
+    @property
+    def of_dimensions(self) -> bool:
+        """True."""
+        return True
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        pieces = self._pieces(mechanism, dimensions, gradients)
+        best = (np.argmin if self.least else np.argmax)(pieces.values, axis=1)
+        rows = np.arange(len(best))
+        return Values(pieces.values[rows, best], pieces.gradients[rows, best] if gradients else None)
+
+    def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+        """Return its forms; see `Quantity`."""
+        return self._pieces(mechanism, dimensions, True)
+
+    def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool) -> Pieces:
+        designs, rows = self._passing(mechanism, dimensions)
+        batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
+        count = len(self.forms)
+        values = np.full((len(designs), count), np.nan)
+        slopes = np.zeros((*values.shape, designs.shape[1] if gradients else 0))
+        values[rows] = self._of(batch.plain).real
+        if gradients:
+            by_number = [self._of(stepped).imag / STEP for stepped in batch.stepped]
+            slopes[rows] = numbers.chain(np.stack(by_number, axis=-1))
+        labels = np.broadcast_to(np.arange(float(count)), values.shape)
+        return Pieces(values, slopes, labels, least=self.least)
+
+    def _of(self, numbers: LeverNumbers) -> Any:
+        top = self._required_swing.fastest
+        return np.stack([form(numbers, top) + 0j * numbers.crank for form in self.forms], axis=1)

@@ -1,0 +1,95 @@
+"""A lever and its turning cylinder at true scale, with both ends of the swing, the path of its pin and dimensions."""
+
+from __future__ import annotations
+
+import math
+
+from ...model.errors import InputError
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing
+from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
+from ...model.turning_cylinder.machine import lever_machine, lever_swing
+from ...objectives.kinds import System, metric_unit_in
+from ..designs.toleranced import tolerances_of
+from . import layers as on
+from .dimensions import Lettering, aligned
+from .lever_parts import lever_extent, lever_shapes
+from .shapes import Drawing, Line, Point, Shape
+from .titles import TEXT, TRUE_SCALE, with_title
+
+
+def lever_drawing(
+    mechanism: Mechanism,
+    linkage: Linkage,
+    swing: Swing,
+    *,
+    name: str,
+    design: str = "",
+    crank_angle: float | None = None,
+    system: System = "metric",
+) -> Drawing:
+    """Return one lever with its cylinder at true scale, mm: the lever's pivot at (0, 0).
+
+    Pivots, pins, both ends of the swing and dimensions are exact. crank_angle: lever angle of the drawing, within the
+    swing, rad; half-way if None. name, design: as for `design_drawing.linkage_drawing`. Raises `InputError` for an
+    angle outside, and the errors of `lever_linkage`.
+    """
+    machine, _ = lever_machine(mechanism, linkage, swing)
+    placed = lever_swing(mechanism, swing)
+    machine.sizes.require_swing(placed.start, placed.end)
+    angle, extent = _angle_in_swing(placed, crank_angle), lever_extent(machine, placed)
+    size = max(extent[2] - extent[0], extent[3] - extent[1])
+    tolerances = tolerances_of(mechanism, linkage)
+    letters = Lettering(TEXT * size, system)
+    shapes = [*lever_shapes(machine, placed, angle), *_dimensions(machine, angle, letters, tolerances)]
+    title = f"{name}, {design}" if design else name
+    return with_title(on.SWING_LAYERS, shapes, extent, size, title, _notes(machine, placed, angle, system))
+
+
+def _angle_in_swing(swing: LeverSwing, angle: float | None) -> float:
+    if angle is None:
+        return 0.5 * (swing.start + swing.end)
+    low, high = sorted((swing.start, swing.end))
+    turned = angle + 2.0 * math.pi * math.ceil((low - angle) / (2.0 * math.pi) - 1e-9)
+    if turned <= high + 1e-9:
+        return min(max(turned, low), high)
+    start, end, requested = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
+    raise InputError(
+        f"the lever angle of a drawing must be within the swing, from {start} to {end} deg; got {requested} deg; give "
+        "one in between, or none for the middle"
+    )
+
+
+def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, tolerances: dict[str, float]) -> list[Shape]:
+    """Return the skeleton, and the dimensions of lever and frame on either side of the angle between them."""
+    sizes = machine.sizes
+    pin = _polar(1e3 * sizes.crank, angle + sizes.pin_angle)
+    pivot = _polar(1e3 * sizes.frame, sizes.frame_angle)
+    side = 1.0 if math.sin(float(sizes.relative_angle(angle))) > 0.0 else -1.0
+    away, origin = 4.0 * letters.height, (0.0, 0.0)
+    return [
+        Line(on.SKELETON, origin, pin),
+        Line(on.SKELETON, pivot, pin),
+        aligned("crank", origin, pin, side * away, letters, tolerances.get("crank", 0.0)),
+        aligned("rod", origin, pivot, -side * away, letters, tolerances.get("rod", 0.0)),
+    ]
+
+
+def _notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: System) -> tuple[str, ...]:
+    sizes, (unit, factor) = machine.sizes, metric_unit_in("mm", system)
+    crank, frame, offset = (f"{1e3 * factor * size:.7g} {unit}" for size in (sizes.crank, sizes.frame, sizes.offset))
+    lengths = (float(sizes.length(end)) for end in (swing.start, swing.end))
+    first, last = (f"{1e3 * factor * length:.7g}" for length in lengths)
+    start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
+    return (
+        f"Crank {crank}, frame (rod) {frame} at {math.degrees(sizes.frame_angle):.6g} deg, offset {offset}.",
+        f"The lever swings from {start} to {end} deg; drawn at {drawn} deg, both ends dashed.",
+        f"The cylinder is {first} {unit} long at the start and {last} {unit} at the end.",
+        f"{TRUE_SCALE[system]}; pivots are exact.",
+        "Widths of lever and cylinder are schematic.",
+    )
+
+
+def _polar(length: float, angle: float) -> Point:
+    return length * math.cos(angle), length * math.sin(angle)

@@ -1,0 +1,197 @@
+"""Jobs of a lever moved by a cylinder that turns: from text to a front, and what is refused."""
+
+from __future__ import annotations
+
+import copy
+import re
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+
+import slidercrank as sc
+from slidercrank.model.errors import InputError, JobError
+from slidercrank.objectives.lever_quantity import LeverQuantity
+from slidercrank.objectives.tables.swinging import swing_facts
+from slidercrank.optimise.certificate.boundable import unbounded_reason
+from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.problem.violation import FEASIBLE, all_minimised, constraints_of, greatest_violation
+from tests.optimise.problems import LEVER
+
+TIPPER = [0.35, 0.9, 0.0]
+
+
+def lever(**tables: Any) -> dict[str, Any]:
+    """Return the tables of a lever with others in place; a table is merged, None leaves one out."""
+    found = copy.deepcopy(LEVER)
+    for name, table in tables.items():
+        if table is None:
+            del found[name]
+        elif name in ("mechanism", "motion", "cylinder", "constraints", "variables"):
+            found[name] = found.get(name, {}) | table
+        else:
+            found[name] = table
+    return found
+
+
+def test_a_job_has_the_numbers_of_the_law_of_cosines() -> None:
+    slow = lever(motion={"law": "slow"}, cylinder=None)
+    del slow["motion"]["duration"]
+    slow["objectives"] = {"peak_cylinder_force": "minimise"}
+    problem = sc.problem(slow)
+    names = ["least_cylinder_length", "greatest_cylinder_length", "peak_cylinder_force", "lever_work"]
+    found = problem.evaluate([TIPPER, [0.4, 0.6, 0.0]], names)
+    assert found[0] == pytest.approx([0.670740, 1.071435, 1710.09, 608.726], rel=5e-6)
+    assert found[1, [0, 1, 3]] == pytest.approx([0.390255, 0.827145, 608.726], rel=5e-6)
+    analysis = problem.analyse(TIPPER)
+    assert [analysis[name] for name in names] == pytest.approx(found[0].tolist(), rel=1e-12)
+    asked = problem.ask("lever", TIPPER)
+    assert asked["peak_push_N"] == pytest.approx(1710.09, rel=5e-6)
+    assert asked["frame_angle_deg"] == pytest.approx(-60.0)
+
+
+def test_the_job_of_the_guide_has_a_front_of_levers(pytestconfig: pytest.Config) -> None:
+    guide = (pytestconfig.rootpath / "docs" / "levers.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n(.*?)^```$", guide, re.MULTILINE | re.DOTALL)
+    tables = tomllib.loads(text)
+    front = sc.solve(sc.problem(tables | {"optimiser": {"designs": 4, "samples": 200}}))
+    assert len(front) == 4
+    assert set(re.findall(r"`(\w+)`", guide)) >= {of.name for of in swing_facts() if isinstance(of, LeverQuantity)}
+
+
+def test_the_cylinder_of_a_job_must_be_long_strong_and_stiff_enough() -> None:
+    names = {c.quantity: c.lower for c in constraints_of(sc.problem(lever()))}
+    assert names == pytest.approx(
+        {
+            "lever_transmission_angle": np.radians(10.0),
+            **{"cylinder_length_margin": 0.0, "pressure_margin": 1.0, "buckling_margin": 1.0},
+        }
+    )
+    unknown = sc.problem(lever(cylinder=None, motion={"margin": "25 deg"}, tolerances={"crank": "1 mm"}))
+    assert {c.quantity: c.lower for c in constraints_of(unknown)} == {
+        "lever_transmission_angle": pytest.approx(np.radians(25.0))
+    }
+    stated = sc.problem(lever(constraints={"buckling_margin": {"min": 3.5}}))
+    assert {c.quantity: c.lower for c in constraints_of(stated)}["buckling_margin"] == 3.5
+
+
+def test_numbers_of_the_cylinder_and_the_frame_may_vary_and_be_chosen() -> None:
+    variables = {"mechanism.frame_angle": ["-80 deg", "-40 deg"], "cylinder.bore": {"choices": ["32 mm", "40 mm"]}}
+    front = sc.solve(sc.problem(lever(variables=variables)))
+    assert front.status == "done"
+    assert len(front) == 6
+    assert set(front.columns) >= {"choice_cylinder_bore", "frame_angle_deg", "peak_cylinder_force_N"}
+
+
+def random_job(random: np.random.Generator) -> Problem:
+    """Return a random job of a lever that some design meets."""
+    while True:
+        start = float(random.uniform(-90.0, 60.0))
+        frame = start + float(random.choice([-1.0, 1.0]) * random.uniform(30.0, 110.0))
+        tables = lever(
+            mechanism={"frame_angle": f"{frame} deg", "pin_angle": f"{random.uniform(-20.0, 20.0)} deg"},
+            motion={"from": f"{start} deg", "to": f"{start + random.uniform(20.0, 80.0)} deg"},
+            cylinder=None,
+            tolerances={"crank": "0.5 mm", "rod": "1 mm"},
+            constraints={"extension_ratio": {"max": 1.7}, "dead_point_margin": {"min": "15 deg"}},
+            variables={"mechanism.frame_angle": [f"{frame - 10.0} deg", f"{frame + 10.0} deg"]},
+        )
+        wishes = ("peak_cylinder_force", "cylinder_travel", "lever_angle_error", "peak_cylinder_power")
+        tables["objectives"] = dict.fromkeys(random.choice(wishes, 2, replace=False).tolist(), "minimise")
+        tables["cylinder"] = {"seal_friction": f"{random.uniform(0.0, 60.0)} N"}
+        problem = sc.problem(tables, require_feasible=False)
+        some = designs_within(problem, random, 400)
+        if (greatest_violation(problem, some, constraints_of(problem)) <= FEASIBLE).any():
+            return problem
+
+
+def designs_within(problem: Problem, random: np.random.Generator, count: int) -> np.ndarray:
+    """Return random designs within the ranges."""
+    ends = list(problem.ranges.values())
+    return random.uniform([end.lower for end in ends], [end.upper for end in ends], (count, len(ends)))
+
+
+def assert_unbeaten(problem: Problem, random: np.random.Generator, count: int) -> None:
+    """Check that no random design is better than one of the front in all objectives."""
+    front = sc.solve(problem)
+    assert front.status == "done", front.message
+    designs = designs_within(problem, random, count)
+    met = designs[greatest_violation(problem, designs, constraints_of(problem)) <= FEASIBLE]
+    found, own = (all_minimised(problem, values) for values in (problem.evaluate(met), front.values))
+    beaten = (found[:, None] < own[None] - 1e-6 * np.abs(own)[None]).all(axis=2)
+    assert not beaten.any()
+
+
+def test_no_design_of_a_front_is_beaten_by_random_designs() -> None:
+    random = np.random.default_rng(51)
+    assert_unbeaten(random_job(random), random, 2000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(30))
+def test_no_design_of_30_fronts_is_beaten_by_50_000_designs(seed: int) -> None:
+    random = np.random.default_rng(100 + seed)
+    assert_unbeaten(random_job(random), random, 50_000)
+
+
+def test_a_certificate_says_that_a_lever_has_none() -> None:
+    problem = sc.problem(lever())
+    for objective in problem.objectives:
+        assert "has no bound over a range of designs where a cylinder moves a lever" in unbounded_reason(
+            problem, objective
+        )
+
+
+@pytest.mark.parametrize(
+    ("tables", "part"),
+    [
+        (lever(motion={"driver": "slider"}), "motion.driver: the cylinder drives the lever; got slider; leave it out"),
+        (lever(motion={"kind": "turn"}), "keys of a swing must not be given for a rotating crank"),
+        (lever(motion=None), "motion: inversion = .* needs a swing of its lever; got a crank that rotates fully"),
+        (lever(motion={"to": "175 deg"}), "must swing its lever less than 180 deg"),
+        (lever(mechanism={"speed": "300 rpm"}), "got mechanism.speed; leave it out"),
+        (lever(mechanism={"slider": {"mass": "2 kg"}, "rod": {"mass": "1 kg"}}), "got mechanism.rod, mechanism.slider"),
+        (lever(load=[{"force": "20 N", "opposes": "motion"}]), r"got \[\[load\]\]; leave it out"),
+        (lever(friction={"guide": 0.1}), r"got \[friction\]; leave it out"),
+        (lever(mechanism={"inversion": None}), "mechanism.inversion: "),
+        (lever(objectives={"peak_torque": "minimise"}), "peak_torque is of a crank that rotates fully"),
+        (lever(objectives={"holding_force": "minimise"}), "holding_force: it is of a crank with rod and slider"),
+        (lever(cylinder={"bore": "20 mm"}), "cylinder: the bore must exceed the piston rod; got a bore of 20 mm"),
+        (lever(cylinder={"stroke": "700 mm"}), "cylinder: the stroke of a single-stage cylinder must be less than"),
+        (
+            lever(mechanism={"frame_angle": "20 deg"}),
+            "motion: no design within the ranges makes the swing of the lever from -20 to 50 deg",
+        ),
+    ],
+)
+def test_what_a_lever_does_not_have_is_refused_in_one_sentence(tables: dict[str, Any], part: str) -> None:
+    with pytest.raises((JobError, InputError), match=part):
+        sc.problem(tables)
+
+
+def test_a_cylinder_that_is_too_weak_for_every_design_is_said_to_be() -> None:
+    front = sc.solve(sc.problem(lever(cylinder={"supply_pressure": "2 bar"})))
+    assert front.status == "infeasible"
+    assert re.search("supply pressure over the needed one at least 1 .* at most 0.16.* is possible", front.message)
+
+
+def test_keys_of_a_lever_are_refused_for_a_slider_crank() -> None:
+    plain = {"mechanism": {"speed": "300 rpm"}, "objectives": {"stroke": "minimise"}, "variables": LEVER["variables"]}
+    for key, tables in (
+        ("mechanism.frame_angle", {"mechanism": {"speed": "300 rpm", "frame_angle": "-60 deg"}}),
+        ("cylinder", {"cylinder": {"bore": "40 mm"}}),
+    ):
+        with pytest.raises(JobError, match=f"{key}: is for a lever moved by a cylinder that turns; got it for a crank"):
+            sc.problem({"name": "Plain", **plain, **tables})
+    found = lever()
+    del found["mechanism"]["frame_angle"]
+    with pytest.raises(JobError, match=r"mechanism.frame_angle: is missing"):
+        sc.problem(found)
+
+
+def test_curves_of_a_slider_crank_are_refused_for_a_lever() -> None:
+    analysis = sc.problem(lever()).analyse(TIPPER)
+    for ask in (analysis.cycle, analysis.plot, lambda: analysis["stroke"]):
+        with pytest.raises(InputError, match=r"crank with rod and slider|rotating crank|rotates fully"):
+            ask()
