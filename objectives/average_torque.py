@@ -25,8 +25,10 @@ RMS_TORQUE = _average(
     short="RMS torque",
     statistic="rms",
     place=70,
-    sentence="The root mean square of the drive torque over the time of a cycle, which is what heats a motor.",
-    advice="Compare it with the rated torque of the motor, and the peak torque with its greatest one.",
+    sentence=(
+        "The root mean square of the drive torque over the time of a cycle, which determines the heating of a motor."
+    ),
+    advice="Compare it with the rated torque of the motor, and the peak torque with its greatest torque.",
     formula="sqrt(mean of T^2 over time), dt = d theta / omega",
     needs=(DRIVEN,),
     on_datasheet=True,
@@ -37,7 +39,7 @@ MEAN_TORQUE = _average(
     short="mean torque",
     statistic="mean",
     place=80,
-    sentence="The mean drive torque over the crank angle: the work on load and friction per angle.",
+    sentence="The mean drive torque over the crank angle: the work on load and friction per radian.",
     advice="Inertia and gravity need no torque on average, however high their peaks.",
     formula="mean of T over the crank angle",
     signed=True,

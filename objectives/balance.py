@@ -21,7 +21,7 @@ PEAK_SHAKING_FORCE = _peak(
     signal=Signal.SHAKING_FORCE,
     place=240,
     sentence="The greatest force with which the moving links shake the frame within a turn.",
-    advice="A counterweight on the crank lowers it, never to zero: the slider remains.",
+    advice="A counterweight on the crank reduces it, but not to zero: the slider remains unbalanced.",
     formula="max |F_s|, F_s = minus the rate of change of the momentum of all links",
     picture="shaking force",
     needs=(MOTION, MASSES, SHAKES),
@@ -68,7 +68,7 @@ PEAK_ROCKING_COUPLE = _peak(
     sentence=(
         "The greatest couple about an axis across the shaft with which several cylinders rock the frame within a turn."
     ),
-    advice="It comes from the places of the cylinders along the shaft, counted from the shaft's zero.",
+    advice="It depends on the positions of the cylinders along the shaft, measured from the shaft's zero.",
     formula="max |sum over the cylinders of (-z F_y, z F_x)|, z the place of a cylinder",
     picture="shaking force",
     needs=(MOTION, MASSES, COUPLES),

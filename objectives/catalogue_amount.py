@@ -33,7 +33,7 @@ class Amount(Quantity):
     @property
     def blank(self) -> str:
         """Message for an option without this amount."""
-        return "the catalogue has none for what is chosen"
+        return "the catalogue has none for the chosen options"
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the amount for designs (n, 3 + k), with zero gradients; see `Quantity`."""

@@ -135,10 +135,10 @@ MOTOR_PEAK_TORQUE = _peak(
     kind=TORQUE,
     place=231,
     sentence=(
-        "The greatest torque of the motor within a cycle, driving or braking, behind the gear with its losses. The "
-        "inertias of flywheel and rotor count where the speed changes."
+        "The greatest motor torque within a cycle, driving or braking, including gear losses. Flywheel and rotor "
+        "inertia matter where the speed changes."
     ),
-    advice="Compare it with the greatest torque of the motor, which it can give briefly.",
+    advice="Compare it with the greatest torque that the motor can deliver briefly.",
     formula=f"max |T_m|, {_TORQUE}",
     allowed_by="greatest torque of the motor",
     needs=_NEEDS,
@@ -149,7 +149,10 @@ MOTOR_RMS_TORQUE = _rms(
     short="RMS motor torque",
     kind=TORQUE,
     place=232,
-    sentence="The root mean square of the motor's torque over the time of a cycle, which is what heats the motor.",
+    sentence=(
+        "The root mean square of the motor's torque over the time of a cycle, which determines the heating of the "
+        "motor."
+    ),
     advice="Compare it with the rated torque of the motor.",
     formula=f"sqrt(mean of T_m^2 over time), {_TORQUE}",
     allowed_by="rated torque of the motor",
@@ -199,7 +202,7 @@ THERMAL_USE = _rms(
     share=True,
     place=236,
     sentence="The RMS torque of the motor over time, as a fraction of its rated torque.",
-    advice="The motor does not overheat up to 1; 0.8 leaves a margin.",
+    advice="Up to 1 the motor does not overheat; 0.8 leaves a margin.",
     formula="sqrt(mean of T_m^2 over time) / T_r",
     example=0.8,
     needs=(motor_limit("rated_torque", "5 N m"), MOTOR_LOADED),
@@ -209,7 +212,7 @@ MOTOR_TORQUE_USE = _peak(
     kind=RATIO,
     share=True,
     place=237,
-    sentence="The peak torque of the motor, as a fraction of the greatest one that it can give.",
+    sentence="The peak motor torque, as a fraction of the greatest torque that the motor can deliver.",
     formula="max |T_m| over the greatest torque of the motor",
     example=0.8,
     needs=(motor_limit("greatest_torque", "15 N m"), MOTOR_LOADED),
@@ -219,7 +222,7 @@ MOTOR_SPEED_USE = _speed(
     kind=RATIO,
     share=True,
     place=238,
-    sentence="The greatest speed of the motor within a turn, as a fraction of the one that it can reach.",
+    sentence="The greatest motor speed within a turn, as a fraction of the speed that the motor can reach.",
     formula="i max |omega| over the greatest speed of the motor",
     example=0.8,
     needs=(motor_limit("greatest_speed", "4000 rpm"), SPEED),

@@ -172,7 +172,7 @@ ENERGY_PER_CYCLE = EnergyPerCycle(
         "The net work of the drive over a cycle of one turn or two: the work on the load plus friction; negative if "
         "the load drives the machine."
     ),
-    advice="What the drive gives and takes back within the cycle, such as kinetic energy, cancels.",
+    advice="Energy that the drive supplies and recovers within the cycle, such as kinetic energy, cancels out.",
     formula="(integral of T over the crank angle of a cycle, one turn or two) sgn(omega)",
     section=_SECTION,
     picture="torque",
@@ -213,7 +213,7 @@ FRICTION_LOSS = FrictionLoss(
     place=438,
     group=Group.DRIVE,
     sentence="The friction heat in guide and pins over a cycle: one turn, or two if the cycle has 720 deg.",
-    advice="It is the same at every speed where the load alone makes the forces.",
+    advice="If only loads cause forces, it is the same at every speed.",
     formula="integral of mu |N| |x'| + rho_O |P| + rho_A |A| (1 - phi') + rho_B |B| |phi'| over the crank angle",
     section=_SECTION,
     picture="torque",

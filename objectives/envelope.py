@@ -56,7 +56,7 @@ _envelope = partial(
     group=Group.PROPORTIONS,
     section="2. Closed forms",
     picture=FOOTPRINT.picture,
-    advice="The footprint is of pin centres alone; without sections so is this.",
+    advice="The footprint only covers the pin centres; without sections, so does this.",
 )
 ENVELOPE_LENGTH = _envelope(
     name="envelope_length",
@@ -73,7 +73,7 @@ ENVELOPE_LENGTH = _envelope(
 ENVELOPE_HEIGHT = _envelope(
     name="envelope_height",
     place=134,
-    sentence="How high the room is, across the slider line, that crank and rod sweep over a turn with their widths.",
+    sentence="Height across the slider line of the space that crank and rod sweep over a turn, including their widths.",
     formula="(r + h) + max(r + h, |e| + h_r): half widths h_c and h_r, the greater one h",
     example="200 mm",
     extents=(

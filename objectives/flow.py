@@ -146,10 +146,12 @@ FLOW = Flow(
     place=451,
     group=Group.DRIVE,
     sentence=(
-        "The mean volume that pumps and compressors deliver per time; several cylinders add up. Gas is counted at "
-        "suction pressure."
+        "The mean volume per unit time that pumps and compressors deliver, summed over the cylinders. Gas is "
+        "measured at suction pressure."
     ),
-    advice="It follows the displacement volume, the speed and the volumetric efficiency. Valves are ideal here.",
+    advice=(
+        "It follows the displacement volume, the speed and the volumetric efficiency. Valves are assumed to be ideal."
+    ),
     formula="(|omega| / 2 pi) sum of eta_v A S: volumetric efficiency eta_v, 1 for a liquid; piston area A, stroke S",
     section="7. Loads",
     picture="cylinder",
@@ -162,10 +164,10 @@ FLOW_RIPPLE = FlowRipple(
     place=452,
     group=Group.DRIVE,
     sentence=(
-        "The difference of the greatest and the least flow within a turn, over the mean flow: of all pumps together, "
-        "at constant speed, of a liquid that does not yield."
+        "The difference between the greatest and least flow within a turn, divided by the mean flow: for all pumps "
+        "together, at constant speed, with an incompressible liquid."
     ),
-    advice="pi for one single-acting pump with a long rod; three evenly spaced ones have 0.14.",
+    advice="It is pi for one single-acting pump with a long rod, and 0.14 for three evenly spaced pumps.",
     formula="(max q - min q) / mean q, q = sum of A |x'| over the pumps in their delivery strokes",
     section="7. Loads",
     picture="cylinder",
@@ -173,8 +175,8 @@ FLOW_RIPPLE = FlowRipple(
     needs=(
         Need(
             lambda machine: bool(pumps_of(machine.fullest)),
-            "it needs pumps of a liquid; got none; add for example "
-            '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", medium = "liquid"',
+            'it needs pumps for a liquid; got none; add for example [[load]] bore = "70 mm", suction = "1 bar", '
+            'discharge = "8 bar", medium = "liquid"',
             consequence="undefined",
         ),
         EVEN_SPEED,

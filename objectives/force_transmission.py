@@ -62,8 +62,10 @@ FORCE_TRANSMISSION = ForceTransmission(
     kind=RATIO,
     place=300,
     group=Group.PROPORTIONS,
-    sentence="The greatest force that moves the slider, over the greatest force that the rod must give it for that.",
-    advice="1 is ideal; the rest only presses the slider against its guide. The rod's own inertia lowers it.",
+    sentence="The greatest force that moves the slider, divided by the greatest rod force needed for it.",
+    advice=(
+        "1 is ideal; the remaining force only presses the slider against its guide. The rod's own inertia lowers it."
+    ),
     formula="max |B_x| / max |B|; sin(mu_min) for a constant force and a rod without mass",
     section="8. Dynamics",
     picture="slider pin force",

@@ -34,21 +34,21 @@ DISPLACEMENT_VOLUME = _gas(
     kind=VOLUME,
     closed_form=lambda gas: gas.swept,
     place=410,
-    sentence="The volume that the piston sweeps in a stroke; several cylinders add up.",
+    sentence="The volume that the piston sweeps in a stroke, summed over the cylinders.",
     advice=(
         "It determines how much a compressor or pump delivers. As a constraint it fixes the stroke for a given bore."
     ),
     formula="sum of A S: piston area A, stroke S",
     better="high",
-    domain=Domain(lower=0.0, rule="the displacement volume is positive", remedy="5 cm^3 to 5000 cm^3 are usual"),
+    domain=Domain(lower=0.0, rule="the displacement volume must be positive", remedy="5 cm^3 to 5000 cm^3 are usual"),
 )
 CLEARANCE_RATIO = _gas(
     name="clearance_ratio",
     kind=RATIO,
     closed_form=lambda gas: gas.clearance / gas.swept,
     place=420,
-    sentence="The volume that is left with the piston at its top, over the volume that it sweeps.",
-    advice="0.03 to 0.1 are usual for compressors: what is left expands again and takes the place of fresh gas.",
+    sentence="The volume left above the piston at its top, divided by the swept volume.",
+    advice="0.03 to 0.1 are usual for compressors: the remaining gas expands again and displaces fresh gas.",
     formula="sum of V_c / sum of A S",
     example=0.05,
     plain=True,
@@ -64,7 +64,7 @@ INDICATED_WORK = _gas(
         "The work that the gas does on the pistons over a cycle of one turn or two: positive for an engine, negative "
         "for a compressor or pump."
     ),
-    advice="Maximise it in either case. Friction and other loads are not in it; with them it is the delivered work.",
+    advice="Maximise it in either case. It excludes friction and other loads; the delivered work includes them.",
     formula="sum of the areas of the p-V diagrams: integral of p dV over a cycle, one turn or two",
     example="-60 J",
     better="high",
@@ -76,9 +76,12 @@ MEAN_EFFECTIVE_PRESSURE = _gas(
     kind=PRESSURE,
     closed_form=lambda gas: gas.cycle_work / gas.swept,
     place=441,
-    sentence="The constant pressure that would do the work of a cycle in one stroke; negative where gas takes work.",
-    advice="It compares cylinders of different size. With fixed pressures it follows from the clearance ratio alone.",
-    formula="work of the cycles, of two turns for four strokes / sum of A S",
+    sentence="The constant pressure that would do the work of a cycle in one stroke; negative if the gas absorbs work.",
+    advice=(
+        "It makes cylinders of different sizes comparable. With fixed pressures it follows from the clearance "
+        "ratio alone."
+    ),
+    formula="work per cycle (two turns for four strokes) / sum of A S",
     example="-2.4 bar",
     better="high",
     signed=True,
@@ -89,8 +92,11 @@ VOLUMETRIC_EFFICIENCY = _gas(
     kind=RATIO,
     closed_form=lambda gas: gas.delivers,
     place=450,
-    sentence="The volume of gas that a compressor takes in during a stroke, over the volume that its piston sweeps.",
-    advice="What is left in the clearance expands first. Zero or less: nothing is delivered. Valves are ideal here.",
+    sentence="The volume of gas that a compressor takes in during a stroke, divided by the swept volume.",
+    advice=(
+        "Gas left in the clearance expands first. At zero or less, nothing is delivered. Valves are assumed to "
+        "be ideal."
+    ),
     formula="1 - (V_c / (A S)) ((p_h / p_l)^(1/n_e) - 1); 1 for a liquid",
     example=0.8,
     better="high",

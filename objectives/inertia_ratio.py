@@ -86,8 +86,11 @@ INERTIA_RATIO = _ratio(
     short="inertia ratio",
     mean=False,
     place=239,
-    sentence="The greatest inertia of linkage and flywheel at the motor within a turn, per inertia of the rotor.",
-    advice="Makers of servo motors advise at most 3 to 10: beyond that the loop of the speed becomes soft.",
+    sentence=(
+        "The greatest inertia of linkage and flywheel within a turn, reflected to the motor, divided by the rotor "
+        "inertia."
+    ),
+    advice="Servo motor makers recommend at most 3 to 10; beyond that, the speed loop becomes soft.",
     formula="max (J + J_f) / (i^2 J_m)",
 )
 MEAN_INERTIA_RATIO = _ratio(
@@ -96,6 +99,9 @@ MEAN_INERTIA_RATIO = _ratio(
     short="mean inertia ratio",
     mean=True,
     place=240,
-    sentence="The mean inertia of linkage and flywheel at the motor, over the crank angle, per inertia of the rotor.",
+    sentence=(
+        "The mean inertia of linkage and flywheel over the crank angle, reflected to the motor, divided by the "
+        "rotor inertia."
+    ),
     formula="(mean of J over the crank angle + J_f) / (i^2 J_m)",
 )

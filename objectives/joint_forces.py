@@ -15,8 +15,8 @@ PEAK_PIVOT_FORCE = _force(
     name="peak_pivot_force",
     signal=Signal.PIVOT_FORCE,
     place=140,
-    sentence="The greatest force in the bearing of the crank in the frame within a turn.",
-    advice="It sizes the main bearing.",
+    sentence="The greatest force in the crank's bearing in the frame within a turn.",
+    advice="It determines the size of the main bearing.",
     formula="max |P|, P = A + dynamic and weight forces of the crank",
     picture="pivot force",
     needs=(PIVOT_LOADED,),
@@ -43,8 +43,8 @@ PEAK_GUIDE_FORCE = _force(
     name="peak_guide_force",
     signal=Signal.GUIDE_FORCE,
     place=170,
-    sentence="The greatest guide force on the slider, normal to the slider line: what wears the guide.",
-    advice="A small transmission angle makes it large.",
+    sentence="The greatest guide force on the slider, normal to the slider line, which wears the guide.",
+    advice="A small transmission angle increases it.",
     formula="max |N|, N = -B_y - m_s g_y",
     picture="guide force",
     needs=(LOADED,),
@@ -59,10 +59,10 @@ GUIDE_MOMENT = CyclePeak(
     place=171,
     group=Group.FORCES,
     sentence=(
-        "The greatest moment of the guide force about the centre of a guide that is part of the frame, within a turn: "
-        "it presses the ends of the guide."
+        "The greatest moment of the guide force about the centre of a guide that is part of the frame, within a "
+        "turn, which loads the ends of the guide."
     ),
-    advice="About a guide that moves with the slider the lever is constant, and the guide force says as much.",
+    advice="For a guide that moves with the slider, the lever arm is constant and the guide force suffices.",
     formula="max |N (x_g - x)|, x_g = x_out + distance of the guide's centre",
     section="8. Dynamics",
     picture="guide force",

@@ -35,11 +35,11 @@ class LeverQuantity(SwingQuantity):
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if swing.driver != "cylinder":
             return (
-                "it is of a lever moved by a cylinder that turns; got a slider-crank; set [mechanism] "
+                "it needs a lever moved by a cylinder that turns; got a slider-crank; set [mechanism] "
                 'inversion = "turning cylinder", or leave it out'
             )
         if self.timed and swing.duration is None:
-            return "it is of a swing in a time; got a slow one; give [motion] a law and a duration"
+            return "it needs a swing with a duration; got a slow one; give [motion] a law and a duration"
         return None
 
     def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:

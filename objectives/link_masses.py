@@ -48,8 +48,10 @@ CRANK_MASS = _mass(
     name="crank_mass",
     closed_form=_crank_mass,
     place=430,
-    sentence="The mass of the crank without its counterweight. That of a crank given by its section follows its size.",
-    formula="rho d (w r + pi w^2 / 4) of a bar",
+    sentence=(
+        "The mass of the crank without its counterweight. For a crank given by its section, it follows from the size."
+    ),
+    formula="rho d (w r + pi w^2 / 4) for a bar",
     picture="crank",
     needs=(CRANK_WEIGHS,),
 )
@@ -57,8 +59,8 @@ ROD_MASS = _mass(
     name="rod_mass",
     closed_form=_rod_mass,
     place=432,
-    sentence="The mass of the connecting rod. That of a rod given by its section follows its size.",
-    formula="rho d (w l + pi w^2 / 4) of a bar",
+    sentence="The mass of the connecting rod. For a rod given by its section, it follows from the size.",
+    formula="rho d (w l + pi w^2 / 4) for a bar",
     picture="rod",
     needs=(ROD_WEIGHS,),
 )
@@ -68,8 +70,8 @@ MOVING_MASS = _mass(
         _crank_mass(number) + _rod_mass(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
     ),
     place=434,
-    sentence="The mass of all that moves: crank, counterweight, rod and slider.",
-    advice="With sections as variables it trades against their safety, and it drives forces and torque.",
+    sentence="The mass of all moving links: crank, counterweight, rod and slider.",
+    advice="With variable sections it trades off against their safety; it also affects forces and torque.",
     formula="m_crank + m_counterweight + m_rod + m_slider",
     picture="inertia",
     needs=(MASSES,),

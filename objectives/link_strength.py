@@ -158,10 +158,10 @@ ROD_STRESS = _stress(
     links=("rod",),
     place=440,
     sentence=(
-        "The greatest stress of the rod over a turn, of either sign: axial force and bending by inertia and weight "
-        "at every place, and the net section of both eyes."
+        "The greatest stress in the rod over a turn, of either sign: from axial force and bending by inertia and "
+        "weight along the rod, and in the net section of both eyes."
     ),
-    advice="A wider rod lowers it until its own inertia bends it more.",
+    advice="A wider rod reduces it until the rod's own inertia increases the bending.",
     formula="max of |N / (w d) +- 6 M / (d w^2)| and K F / ((w - D) d) over place and crank angle",
     picture="rod",
     needs=(STRENGTH, EVEN_SPEED, ROD_BAR, LOADED),
@@ -173,11 +173,11 @@ CRANK_STRESS = replace(
     links=("crank",),
     place=442,
     sentence=(
-        "The greatest stress of the crank over a turn, of either sign: axial force and bending by the crank pin's "
-        "force at every place, and the net section of both eyes, that of the pivot with the torque, which a key or a "
-        "tight fit brings in there."
+        "The greatest stress in the crank over a turn, of either sign: from axial force and bending by the crank "
+        "pin force along the crank, and in the net section of both eyes. The eye at the pivot also carries the "
+        "torque, through a key or tight fit."
     ),
-    advice="With a large torque, the eye at the pivot decides: widen the crank, or use a thinner shaft.",
+    advice="With a large torque, the eye at the pivot governs: widen the crank, or use a thinner shaft.",
     formula=(
         "max of |N / (w d) +- 6 M / (d w^2)|, K F / ((w - D) d), and at the pivot |N / ((w - D) d) +- 6 w M / "
         "(d (w^3 - D^3))| and |K N / ((w - D) d) +- min(K, 2) 6 D M / (d (w^3 - D^3))| over place and crank angle"
@@ -190,8 +190,8 @@ STATIC_SAFETY = LinkStress(
     kind=RATIO,
     least=True,
     place=444,
-    sentence="The yield strength over the greatest stress of the links that are given by their sections.",
-    advice="1.5 to 3 are usual, more where loads are not well known. Negative where a pin is wider than its bar.",
+    sentence="The yield strength divided by the greatest stress in the links given by their sections.",
+    advice="1.5 to 3 are usual, more if the loads are uncertain. It is negative if a pin is wider than its bar.",
     formula="S_y / max(crank stress, rod stress)",
     source=_SOURCE,
     picture="rod",
@@ -229,11 +229,13 @@ BUCKLING_SAFETY = BucklingSafety(
     least=True,
     place=448,
     sentence=(
-        "The load at which a bar buckles over its greatest compression, in the plane of motion and out of it: "
-        "Euler's for a slender bar, Johnson's for a short one. Infinite where nothing is compressed."
+        "The buckling load of a bar divided by its greatest compression, in the plane of motion and out of it: "
+        "Euler's load for a slender bar, Johnson's for a short one. It is infinite if no bar is compressed."
     ),
-    advice="3 and more are usual. A rod of square section is as safe in both planes.",
-    formula="P_cr / max(-N): C pi^2 E I / L^2 or Johnson's parabola; C = 1 of the rod in both planes, 1/4 of the crank",
+    advice="3 or more is usual. A rod with a square section is equally safe in both planes.",
+    formula=(
+        "P_cr / max(-N): C pi^2 E I / L^2 or Johnson's parabola; C = 1 for the rod in both planes, 1/4 for the crank"
+    ),
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 4-12 and 4-13, table 4-2",
     picture="rod",
     example=3.0,

@@ -90,9 +90,9 @@ LOADED = Need(lambda machine: linkage_loaded(machine.fullest), _SLIDER_LOADS)
 PIVOT_LOADED = Need(lambda machine: pivot_loaded(machine.fullest), _SLIDER_LOADS)
 WORK = Need(
     works_over_a_turn,
-    "a machine that takes no work over a turn has none with any dimensions; got no friction in joints that carry "
-    "a force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, or "
-    "add what the machine works against",
+    "it needs work over a turn, which is zero here for all dimensions; got no friction in joints that carry a "
+    "force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, "
+    "or add what the machine works against",
 )
 LOAD_WORK = _defining(
     load_works_over_a_turn,
@@ -115,7 +115,7 @@ LOSSES = (
     ),
     Need(
         rubs_under_load,
-        f"friction in joints without a force takes nothing, and the efficiency of every design is 1; {_UNLOADED}",
+        f"friction in unloaded joints dissipates nothing, so the efficiency of every design is 1; {_UNLOADED}",
         consequence="equal",
     ),
 )
@@ -159,33 +159,34 @@ ROTOR = _defining(
 )
 SHAKES = Need(
     has_shaking_force,
-    "the shaking forces of these cylinders cancel for every design; got cranks and banks that stand against each other "
-    "in pairs; use peak_rocking_couple, or leave it out",
+    "the shaking forces of these cylinders cancel for every design; got cranks and banks that oppose each other in "
+    "pairs; use peak_rocking_couple, or leave it out",
 )
 """Cylinders whose shaking forces do not cancel."""
 COUPLES = _defining(
     has_rocking_couple,
-    "a rocking couple comes from cylinders at places along the shaft whose forces do not cancel; got no "
-    "places, or all forces at one; add for example "
-    '[mechanism] cylinders = { phases = ["0 deg", "180 deg"], places = ["-50 mm", "50 mm"] }',
+    "a rocking couple needs cylinders at different places along the shaft whose forces do not cancel; got no "
+    'places, or all forces at one place; add for example [mechanism] cylinders = { phases = ["0 deg", "180 deg"], '
+    'places = ["-50 mm", "50 mm"] }',
 )
 ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,
-    "a stroke belongs to one cylinder; got several on one crankshaft, whose torques add up; use {instead}",
+    "it needs one cylinder, as a stroke belongs to one; got several on one crankshaft, whose torques add up; "
+    "use {instead}",
 )
 ONE_TIMING = _defining(
     lambda machine: machine.speed_profile is None or cylinder_count(machine) == 1,
-    "along a speed profile each cylinder has its own stroke times; got several cylinders on one crankshaft; use "
-    "crank_angle_ratio, which is the same for all, or the least value over the cylinders: outward_to_inward_time_ratio "
-    "or inward_to_outward_time_ratio",
+    "along a speed profile it needs one cylinder, as each has its own stroke times; got several cylinders on one "
+    "crankshaft; use crank_angle_ratio, which is the same for all, or the least value over the cylinders: "
+    "outward_to_inward_time_ratio or inward_to_outward_time_ratio",
 )
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
-    "it is defined at constant speed; got a speed profile; leave the profile out",
+    "it is only defined at constant speed; got a speed profile; leave the profile out",
 )
 ONE_TURN = _defining(
     lambda machine: cycle_turns(machine) == 1,
-    "it pairs the greatest and least stress of a place within one turn; got a cycle of 720 deg; leave it out",
+    "it needs a cycle of one turn, to pair greatest and least stress; got a cycle of 720 deg; leave it out",
 )
 STRENGTH = _defining(
     lambda machine: machine.strength is not None,

@@ -78,7 +78,7 @@ MOTION_DEVIATION = _deviation(
     measure="greatest",
     place=280,
     sentence="The greatest distance between the slider and the points of the desired motion.",
-    formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s zero, or the best where free",
+    formula="max over the points of |x(theta_i + psi) + s - t_i|; psi and s are zero, or optimal where free",
     example="0.3 mm",
 )
 MOTION_DEVIATION_RMS = _deviation(
@@ -87,7 +87,7 @@ MOTION_DEVIATION_RMS = _deviation(
     measure="rms",
     place=290,
     sentence="The distance between the slider and the points of the desired motion, as a root mean square.",
-    advice="One point that is far off counts less than in the greatest deviation.",
+    advice="A single outlier counts less than in the greatest deviation.",
     formula="sqrt(mean of (x(theta_i + psi) + s - t_i)^2)",
     example="0.2 mm",
 )

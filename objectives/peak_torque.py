@@ -24,7 +24,7 @@ PEAK_TORQUE = _peak(
         "The greatest torque of the drive within a turn, in either direction, with all masses, loads, gravity and "
         "friction of the job. The torques of several cylinders on one crankshaft add up."
     ),
-    advice="It sizes motor and gear; at high speed inertia dominates it, at low speed the load.",
+    advice="It determines the size of motor and gear. At high speed inertia dominates, at low speed the load.",
     formula=f"max |T|, {_TORQUE}: reflected inertia J, potential energy V, load F",
     needs=(DRIVEN,),
     offered=("requirement", "objective"),

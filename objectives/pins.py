@@ -192,7 +192,7 @@ _pv = partial(
     kind=PRESSURE_SPEED,
     factor=_rubbing_speed,
     source="Shigley, Mechanical Engineering Design, 9th ed., sec. 12-15 (boundary-lubricated bearings)",
-    advice="It decides how a dry bearing heats and wears; makers of bushings state a limit of 0.05 to 2 MPa m/s.",
+    advice="It determines how a dry bearing heats and wears; bushing makers state limits of 0.05 to 2 MPa m/s.",
     example="0.5 MPa m/s",
 )
 _wear = partial(
@@ -234,7 +234,7 @@ WEAR_PIVOT = _wear(
     name="wear_pivot",
     title="wear of the crank pivot",
     place=474,
-    sentence="The depth that a million cycles wear off the bearing of the crank's pivot, over the depth of the crank.",
+    sentence="The wear depth in the bearing of the crank's pivot after a million cycles, over the depth of the crank.",
     formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
     **of_pin("crank_pivot", (WEARS, EVEN_SPEED)),
 )
@@ -242,7 +242,7 @@ WEAR_CRANK_PIN = _wear(
     name="wear_crank_pin",
     title="wear of the crank pin",
     place=475,
-    sentence="The depth that a million cycles wear off the bearing of the crank pin, in the thinner of crank and rod.",
+    sentence="The wear depth in the bearing of the crank pin after a million cycles, in the thinner of crank and rod.",
     formula="10^6 K / (2 b) times the integral of |A| (1 - phi') over the crank angle of a cycle",
     **of_pin("crank_pin", (WEARS, EVEN_SPEED)),
 )
@@ -250,7 +250,7 @@ WEAR_SLIDER_PIN = _wear(
     name="wear_slider_pin",
     title="wear of the slider pin",
     place=476,
-    sentence="The depth that a million cycles wear off the bearing of the slider pin, over the depth of the rod.",
+    sentence="The wear depth in the bearing of the slider pin after a million cycles, over the depth of the rod.",
     formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
     **of_pin("slider_pin", (WEARS, EVEN_SPEED)),
 )

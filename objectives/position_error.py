@@ -42,7 +42,7 @@ POSITION_ERROR_RSS = _error(
     signal=Signal.POSITION_ERROR_RSS,
     place=90,
     sentence=("The position error to expect if the deviations are independent: the root of the sum of their squares."),
-    advice="With the four tolerances alone it is at least half of the worst case, and never more than it.",
+    advice="With the four tolerances alone it is at least half of the worst case, and never exceeds it.",
     formula="max over theta of sqrt(sum of (dx/di T_i)^2)",
     example="0.2 mm",
 )

@@ -14,7 +14,7 @@ from .quantity import Domain, Group
 _ABOVE_ONE = Domain(
     lower=1.0,
     idle=True,
-    rule="the rod exceeds crank + |offset| for full rotation, so this is above 1",
+    rule="the rod exceeds crank + |offset| for full rotation, so this must be above 1",
     remedy="raise it",
 )
 
@@ -32,7 +32,7 @@ STROKE = ClosedFormQuantity(
     rises=(True, False, True),
     place=100,
     group=Group.MOTION,
-    sentence="The stroke is the distance of the slider between its two dead centres.",
+    sentence="The stroke is the distance between the slider's two dead centres.",
     advice="It equals twice the crank only without offset.",
     formula="S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)",
     picture="stroke",
@@ -53,7 +53,7 @@ ROD_TO_OFFSET = ClosedFormQuantity(
     place=110,
     group=Group.PROPORTIONS,
     sentence="The length of the rod divided by the size of the offset: a rule such as rod = 3.2 offset.",
-    advice="A fixed value leaves one free dimension fewer, and the search meets it exactly.",
+    advice="A fixed value removes one free dimension; the search meets it exactly.",
     formula="l / |e|, infinite without offset",
     picture="offset",
     better="high",

@@ -60,7 +60,7 @@ class Domain:
     def share(cls, subject: str, usual: str) -> Domain:
         """Return the domain for a fraction, 0 to 1."""
         return cls(
-            upper=1.0, lower=0.0, open=False, rule=f"{subject} lies between 0 and 1", remedy=f"{usual} are usual"
+            upper=1.0, lower=0.0, open=False, rule=f"{subject} must lie between 0 and 1", remedy=f"{usual} are usual"
         )
 
     @classmethod

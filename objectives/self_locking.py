@@ -28,16 +28,18 @@ SELF_LOCKING_MARGIN = ClosedFormMargin(
     place=200,
     group=Group.PROPORTIONS,
     sentence=(
-        "By how many degrees the least transmission angle exceeds the one at which friction would lock the "
-        "linkage, so that no torque could drive it."
+        "The margin of the least transmission angle over the angle at which friction locks the linkage, so that no "
+        "torque can drive it."
     ),
-    advice="It must stay above 0; 10 deg and more are usual. Without friction there is none.",
+    advice="It must stay above 0; 10 deg or more is usual. Without friction it is undefined.",
     formula="mu_min - arctan(f) - arcsin((rho_A + rho_B) / l): friction f of the guide, friction circles rho",
     section="15. Self-locking",
     picture="self-locking",
     example="10 deg",
     better="high",
-    domain=Domain.acute("the self-locking margin lies between 0, where friction locks, and 90 deg", "10 deg and more"),
+    domain=Domain.acute(
+        "the self-locking margin must lie between 0, where friction locks, and 90 deg", "10 deg and more"
+    ),
     floor=float(np.radians(5.0)),  # forces grow as 1 / sin(margin)
     needs=(FRICTION,),
     instead=TRANSMISSION_ANGLE.name,

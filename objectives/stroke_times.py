@@ -167,7 +167,9 @@ OUTWARD_TO_INWARD_TIME_RATIO = StrokeTimeRatio(
     outward=True,
     place=104,
     group=Group.MOTION,
-    sentence="The time of the outward stroke divided by that of the inward stroke: above 1 if it is the slow one.",
+    sentence=(
+        "The time of the outward stroke divided by that of the inward stroke: above 1 if the outward stroke is slower."
+    ),
     advice="The time ratio is the greater of this and its inverse. If cylinders differ, this is their least value.",
     formula="t_out / t_in; at constant speed (180 deg - s b) / (180 deg + s b); s: sign of branch times rotation",
     section=_SECTION,
@@ -183,7 +185,9 @@ INWARD_TO_OUTWARD_TIME_RATIO = StrokeTimeRatio(
     outward=False,
     place=105,
     group=Group.MOTION,
-    sentence="The time of the inward stroke divided by that of the outward stroke: above 1 if it is the slow one.",
+    sentence=(
+        "The time of the inward stroke divided by that of the outward stroke: above 1 if the inward stroke is slower."
+    ),
     advice="The time ratio is the greater of this and its inverse. If cylinders differ, this is their least value.",
     formula="t_in / t_out; at constant speed (180 deg + s b) / (180 deg - s b); s: sign of branch times rotation",
     section=_SECTION,

@@ -113,8 +113,8 @@ SWING_EFFICIENCY = SwingIntegral(
     picture="power",
     place=316,
     sentence=(
-        "The work that the swing takes without friction, divided by the work that it takes: on the forward stroke, or "
-        "on the return stroke if only that is driven. Inertia does not count."
+        "The work that the swing needs without friction, divided by the work that it needs with friction: on the "
+        "forward stroke, or on the return stroke if only that is driven. Inertia is ignored."
     ),
     formula="integral of P dx without friction / integral of P dx",
     example=0.8,

@@ -23,7 +23,7 @@ SWING_TRANSMISSION_ANGLE = SwingForm(
     picture="transmission angle",
     example="30 deg",
     better="high",
-    domain=Domain.acute("the transmission angle of a swing lies between 0 and 90 deg", "20 to 50 deg"),
+    domain=Domain.acute("the transmission angle of a swing must lie between 0 and 90 deg", "20 to 50 deg"),
     floor=float(np.radians(10.0)),
 )
 ACTUATOR_TRAVEL = SwingForm(
@@ -35,7 +35,7 @@ ACTUATOR_TRAVEL = SwingForm(
     place=301,
     group=Group.MOTION,
     sentence="The distance of the slider between the two ends of the swing.",
-    advice="It is what an actuator on the slider must be able to travel.",
+    advice="An actuator on the slider must be able to travel this far.",
     formula="|x(end) - x(start)|",
     picture="speed",
     example="2 m",

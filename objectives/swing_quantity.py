@@ -47,10 +47,10 @@ class SwingQuantity(Quantity):
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if swing.driver == "cylinder":
-            return "it is of a crank with rod and slider; got a lever moved by a cylinder that turns; leave it out"
+            return "it needs a crank with rod and slider; got a lever moved by a cylinder that turns; leave it out"
         if self.driver is not None and swing.driver != self.driver:
             return (
-                f'it is of a swing that the {self.driver} drives; got driver = "{swing.driver}"; use {self.instead}, '
+                f'it needs a swing driven by the {self.driver}; got driver = "{swing.driver}"; use {self.instead}, '
                 f'or set [motion] driver = "{self.driver}"'
             )
         if self.timed and swing.duration is None:

@@ -96,7 +96,7 @@ TIME_RATIO = TimeRatio(
     domain=Domain(
         lower=1.0,
         open=False,
-        rule="the time ratio is the slower stroke over the faster, so 1 or more",
+        rule="the time ratio, the slower stroke over the faster, must be 1 or more",
         remedy="give the inverse (constraints.slow_stroke says which stroke is the slow one)",
     ),
     # A drive's own speed varies by about one percent; without offset neither stroke is slow.
@@ -122,7 +122,7 @@ CRANK_ANGLE_RATIO = ClosedFormQuantity(
     domain=Domain(
         lower=1.0,
         open=False,
-        rule="the crank angle ratio divides the longer stroke by the shorter, so it is 1 or more",
+        rule="the crank angle ratio, the longer stroke over the shorter, must be 1 or more",
         remedy="give the inverse",
     ),
     in_line=1.0,

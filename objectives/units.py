@@ -198,7 +198,7 @@ def number_in_si(digits: str, symbol: str) -> float:
     """
     exact = Fraction(digits) * _parse_unit(symbol)[0]
     if abs(exact) > _GREATEST:
-        raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI is at most {_GREATEST:g}")
+        raise InputError(f"{digits} {symbol} is beyond any machine: a number in SI must be at most {_GREATEST:g}")
     return float(exact)
 
 
@@ -254,7 +254,8 @@ def plus_minus_ends(value: object) -> tuple[str, str] | None:
         (middle_factor, dimension), (factor, another) = _parse_unit(unit), _parse_unit(second_unit)
         if dimension != another:
             raise InputError(
-                f'both parts of a range have units of one kind; got {quote(value)}; write it like "180 mm +- 0.5 mm"'
+                f'both parts of a range must have units of one kind; got {quote(value)}; write it like "180 mm '
+                '+- 0.5 mm"'
             )
         half *= factor / middle_factor
     return f"{float(middle - half)!r} {unit}".rstrip(), f"{float(middle + half)!r} {unit}".rstrip()
@@ -410,7 +411,7 @@ def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
     force = _WEIGHT.sub(r"\1f", unit)
     if force != unit and _parse_unit(force)[1] == _parse_unit(kind.unit)[1]:
         newtons = f"{float(Fraction(number) * _parse_unit(force)[0]):.4g} {kind.unit}"
-        return note, f'a weight is a force: write "{number} {force}" or "{newtons}"'
+        return note, f'a weight must be stated as a force: write "{number} {force}" or "{newtons}"'
     return note, f"write the mass in {kind.unit}" if kinds and kind.plain == "mass" and _parse_unit("N")[
         1
     ] == dimension else ""
@@ -432,7 +433,7 @@ def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
             raise InputError(f"{quote(rest.strip())} is not a unit{f', {hint}' if hint else ''}")
         sign, name = match[1], match[2]
         if divided:
-            raise InputError("a unit ends with the name after its division sign")
+            raise InputError("a unit must end with the name after its division sign")
         divided = sign == "/"
         power = int(match[3] or 1) * (-1 if divided else 1)
         quantity = _lookup(name)

@@ -42,7 +42,7 @@ def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
     part = fold(node, _Dimensions({name: _powers_of(dimension_of_kind(kind)) for name, kind in kinds.items()}))
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
-            f"the value of a formula has a unit of whole powers, at most {_LARGEST}; got {part.text} in "
+            f"the unit of a formula's value must have whole powers, at most {_LARGEST}; got {part.text} in "
             f"{_unit(part.powers)}; raise it to a power that leaves such a unit"
         )
     return _kind_of_powers(part.powers)
@@ -69,8 +69,8 @@ class _Dimensions:
             for item in arguments[1:]:
                 if not _may_be_added(first.powers, item.powers):
                     raise InputError(
-                        f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of one "
-                        "kind go together; correct the names, or give numbers their units"
+                        f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of "
+                        "one kind can be combined; correct the names, or give numbers their units"
                     )
             return _Part(first.powers, written, _exponent(function, arguments))
         if function in "*/":
@@ -88,14 +88,14 @@ class _Dimensions:
         if function in ANGLES:
             if not _may_be_added(first.powers, _powers_of(dimension_of(ANGLE.unit))):
                 raise InputError(
-                    f"{function} takes an angle; got {text} of {_unit(first.powers)}; give a number its "
-                    "unit, 30 deg, or multiply a ratio by 1 rad"
+                    f"{function} needs an angle; got {text} of {_unit(first.powers)}; give a number its unit, 30 "
+                    "deg, or multiply a ratio by 1 rad"
                 )
             return _Part({}, written)
         if function in INVERSES:
             if not first.plain:
                 raise InputError(
-                    f"{function} takes a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
+                    f"{function} needs a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
                 )
             return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
         return _Part(first.powers, written, _exponent(function, arguments))  # neg, abs
@@ -104,14 +104,15 @@ class _Dimensions:
 def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     if not exponent.plain:
         raise InputError(
-            f"an exponent is a ratio; got {text} with one in {_unit(exponent.powers)}; divide it by a value of its kind"
+            f"an exponent must be a ratio; got {text} with one in {_unit(exponent.powers)}; divide it by a "
+            "value of the same kind"
         )
     if base.plain:
         return {}
     if exponent.value is None:
         raise InputError(
-            f"a value with a unit is raised to a plain number; got {text} of {_unit(base.powers)}; write the "
-            "exponent as a number, or divide the base by a value of its kind"
+            f"a value with a unit may only be raised to a plain number; got {text} of {_unit(base.powers)}; write "
+            "the exponent as a number, or divide the base by a value of the same kind"
         )
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
 

@@ -60,7 +60,7 @@ class Units:
         """Return a number in SI. Raises InputError for an unknown unit."""
         first = unit.split(" ")[0]
         if first in self.names:
-            raise InputError(f"a sign of + - * / ** is missing between {digits} and {first}")
+            raise InputError(f"one of + - * / ** is missing between {digits} and {first}")
         return number_in_si(digits, unit)
 
 
@@ -96,8 +96,8 @@ def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) ->
     elif name in ARGUMENTS:
         hint = f"write it with its arguments in brackets: {name}(...)"
     elif units.has(name):
-        hint = f"a unit stands right after its number: 1 {name}"
-    return InputError(f"no quantity, dimension or varying number is called {quote(name)}; {hint}")
+        hint = f"a unit must follow its number directly: 1 {name}"
+    return InputError(f"no quantity, dimension or variable is called {quote(name)}; {hint}")
 
 
 class Ends(Protocol):
@@ -159,7 +159,7 @@ class Formulas:
             raise JobError(f"{key}: {error}") from None
         if isinstance(quantity, FormulaQuantity) and quantity.constant and not leaves_of([quantity]):
             raise JobError(
-                f"{key}: a formula names a quantity, a dimension or a varying number; got {quantity.formula}, which is "
+                f"{key}: a formula must name a quantity, dimension or variable; got {quantity.formula}, which is "
                 "the same for every design; leave it out"
             )
         return quantity
@@ -193,7 +193,7 @@ class Formulas:
             return self.formula_quantities[name]
         if name in self._open:
             through = " by ".join((*self._open[self._open.index(name) :], name))
-            raise InputError(f"formulas do not define themselves; got {through}; write out one of them")
+            raise InputError(f"formulas must not refer to themselves; got {through}; write out one of them")
         self._open.append(name)
         stated = self._stated[name]
         try:
@@ -214,7 +214,7 @@ class Formulas:
         if dimension_of(unit) != dimension_of(formula.kind.unit):
             name = formula.name
             raise JobError(
-                f"quantity.{name}.unit: a formula is shown in a unit of its kind; got {quote(unit)} for "
+                f"quantity.{name}.unit: a formula must be shown in a unit of its kind; got {quote(unit)} for "
                 f'{formula.kind.name}; write it like "{formula.kind.metric.symbol}", or leave it out'
             )
         kind = kind_in(unit, per_si(unit), kind_for(unit))
@@ -296,11 +296,11 @@ class Formulas:
         """Return advice on how to keep a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]
-            return f"keep variables.{name} off zero: it is from {_ends_text(interval, self._kinds[name])}"
+            return f"keep variables.{name} away from zero: its range is {_ends_text(interval, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
             return f"use {instead} instead: work output divided by work input, also for machines that drive"
-        return "divide by a quantity that is never zero, or ask for something of the product instead"
+        return "divide by a quantity that is never zero, or constrain the product instead"
 
 
 def _ends_text(interval: Interval, kind: Kind) -> str:

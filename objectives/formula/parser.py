@@ -57,7 +57,7 @@ def parse(text: str, units: Units) -> Node:
     reader = _Reader(text.translate(_SAME), units)
     node = reader.sum()
     if reader.next.text:
-        reader.refuse(f"a sign of + - * / ** is missing before {reader.next.text}")
+        reader.refuse(f"one of + - * / ** is missing before {reader.next.text}")
     return node
 
 
@@ -167,7 +167,7 @@ class _Reader:
 
     def close(self) -> None:
         if not self.take(")"):
-            self.refuse("every bracket that is opened is closed")
+            self.refuse("every opening bracket must be closed")
 
     def function(self, name: str) -> Node:
         if name not in ARGUMENTS:

@@ -76,7 +76,7 @@ class FormulaBounds:
         if isinstance(node, Name):
             remedy = self.advice.get(node.name, "divide by something else")
         else:
-            remedy = "change the ranges, or bring the formula into a form without that division"
+            remedy = "change the ranges, or rewrite the formula without that division"
         always = found.lower == found.upper == 0.0
         raise InputError(
             f"a formula must not divide by a value that may be zero; got {text_of(node)} as a divisor, which "
@@ -203,8 +203,8 @@ def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
         image, least, greatest = _IMAGES[function]
         if first.upper < least or first.lower > greatest:
             raise InputError(
-                f"{function} is defined from {least:g} to {greatest:g}; got {text_of(node.arguments[0])}, which is "
-                f"nowhere so within the ranges; correct the formula"
+                f"the argument of {function} must be from {least:g} to {greatest:g}; got "
+                f"{text_of(node.arguments[0])}, which never is within the ranges; correct the formula"
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
         return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")

@@ -163,8 +163,8 @@ class Designs:
         """
         if self.mechanism.speed_profile is not None:
             raise InputError(
-                "forces in a custom function are those at constant speed; got a speed profile; leave it out, or use "
-                "the included quantities, also in a formula"
+                "forces in a custom function need a constant speed; got a speed profile; leave it out, or use the "
+                "included quantities or formulas of them"
             )
         shape = np.broadcast_shapes(np.shape(angle), (len(self), 1))
         reactions, load = complex_joint_forces(self.mechanism, self._dimensions, np.broadcast_to(angle, shape))
@@ -266,8 +266,8 @@ class Designs:
             values = np.asarray(curve(self._uncrowded(tau)[0]))
         if values.shape != tau.shape:
             raise ValueError(
-                f"a curve must give as many values as it gets crank angles, {tau.shape}; got {values.shape}; "
-                "use the angles that it gets, and sums over them nowhere"
+                f"a curve must return one value for each crank angle, {tau.shape}; got {values.shape}; use the "
+                "angles that it receives, and do not sum over them"
             )
         return cast(Array, values.real)
 

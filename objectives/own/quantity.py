@@ -85,7 +85,7 @@ class OwnQuantity(Quantity):
         super().__post_init__()
         require_name(self.name)
         if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
-            raise InputError(f'a function is named "module:function"; got {self.function!r}; write it so')
+            raise InputError(f'a function must be named like "module:function"; got {self.function!r}; write it so')
         if self.gradient not in get_args(Gradient):
             raise InputError(f"gradient must be {' or '.join(map(repr, get_args(Gradient)))}; got {self.gradient!r}")
         if not 0.0 < self.limit < float("inf"):
@@ -172,7 +172,7 @@ class OwnQuantity(Quantity):
             spec = None if places is None else PathFinder.find_spec(part, places)
             if spec is None:
                 self._refuse(
-                    f"must be in a module beside the job file or installed; no module {module} is there; put "
+                    f"must be in a module beside the job file or installed; no module {module} was found; put "
                     f"{module.split('.')[0]}.py beside the job, or correct module:function"
                 )
             places = spec.submodule_search_locations
@@ -279,8 +279,8 @@ def require_name(name: str) -> None:
     """Raise `InputError` for a name that cannot be a table column."""
     if not _NAME.fullmatch(name):
         raise InputError(
-            f"the name of a quantity has 1 to {LONGEST_NAME} small letters, digits and underscores, a letter first; "
-            f"got {name!r}" + (f" of {len(name)} characters" if len(name) > LONGEST_NAME else "")
+            f"the name of a quantity must have 1 to {LONGEST_NAME} lower-case letters, digits and underscores, and "
+            f"begin with a letter; got {name!r}" + (f" of {len(name)} characters" if len(name) > LONGEST_NAME else "")
         )
 
 

@@ -217,9 +217,9 @@ class Worker:
         if "Timeout (" in text or self._late:
             raised = "correct it, or raise the limit if it is only slow"
             remedy = raised if self.limit < self.longest else "no call may take longer here; correct it"
-            return f"must return within {self.limit:g} s; it still ran{place} then; {remedy}"
+            return f"must return within {self.limit:g} s; it was still running{place}; {remedy}"
         if code in _KILLED:
-            return "must return; its process was killed, for lack of memory perhaps; let it take less"
+            return "must return; its process was killed, perhaps for lack of memory; let it use less"
         return f"must return, not end the process; it ended with code {code}{place}; correct the function"
 
 

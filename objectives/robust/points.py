@@ -48,8 +48,7 @@ def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
     for item in mechanism.varying:
         if any(path.startswith("tolerances.") for path in item.paths):
             raise InputError(
-                f"robust quantities need tolerances that are given; got {item.name} that varies; fix it, or leave "
-                "out robust"
+                f"robust quantities need fixed tolerances; got {item.name} as a variable; fix it, or leave out robust"
             )
     absolute, fraction = _nominal_and_tolerances(mechanism)
     limits: Array = absolute + fraction * np.abs(dimensions[:, :3])

@@ -31,8 +31,8 @@ def require_machine(mechanism: object) -> None:
     """Raise `InputError` unless the argument is a machine: problems and job tables have their own functions."""
     if not isinstance(mechanism, Mechanism):
         raise InputError(
-            f"a machine is needed; got {type(mechanism).__name__}; give a Mechanism, or make a problem by `problem` or "
-            "`load_job` and use its evaluate and analyse"
+            f"a machine is needed; got {type(mechanism).__name__}; give a Mechanism, or build a problem with "
+            "`problem` or `load_job` and use its evaluate and analyse"
         )
 
 
@@ -60,7 +60,8 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
         ) from None
     if array.ndim == 0 or array.shape[-1] != len(names):
         raise InputError(
-            f"designs need {len(names)} numbers each ({needed}), as the last axis; got an array of shape {array.shape}"
+            f"designs need {len(names)} numbers each ({needed}), along the last axis; got an array of shape "
+            f"{array.shape}"
         )
     return array
 
@@ -108,7 +109,7 @@ def _by_name(designs: object, names: Sequence[str]) -> object:
     if not set(names) <= set(labels):
         columns = ", ".join(map(str, labels[: len(names)])) + (", ..." if len(labels) > len(names) else "")
         raise InputError(
-            f"a table of designs has the columns {', '.join(names)}, SI; got {columns}; rename them, lengths "
+            f"a table of designs must have the columns {', '.join(names)}, SI; got {columns}; rename them, lengths "
             "in m; the designs of a front are `front.dimensions`"
         )
     ordered_columns: object = designs[list(names)]

@@ -27,7 +27,7 @@ Units = Callable[[str, Kind], float | None]
 """Value in SI of a unit as spelled in a column name; None if the text is not a unit of a kind."""
 CRANK_ANGLE, TIME_OF = "crank_angle", "time"
 _FARTHEST = 1e9  # rad or s: above this, a double does not resolve a crank angle to a millionth
-_ANGLE_NEEDED = "a measured table has the column crank_angle_deg, or time_s at constant speed"
+_ANGLE_NEEDED = "a measured table must have the column crank_angle_deg, or time_s at constant speed"
 _BRACKETED = re.compile(r"(.*?)[\s,:/]*[\[(](.*)[\])]\s*", re.DOTALL)
 
 
@@ -92,15 +92,17 @@ def columns_of(
         hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
-        raise InputError("time becomes a crank angle at the crank speed; got no speed; give one, or crank angles")
+        raise InputError(
+            "converting times to crank angles needs a crank speed; got none; add one, or give crank angles"
+        )
     elif mechanism.acceleration:
         raise InputError(
-            f"time becomes a crank angle at constant speed; got a crank acceleration of {mechanism.acceleration:g} "
-            "rad/s^2; give crank angles"
+            "converting times to crank angles needs a constant speed; got a crank acceleration of "
+            f"{mechanism.acceleration:g} rad/s^2; give crank angles"
         )
     elif mechanism.speed_profile is not None:
         raise InputError(
-            "times convert to crank angles only at constant speed; got a speed profile, "
+            "converting times to crank angles needs a constant speed; got a speed profile, "
             f"{mechanism.speed_profile.text}; give crank angles"
         )
     measured = [name for name in columns if columns[name].name not in (CRANK_ANGLE, TIME_OF)]
@@ -122,7 +124,7 @@ def measured_from(
     """
     if not hasattr(table, "keys"):
         raise InputError(
-            f"a measured table has columns by their names; got {type(table).__name__}; give a dict or a DataFrame"
+            f"a measured table must have named columns; got {type(table).__name__}; give a dict or a DataFrame"
         )
     names = [str(name) for name in table]
     columns = columns_of(names, mechanism, linkage, units)
@@ -131,15 +133,17 @@ def measured_from(
         try:
             read = np.asarray(table[name], dtype=np.float64)
         except (TypeError, ValueError):
-            raise InputError(f"{name!r} has numbers; got others; leave empty what was not measured") from None
+            raise InputError(
+                f"{name!r} must contain numbers; got other values; leave empty what was not measured"
+            ) from None
         if read.ndim != 1 or (values and len(read) != len(next(iter(values.values())))):
-            raise InputError(f"columns are lists of one length; got {name!r} of shape {read.shape}; correct it")
+            raise InputError(f"columns must be lists of equal length; got {name!r} of shape {read.shape}; correct it")
         scaled = column.factor * read
         limit = _FARTHEST if column.name in (CRANK_ANGLE, TIME_OF) else column.kind.limit
         wrong = np.flatnonzero(np.abs(scaled) > limit)
         if len(wrong):
             raise InputError(
-                f"{name!r} is at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
+                f"{name!r} must be at most {limit:g} {column.kind.unit} in size; got {read[wrong[0]]:g} in row "
                 f"{wrong[0] + 1}; check the unit, or leave empty what was not measured"
             )
         values[column.name] = scaled
@@ -202,7 +206,7 @@ def _column_meaning(
         return Column(spoken[curve_name], factor, kind)
     if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
         units_read = " or ".join(dict.fromkeys(display_unit.symbol for display_unit in _display_units(kind)))
-        raise InputError(f"{curve_name} is read in {units_read}; got {text!r}; write it like {example}")
+        raise InputError(f"{curve_name} must be in {units_read}; got {text!r}; write it like {example}")
     matching_kinds = (
         other_kind
         for other_kind in DISPLAYED_KINDS
@@ -211,7 +215,7 @@ def _column_meaning(
     other_kind = next(matching_kinds, None)
     if other_kind is None:  # not a unit: part of a longer, unknown name
         return None
-    raise InputError(f"{curve_name} is {kind.name}; got {text!r}, {other_kind.name}; write it like {example}")
+    raise InputError(f"{curve_name} must be {kind.name}; got {text!r}, {other_kind.name}; write it like {example}")
 
 
 def _unit_factor(unit: str, kind: Kind) -> float | None:

@@ -33,7 +33,7 @@ _TOLERANCES = (
     "it needs every machine within the tolerances to run; got some that do not turn fully, or that friction locks; "
     "lengthen the rod, or tighten the tolerances"
 )
-_FORMULA = "a formula has a value where it is finite; got an infinite one; change the design or the formula"
+_FORMULA = "a formula must have a finite value; got an infinite one; change the design or the formula"
 
 
 def missing_value_reason(

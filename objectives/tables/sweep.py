@@ -56,7 +56,7 @@ def sweep(
     quantities = resolve_quantities(quantity_names, mechanism, custom)
     names = [axis.parameter for axis in axes]
     if not names or not quantities:
-        raise InputError("a sweep needs something to sweep over and a quantity; got none; give at least one of each")
+        raise InputError("a sweep needs a parameter and a quantity; got none; give at least one of each")
     if len(set(names)) < len(names):
         raise InputError(f"a sweep must be over different parameters; got {', '.join(names)}; leave out the second")
     count = math.prod(len(axis.values) for axis in axes)

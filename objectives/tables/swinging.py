@@ -98,23 +98,23 @@ def require_loads(mechanism: Mechanism) -> None:
     }
     for key, value in of_turns.items():
         if value is not None:
-            raise InputError(f"mechanism.{key}: it is of a crank that rotates fully; got it with a swing; leave it out")
+            raise InputError(f"mechanism.{key}: it needs a crank that rotates fully; got a swing; leave it out")
     for load in mechanism.loads:
         if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
             raise InputError(
-                "the cycle of a cylinder runs between the dead centres of a full turn; got one with a swing; leave it "
-                "out, or give the forces on its piston over the slider position, from the crank pivot"
+                "the cycle of a cylinder needs a crank that rotates fully; got a swing; leave it out, or give the "
+                "forces on its piston over the slider position, from the crank pivot"
             )
         datum = getattr(load, "datum", "")
         if datum.endswith("dead centre"):
             instead = "zero crank angle" if load.enters is Enters.ANGLE_TABLE else "the crank pivot"
             raise InputError(
-                f"a load is measured from the {datum} of a full turn, which a swing need not have; "
-                f"measure it from {instead}, a pressure as the force on its piston, or leave it out"
+                f"a load on a swing must not be measured from the {datum}, which a swing need not reach; measure "
+                f"it from {instead}, state a pressure as the force on its piston, or leave it out"
             )
         if load.cycle_turns > 1:
             raise InputError(
-                "a cycle of 720 deg is of a crank that rotates fully; got a load with one, and a swing; state the load "
+                "a cycle of 720 deg needs a crank that rotates fully; got a swing with such a load; state the load "
                 "over 360 deg, or leave it out"
             )
 
@@ -125,8 +125,8 @@ def require_of_swing(key: str, quantity: Quantity, *, of_lever: bool = False) ->
         if leaf.turning:
             swing_names = ", ".join(fact.name for fact in swing_facts() if isinstance(fact, LeverQuantity) == of_lever)
             raise InputError(
-                f'{key}: {leaf.name} is of a crank that rotates fully; got [motion] kind = "swing"; '
-                f"use a quantity of a swing ({swing_names}), or leave it out"
+                f'{key}: {leaf.name} needs a crank that rotates fully; got [motion] kind = "swing"; use a quantity '
+                f"of a swing ({swing_names}), or leave it out"
             )
 
 

@@ -147,7 +147,7 @@ def test_a_compressor_that_delivers_nothing_counts_as_nothing() -> None:
 
 
 def test_ripple_needs_a_pump_of_a_liquid() -> None:
-    assert "it needs pumps of a liquid" in str(FLOW_RIPPLE.undefined_because([Mechanism(loads=(AIR,))]))
+    assert "it needs pumps for a liquid" in str(FLOW_RIPPLE.undefined_because([Mechanism(loads=(AIR,))]))
     mixed = Mechanism(loads=(AIR, PUMP))
     assert FLOW_RIPPLE.evaluate(mixed, DESIGNS).values == pytest.approx(
         FLOW_RIPPLE.evaluate(Mechanism(loads=(PUMP,)), DESIGNS).values, rel=1e-14

@@ -79,7 +79,7 @@ def test_names_and_formulas_stand_side_by_side_in_problems_analyses_and_sweeps()
         ("crank +", "is missing at its end"),
         (
             "crank +\nrod )",
-            "the formula crank + rod ): a sign of + - * / ** is missing before ); got the formula 'crank + rod )'",
+            "the formula crank + rod ): one of + - * / ** is missing before ); got the formula 'crank + rod )'",
         ),
         ("2 * efficiency", "efficiency is not defined here: "),
         ("3 mm", "the same for every design"),

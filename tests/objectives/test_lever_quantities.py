@@ -222,14 +222,17 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
     ("ask", "part"),
     [
         (_evaluated(TIPPER, "stroke", None), "needs a swing of its lever; got a crank that rotates fully"),
-        (_evaluated(TIPPER, "stroke", SLOW), "stroke is of a crank that rotates fully; .* use a quantity of a swing"),
-        (_evaluated(TIPPER, "swing_angle", SLOW), "swing_angle: it is of a crank with rod and slider; got a lever"),
-        (_evaluated(TIPPER, "cylinder_flow", SLOW), "it is of a swing in a time; got a slow one; give .motion. a law"),
+        (_evaluated(TIPPER, "stroke", SLOW), "stroke needs a crank that rotates fully; .* use a quantity of a swing"),
+        (_evaluated(TIPPER, "swing_angle", SLOW), "swing_angle: it needs a crank with rod and slider; got a lever"),
+        (
+            _evaluated(TIPPER, "cylinder_flow", SLOW),
+            "it needs a swing with a duration; got a slow one; give .motion. a law",
+        ),
         (_evaluated(TIPPER, "pressure_margin", SLOW), "it needs the supply pressure of the cylinder; got none"),
         (_evaluated(TIPPER, "lever_angle_error", SLOW), "it needs tolerances; got none; add for example"),
         (
             _evaluated(Mechanism(), "lever_work", Swing(**ANGLES, driver="slider")),
-            "lever_work: it is of a lever moved by a cylinder that turns; got a slider-crank; set",
+            "lever_work: it needs a lever moved by a cylinder that turns; got a slider-crank; set",
         ),
         (_evaluated(Mechanism(), "lever_work", None), "needs a lever that swings; this crank rotates fully"),
         (_evaluated(Mechanism(), "lever_work", SLOW), "a cylinder drives a lever; got one with a slider-crank"),

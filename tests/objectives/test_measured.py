@@ -48,17 +48,26 @@ def test_other_columns_are_left_out(name: str) -> None:
             ["crank_angle_deg", "torque"],
             "a column must have its unit in its name; got 'torque'; write it like torque_Nm",
         ),
-        (["crank_angle_deg", "torque_mm"], "torque is a torque; got 'torque_mm', a length; write it like torque_Nm"),
+        (
+            ["crank_angle_deg", "torque_mm"],
+            "torque must be a torque; got 'torque_mm', a length; write it like torque_Nm",
+        ),
         (
             ["crank_angle_deg", "torque_N_mm"],
-            "torque is read in N m or lbf in; got 'torque_N_mm'; write it like torque_Nm",
+            "torque must be in N m or lbf in; got 'torque_N_mm'; write it like torque_Nm",
         ),
-        (["crank_angle_deg", "torque in N"], "torque is a torque; got 'torque in N', a force; write it like torque_Nm"),
+        (
+            ["crank_angle_deg", "torque in N"],
+            "torque must be a torque; got 'torque in N', a force; write it like torque_Nm",
+        ),
         (
             ["crank_angle_deg", "torque_Nm", "torque_N_m"],
             "a curve may only be measured once; got the columns 'torque_Nm' and",
         ),
-        (["torque_Nm"], "has the column crank_angle_deg, or time_s at constant speed; got neither; add one to 'torque"),
+        (
+            ["torque_Nm"],
+            "must have the column crank_angle_deg, or time_s at constant speed; got neither; add one to 'torque",
+        ),
         (["crank_angel_deg", "torque_Nm"], "is 'crank_angel_deg' one of them?"),
         ([], "got neither; add one to no columns"),
         (["crank_angle_deg"], "a column must be a curve with its unit, such as slider_position_mm"),
@@ -75,9 +84,12 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
 @pytest.mark.parametrize(
     ("table", "words"),
     [
-        ({"crank_angle_deg": [0.0, 1.0], "torque_Nm": ["a", 1.0]}, "'torque_Nm' has numbers; got others"),
+        (
+            {"crank_angle_deg": [0.0, 1.0], "torque_Nm": ["a", 1.0]},
+            "'torque_Nm' must contain numbers; got other values",
+        ),
         ({"crank_angle_deg": [0.0, 1.0], "torque_Nm": [1.0]}, "'torque_Nm' of shape (1,)"),
-        ({"crank_angle_deg": [0.0], "torque_Nm": [[1.0]]}, "columns are lists of one length"),
+        ({"crank_angle_deg": [0.0], "torque_Nm": [[1.0]]}, "columns must be lists of equal length"),
         ({"crank_angle_deg": [math.inf], "torque_Nm": [1.0]}, "at most 1e+09 rad in size; got inf in row 1"),
         ({"crank_angle_deg": [0.0, 1.0], "slider_position_mm": [1.0, 1e99]}, "at most 10000 m in size; got 1e+99 in"),
         ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "got none in 'torque_Nm'; fill them in"),
@@ -106,7 +118,10 @@ def test_time_is_a_crank_angle_at_constant_speed() -> None:
     found = measured_from(both, backwards, LINKAGE)
     assert found.crank_angle == pytest.approx([0.5 * math.pi], rel=1e-12)
     assert found.left_out == ("time_s",)
-    for machine, words in ((Mechanism(), "got no speed"), (SMOOTH, "a crank acceleration of 40 rad/s^2")):
+    for machine, words in (
+        (Mechanism(), "needs a crank speed; got none"),
+        (SMOOTH, "a crank acceleration of 40 rad/s^2"),
+    ):
         with pytest.raises(InputError, match=re.escape(words)):
             columns_of(["time_s", "slider_position_mm"], machine, LINKAGE)
 

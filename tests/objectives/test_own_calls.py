@@ -142,7 +142,7 @@ def test_a_call_about_to_return_leaves_its_process_for_the_next_one(worker: Call
 
 
 def test_a_process_that_is_killed_is_told_apart_from_one_that_takes_too_long(worker: Callable[[str], Worker]) -> None:
-    with pytest.raises(Refused, match="its process was killed, for lack of memory perhaps"):
+    with pytest.raises(Refused, match="its process was killed, perhaps for lack of memory"):
         worker("killed")(Mechanism(), DESIGNS, None)
 
 

@@ -234,7 +234,7 @@ def test_a_kink_at_one_design_is_no_reason_to_refuse() -> None:
 
 def test_wrong_declarations_are_refused() -> None:
     for change, said in (
-        ({"name": "My jerk"}, "small letters, digits and underscores"),
+        ({"name": "My jerk"}, "lower-case letters, digits and underscores"),
         ({"function": "mymodule.jerk"}, '"module:function"; got'),
         ({"gradient": "exact"}, "gradient must be 'complex step' or"),
         ({"limit": 0.0}, "time limit must be more than zero"),

@@ -60,8 +60,8 @@ def test_linkage_that_does_not_turn_has_no_value_but_a_reason() -> None:
 def test_wrong_sweeps_are_refused() -> None:
     axis = Axis("offset", (0.0,))
     for over, of, message in (
-        ([], ["stroke"], "needs something to sweep over"),
-        ([axis], [], "needs something to sweep over and a quantity"),
+        ([], ["stroke"], "needs a parameter"),
+        ([axis], [], "needs a parameter and a quantity"),
         ([axis, axis], ["stroke"], "different parameters; got offset, offset"),
         ([axis], ["strok"], "did you mean stroke"),
         ([Axis("rod", tuple(np.linspace(0.1, 1.0, 2000))), Axis("crank", (0.1,) * 600)], ["stroke"], "1,200,000"),

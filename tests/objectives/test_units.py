@@ -174,7 +174,7 @@ BAD = [
     (["80 mm"], kinds.LENGTH, ['["80 mm"]']),
     ({"mm": 80}, kinds.LENGTH, ["a table of 1 key;"]),
     (10**400, kinds.LENGTH, ["a very long whole number", "check the unit"]),
-    ("3 N s/m kg", kinds.DAMPING, ["ends with the name after its division sign"]),
+    ("3 N s/m kg", kinds.DAMPING, ["must end with the name after its division sign"]),
     ("3.2 mm", kinds.RATIO, ["ratio", "is a length", "3.2"]),
     ("9.81 g", kinds.ACCELERATION, ["acceleration", "is a mass", "9.81 m/s^2"]),
     ("80 \ud800", kinds.LENGTH, ["\\ud800"]),

@@ -115,7 +115,7 @@ def test_an_amount_is_no_direction_in_which_a_design_counts_as_stationary() -> N
             "none does: GM 30 has price 280 EUR, more than the 200 EUR allowed; relax the constraint",
         ),
         ({"prize": {"max": 3}}, "did you mean price"),
-        ({"price + crank": {"max": 3}}, "adds EUR and mm; only values of one kind go together"),
+        ({"price + crank": {"max": 3}}, "adds EUR and mm; only values of one kind can be combined"),
     ],
 )
 def test_what_is_wrong_with_an_amount_that_is_asked_for_is_told(more: dict[str, Any], words: str) -> None:

@@ -98,7 +98,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
 @pytest.mark.parametrize(
     ("header", "words"),
     [
-        ("crank + peak_torque max (mm)", "adds mm and N m; only values of one kind go together"),
+        ("crank + peak_torque max (mm)", "adds mm and N m; only values of one kind can be combined"),
         ("crank + rud max (mm)", 'is called "rud"; did you mean rod?'),
         ("crank + rod max (N)", 'must have a unit of a length; got "N"; write it like (mm)'),
         ("crank + rod max", 'the heading has no unit; write, for example, "crank + rod max (mm)"'),

@@ -365,7 +365,7 @@ def test_small_messages_tell_the_value_in_the_words_of_the_job() -> None:
 
     formula = {"formula": "rod / crank"}
     assert "must have at most 20 entries; got 31;" in said(quantity={f"q{n}": formula for n in range(31)})
-    assert "has 1 to 60 small letters" in (told := said(quantity={"x" * 100: formula}))
+    assert "must have 1 to 60 lower-case letters" in (told := said(quantity={"x" * 100: formula}))
     assert "of 100 characters" in told
     for table, value in (("objectives", "minimise"), ("constraints", {"min": 1.0})):
         told = said(**{table: {"zzz": value}})

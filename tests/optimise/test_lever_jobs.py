@@ -155,8 +155,8 @@ def test_a_certificate_says_that_a_lever_has_none() -> None:
         (lever(load=[{"force": "20 N", "opposes": "motion"}]), r"got \[\[load\]\]; leave it out"),
         (lever(friction={"guide": 0.1}), r"got \[friction\]; leave it out"),
         (lever(mechanism={"inversion": None}), "mechanism.inversion: "),
-        (lever(objectives={"peak_torque": "minimise"}), "peak_torque is of a crank that rotates fully"),
-        (lever(objectives={"holding_force": "minimise"}), "holding_force: it is of a crank with rod and slider"),
+        (lever(objectives={"peak_torque": "minimise"}), "peak_torque needs a crank that rotates fully"),
+        (lever(objectives={"holding_force": "minimise"}), "holding_force: it needs a crank with rod and slider"),
         (lever(cylinder={"bore": "20 mm"}), "cylinder: the bore must exceed the piston rod; got a bore of 20 mm"),
         (lever(cylinder={"stroke": "700 mm"}), "cylinder: the stroke of a single-stage cylinder must be less than"),
         (

@@ -59,7 +59,7 @@ def test_every_quantity_of_a_full_turn_is_refused_for_a_swing_and_every_other_is
     assert own
     for name in (*QUANTITIES, *own):
         if problem.quantity(name).turning:
-            with pytest.raises(InputError, match=f"{name} is of a crank that rotates fully"):
+            with pytest.raises(InputError, match=f"{name} needs a crank that rotates fully"):
                 problem.evaluate([DESIGN], [name])
         elif not problem.quantity(name).undefined_because([problem.mechanism]):
             assert np.isfinite(problem.evaluate([DESIGN], [name])).all(), name

@@ -52,7 +52,7 @@ def test_the_ends_are_those_of_sums_and_differences_of_the_values() -> None:
 
 
 def test_half_a_width_of_another_kind_is_refused() -> None:
-    with pytest.raises(InputError, match="both parts of a range have units of one kind"):
+    with pytest.raises(InputError, match="both parts of a range must have units of one kind"):
         plus_minus_ends("180 mm +- 2 deg")
 
 

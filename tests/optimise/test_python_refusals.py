@@ -100,7 +100,7 @@ SLIPS: dict[str, tuple[Any, str]] = {
     ),
     "measured": (
         lambda: NO_FRONT.analyse([0.04, 0.1, 0.02]).deviations(None),
-        "a measured table has columns by their names; got NoneType; give a dict or a DataFrame",
+        "a measured table must have named columns; got NoneType; give a dict or a DataFrame",
     ),
 }
 

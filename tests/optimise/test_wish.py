@@ -230,7 +230,9 @@ def test_wishes_that_make_no_sense_are_refused(case: str) -> None:
 
 def test_an_angle_in_degrees_without_its_unit_is_refused() -> None:
     of = solve(problem({"transmission_angle": "maximise", "time_ratio": "maximise"}, HELD, samples=256, designs=4))
-    with pytest.raises(InputError, match=r"lies between 0 and 90 deg.*; got 2578\.31 deg; .*plain number is in rad"):
+    with pytest.raises(
+        InputError, match=r"must lie between 0 and 90 deg.*; got 2578\.31 deg; .*plain number is in rad"
+    ):
         wish(of, {"transmission_angle": 45.0})
     assert wish(of, {"transmission_angle": "89 deg"}).possible is False
 

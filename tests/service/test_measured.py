@@ -140,7 +140,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("300.5", "1e999"), 'row 3, column "slider_position_mm": must be a number; got "1e999"'),
         (PLAIN.replace("300.5", "3_00"), 'row 3, column "slider_position_mm": must be a number; got "3_00"'),
         (PLAIN.replace("300.5", "0x1F"), 'row 3, column "slider_position_mm": must be a number; got "0x1F"'),
-        (PLAIN.replace("300.5", "1e90"), "'slider_position_mm' is at most 10000 m in size; got 1e+90 in row 2"),
+        (PLAIN.replace("300.5", "1e90"), "'slider_position_mm' must be at most 10000 m in size; got 1e+90 in row 2"),
         (PLAIN.replace("\n0,", "\ndeg,"), 'row 2, column "crank_angle_deg": must be a number; got "deg"'),
         (
             PLAIN.replace("300.5", "300,5"),
@@ -162,7 +162,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         (PLAIN.replace("slider_position_mm", "slider_position"), "a column must have its unit in its name"),
         (PLAIN.replace("slider_position_mm", "slider_position_kg"), "got 'slider_position_kg', a mass"),
         (PLAIN.replace("slider_position_mm", "pressure_bar"), "a column must be a curve with its unit"),
-        (PLAIN.replace("crank_angle_deg", "angle"), "has the column crank_angle_deg, or time_s"),
+        (PLAIN.replace("crank_angle_deg", "angle"), "must have the column crank_angle_deg, or time_s"),
         (PLAIN + "\0", "must be a CSV text file; got a spreadsheet or other binary file"),
         ("a," * 2000 + "\n", "must have at most 1000 columns; got 2001"),
         ("%PDF-1.4 binary", "must be a CSV text file"),

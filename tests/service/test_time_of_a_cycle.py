@@ -97,7 +97,7 @@ def test_curves_over_time_are_refused_along_a_profile() -> None:
     table = {"time_s": [0.0, 0.005, 0.01, 0.015], "slider_position_mm": [149.0, 140.0, 120.0, 110.0]}
     with pytest.raises(
         InputError,
-        match="only at constant speed; got a speed profile, 2 harmonics of the crank angle; give",
+        match="needs a constant speed; got a speed profile, 2 harmonics of the crank angle; give",
     ):
         measured_from(table, problem.mechanism, linkage)
     assert len(measured_from(table, replace(problem.mechanism, speed_profile=None), linkage).crank_angle) == 4

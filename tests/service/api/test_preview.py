@@ -477,8 +477,8 @@ def test_formulas_of_a_job_have_their_units_or_their_mistakes_while_the_rest_is_
     assert "adds mm and N m" in wrong['constraints."crank + peak_torque"']
     assert "did you mean crank" in wrong["constraints.stroke.max"]
     assert wrong['constraints.""'].startswith("is missing")
-    assert wrong["constraints.quick"].startswith('no quantity, dimension or varying number is called "quick"')
-    assert "every bracket that is opened is closed" in wrong['objectives."2 * (crank"']
+    assert wrong["constraints.quick"].startswith('no quantity, dimension or variable is called "quick"')
+    assert "every opening bracket must be closed" in wrong['objectives."2 * (crank"']
     assert {(one["name"], one["unit"]) for one in found["names"]} == {
         ("room", "mm"),
         ("round", None),
