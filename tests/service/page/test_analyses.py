@@ -72,7 +72,7 @@ def test_the_analysis_follows_a_changed_design(opened: tuple[Page, str], solved:
     panel = page.get_by_role("tabpanel")
     panel.scroll_into_view_if_needed(timeout=30_000)
     page.get_by_role("tab", name="Motor", exact=True).click()
-    expect(panel).to_contain_text("of the changed design")
+    expect(panel).to_contain_text("for the changed design")
     path = f"{address}{API}/jobs/{solved.number}/designs/2/topics/motor"
     told = httpx.get(path, params=lengths, timeout=60.0).json()["told"]
     expect(panel.locator("tr", has_text="peak torque").first).to_contain_text(told[1]["rows"][0][1])

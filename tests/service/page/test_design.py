@@ -412,7 +412,7 @@ def test_a_link_that_gives_no_whole_design_is_answered_so(
     page = opened()
     page.evaluate("view => { location.hash = view; }", f"{view(solved)}?{lengths}")
     expect(page.locator(".what-if [role=alert]")).to_have_text(
-        f"A link must give crank, rod and offset as numbers; got {got}. Shown is the design itself."
+        f"A link must give crank, rod and offset as numbers; got {got}. The design itself is shown."
     )
 
 

@@ -242,7 +242,7 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     expect_designs(page, kept)
     page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
-        page.get_by_role("button", name="5 chosen, as sorted, as CSV").click()
+        page.get_by_role("button", name="5 chosen, in the order of the table, as CSV").click()
     table = list(csv.DictReader(download.value.path().read_text().splitlines()))
     assert [int(row["number"]) for row in table] == kept
     assert [float(row["rod_mm"]) for row in table] == [solved.result.designs[number - 1]["rod_mm"] for number in kept]

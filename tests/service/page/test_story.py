@@ -29,7 +29,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     page.get_by_role("button", name="Start the search").click()
     page.wait_for_url("**/#/jobs/1")
 
-    expect(page.get_by_text("Waits for a worker.")).to_be_visible()
+    expect(page.get_by_text("Waiting for a worker.")).to_be_visible()
     worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
     worker.start()
     expect(page.get_by_text("12 of 12 designs chosen")).to_be_visible(timeout=120_000)

@@ -152,8 +152,8 @@ def test_the_start_of_a_swing_may_vary(form: Open, store: Store) -> None:
     ready(page)
     page.get_by_label("stated by", exact=True).select_option("crank angle and swing")
     page.get_by_label("swing", exact=True).fill("90")
-    page.locator("details.more > summary").filter(has_text="Further numbers that vary").click()
-    page.get_by_label("Another number that varies", exact=True).select_option("motion.from")
+    page.locator("details.more > summary").filter(has_text="Extra variables").click()
+    page.get_by_label("Add a variable", exact=True).select_option("motion.from")
     ready(page)
     problem = parse_job(text_of(page))
     assert [item.name for item in problem.mechanism.varying] == ["motion.from"]

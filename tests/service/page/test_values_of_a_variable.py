@@ -58,12 +58,12 @@ def test_a_further_number_varies_over_a_range_or_takes_some_values_and_then_is_f
 ) -> None:
     page = form(store, "#/new?preset=sieve")
     ready(page)
-    page.get_by_text("Further numbers that vary").click()
-    page.get_by_label("Another number that varies").select_option("mechanism.slider.mass")
+    page.get_by_text("Extra variables").click()
+    page.get_by_label("Add a variable").select_option("mechanism.slider.mass")
     expect(page.get_by_label("slider mass, from")).to_be_focused()
     ready(page)
     assert text_of(page)["variables"]["mechanism"] == {"slider": {"mass": ["0.975 kg", "3.9 kg"]}}
-    page.get_by_label("Another number that varies").select_option("load.1.force")
+    page.get_by_label("Add a variable").select_option("load.1.force")
     mass = page.get_by_role("region", name="Dimensions").get_by_label("slider mass", exact=True)
     mass.select_option("series")
     ready(page)

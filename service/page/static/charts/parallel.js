@@ -55,7 +55,7 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
 export function parallel(chart) {
   const stack = layers(
     3,
-    "Parallel coordinates: arrow keys go from design to design and from axis to axis, Enter opens one, the space bar selects it. The menu of an axis sets the same limits as dragging on it.",
+    "Parallel coordinates: arrow keys move between designs and axes, Enter opens a design, Space selects it. The menu of an axis sets the same limits as dragging.",
   );
   const { place, contexts } = stack;
   /** @type {View} */
@@ -346,7 +346,7 @@ export function parallel(chart) {
     open: chart.open,
     select: chart.select,
     say: (row) =>
-      `${chart.say(row)}. Up and down go along the axis of ${chart.data.column(view.axes[along].key).title}.`,
+      `${chart.say(row)}. The up and down keys follow the axis of ${chart.data.column(view.axes[along].key).title}.`,
     next(row, key) {
       if (key === "ArrowLeft" || key === "ArrowRight") {
         along = (along + (key === "ArrowRight" ? 1 : view.axes.length - 1)) % view.axes.length;

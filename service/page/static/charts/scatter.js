@@ -59,7 +59,7 @@ function diamond(context, x, y, size) {
 export function scatter(chart) {
   const stack = layers(
     3,
-    "Scatter of two quantities: arrow keys go from design to design, Enter opens one, the space bar selects it. The table below has the same designs.",
+    "Scatter plot of two quantities: arrow keys move between designs, Enter opens one, Space selects it. The table below lists the same designs.",
   );
   const { place, contexts, top } = stack;
   /** @type {View} */

@@ -91,7 +91,7 @@ export function analyses(
       h(
         "p",
         { class: "quiet hint" },
-        `${capital(shows)}${lengths && isOfDesign ? "; of the changed design" : ""}. The same as `,
+        `${capital(shows)}${lengths && isOfDesign ? "; for the changed design" : ""}. The same as `,
         h("code", {}, `slidercrank ${command}`),
         ".",
       ),

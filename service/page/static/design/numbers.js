@@ -218,7 +218,7 @@ function met(row, { lower, upper, slack, unit }) {
   const data = { "data-key": slack, "data-value": left === null ? "" : String(left) };
   if (typeof left !== "number") return h("span", data, lower === upper ? "–" : "far from it");
   if (left < -MET * size)
-    return h("span", { ...data, class: "bad" }, `broken by ${withUnit(-left, unit, 3)}`);
+    return h("span", { ...data, class: "bad" }, `missed by ${withUnit(-left, unit, 3)}`);
   if (left <= MET * size)
     return h("span", { ...data, class: "at-limit" }, lower === upper ? "met" : "at its limit");
   return h("span", { ...data, class: "good" }, `${withUnit(left, unit, 3)} to spare`);
@@ -231,7 +231,7 @@ function quality(designs, columns) {
   const words = (row) =>
     row.status === "stationary"
       ? "A local optimum: no small change improves one objective without worsening another."
-      : "The best that was found; a small change might still improve it.";
+      : "The best design found; a small change might still improve it.";
   return h(
     "section",
     { class: "panel group" },

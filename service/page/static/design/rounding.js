@@ -72,7 +72,7 @@ export function rounding(
     fieldset(steps),
     fieldset(exact),
     bounds.length > 0 &&
-      h("details", {}, h("summary", {}, "Allow misses of bounds"), fieldset(bounds)),
+      h("details", {}, h("summary", {}, "Allow small violations of bounds"), fieldset(bounds)),
     button,
     wrong,
   );
@@ -102,14 +102,14 @@ export function rounding(
     const to = textsOf(steps);
     const allow = textsOf([...exact, ...bounds]);
     fill(answer);
-    refuse(to?.length === 0 ? "No number has a step; write one of them." : "");
+    refuse(to?.length === 0 ? "No number has a step; enter at least one." : "");
     if (!to?.length || !allow) return;
     search?.abort();
     const control = new AbortController();
     search = control;
     button.disabled = true;
     const bar = h("progress", { "aria-label": "Progress of the search" });
-    const progress = h("span", { class: "quiet" }, "Waiting for its turn");
+    const progress = h("span", { class: "quiet" }, "Waiting");
     const stop = h("button", { type: "button", onclick: () => control.abort() }, "Stop");
     fill(answer, h("p", { class: "row searching" }, bar, progress, stop));
     stop.focus();
@@ -170,7 +170,7 @@ export function rounding(
       h("p", { class: found.met ? null : "bad" }, `${inDisplayUnits(capital(found.message))}.`),
       found.designs.length > 0 &&
         scrolledTable(
-          "Round numbers and what they cost",
+          "Round numbers and their cost",
           headsOf(heads, (n) => n && n < heads.length - 1),
           lines,
         ),

@@ -11,7 +11,7 @@ import { say } from "./typed_field.js";
 import { join, kinds, usual } from "../lib/units.js";
 
 const WHY =
-  "A formula of names, such as offset - 2 * crank or max(peak_torque, 3 N m): quantities, crank, rod, offset, numbers that vary; with + - * / **, brackets and functions. Names are offered while you type.";
+  "A formula such as offset - 2 * crank or max(peak_torque, 3 N m). It may contain quantities, crank, rod, offset, extra variables, + - * / **, brackets and functions. Names are suggested as you type.";
 const NAME = /^[a-z][a-z0-9_]*$/;
 
 /** Return the formulas among the keys of a table of the job. @param {Form.Whole} form @param {string} table */

@@ -88,7 +88,7 @@ export function sections(form) {
           range(form, ["variables", name], { label: name, why: form.why(name) }),
         ),
       ),
-      more(["Further numbers that vary", varyingNames(form).join(", ")], varying(form)),
+      more(["Extra variables", varyingNames(form).join(", ")], varying(form)),
       more(["Catalogues to choose from", choicesGiven(form)], choices(form)),
       h("h3", {}, "Proportions"),
       fields(requirements(form, offered(form, "proportions"))),
@@ -148,7 +148,7 @@ export function sections(form) {
       turning(form, "robust", () => more(["Robust designs", has(form, "robust")], robust(form))),
       turning(form, "clearance", () =>
         more(
-          ["Loose joint, for the simulation of its impacts", has(form, "clearance")],
+          ["Loose joint, for simulating its impacts", has(form, "clearance")],
           byschema(form, ["clearance"], { label: "clearance" }),
         ),
       ),
@@ -359,7 +359,7 @@ function robust(form) {
       options: ["yes"],
       label: "within the tolerances",
       fallback: "no",
-      why: "Objectives and requirements as they are within the tolerances, instead of at the nominal dimensions.",
+      why: "Objectives and requirements hold over the tolerances, not only at the nominal dimensions.",
       changed: () => form.redraw(),
     },
   );

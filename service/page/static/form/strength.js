@@ -89,14 +89,14 @@ export function strength(form) {
     h(
       "details",
       { class: "more" },
-      h("summary", {}, "Safety, and sizes that can be made"),
+      h("summary", {}, "Safety factors and available sizes"),
       h(
         "div",
         { class: "fields" },
         rest.map((key) => byschema(form, [...PATH, key])),
         RANGES.map((key) =>
           range(form, [...PATH, key], {
-            label: `${key} that can be made`,
+            label: `available ${key}`,
             why: form.schema.property([...PATH, key])?.description ?? "",
           }),
         ),

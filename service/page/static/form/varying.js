@@ -47,12 +47,7 @@ export function varying(form) {
         )
       : null,
     left.length
-      ? h(
-          "p",
-          { class: "row wide" },
-          h("label", { for: "add-varying" }, "Another number that varies"),
-          select,
-        )
+      ? h("p", { class: "row wide" }, h("label", { for: "add-varying" }, "Add a variable"), select)
       : null,
   ];
 }

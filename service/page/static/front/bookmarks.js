@@ -27,7 +27,7 @@ export function bookmarksPanel(explorer) {
   const none = h(
     "p",
     { class: "quiet hint" },
-    "None yet. Keep a design in its view, a wished one above, or the designs that are ticked in the table.",
+    "None yet. Keep a design from its own view or from a wish, or tick designs in the table.",
   );
   const add = h("button", {
     type: "button",
@@ -249,7 +249,7 @@ export function bookmarksPanel(explorer) {
       "design",
       ...data.objectives.map(headed),
       "decided",
-      "because, or why not",
+      "reason and note",
       unseen("Search near, drop"),
     ];
     fill(

@@ -10,7 +10,7 @@ const WAIT = 150; // ms after the designs changed
 const WORDS = /** @type {const} */ ([
   [0.95, "almost always"],
   [0.7, "mostly"],
-  [0.3, "somewhat more often than not"],
+  [0.3, "often"],
 ]);
 
 /**
@@ -57,8 +57,8 @@ export function inWords(x, y, value, count) {
   const [, often] = WORDS.find(([least]) => Math.abs(value) >= least) ?? [];
   const numbers = `(rank correlation ${value.toFixed(2).replace("-", "−")}, ${count} designs)`;
   return often
-    ? `With more ${x} comes ${often} ${value > 0 ? "more" : "less"} ${y} ${numbers}.`
-    : `${capital(x)} and ${y} hardly go together ${numbers}.`;
+    ? `Designs with a higher ${x} ${often} have a ${value > 0 ? "higher" : "lower"} ${y} ${numbers}.`
+    : `${capital(x)} and ${y} are hardly related ${numbers}.`;
 }
 
 /** Return {place, draw()}: the pair of the scatter in words, and every pair of objectives to choose from. @param {Explorer} explorer */

@@ -29,13 +29,13 @@ export function marksPanel(explorer) {
     beyondAllowed,
     front.warnings.map((sentence) => h("p", { class: "error" }, `Warning: ${inWords(sentence)}.`)),
     list,
-    front.trade_offs.length > 0 && [h("h3", {}, "What it costs at the knee"), costs],
+    front.trade_offs.length > 0 && [h("h3", {}, "Trade-offs at the knee"), costs],
     several && [
       h("h3", { class: "weights" }, "Weigh the objectives"),
       h(
         "p",
         { class: "quiet hint" },
-        "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within the limits of all quantities.",
+        "The design nearest to the ideal and farthest from the worst by these weights (TOPSIS), among those within all limits.",
       ),
       h(
         "div",

@@ -38,8 +38,8 @@ export function saving(explorer) {
   function draw() {
     const { open, chosen } = explorer.limits;
     node.textContent = open
-      ? "As the table is sorted, as CSV"
-      : `${grouped(chosen)} chosen, as sorted, as CSV`;
+      ? "In the order of the table, as CSV"
+      : `${grouped(chosen)} chosen, in the order of the table, as CSV`;
     node.disabled = chosen === 0;
   }
   return { node, draw };

@@ -80,7 +80,7 @@ export function scatterPanel(explorer, dots) {
     h(
       "p",
       { class: "quiet hint" },
-      "Drag around designs to keep them, in a box or by hand. Click on a design to open it, with Shift to select it.",
+      "Drag a box or a line around designs to keep only those. Click a design to open it; Shift-click selects it.",
     ),
   );
 

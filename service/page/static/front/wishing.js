@@ -71,7 +71,7 @@ export function wishingPanel(explorer) {
     h(
       "p",
       { class: "quiet hint" },
-      "State the values you would like. The nearest Pareto-optimal design is computed; it need not be in the list. A value to reach is not a bound.",
+      "State the values you would like. The nearest Pareto-optimal design is computed; it need not be in the list. Desired values are aims, not bounds.",
     ),
     h("div", { class: "wish-columns" }, form, answer),
     before,

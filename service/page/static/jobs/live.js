@@ -43,7 +43,7 @@ export function watch(place, job, { signal, changed }) {
   const why = h(
     "p",
     { class: "quiet", hidden: true },
-    "The first search after an installation compiles the model of the machine. That takes a minute or two, once.",
+    "The first search after installation compiles the machine model, which takes a minute or two once.",
   );
   /** @type {{ x: number, y: number }} */
   const axes = { x: 0, y: 1 };
@@ -296,7 +296,7 @@ export function watch(place, job, { signal, changed }) {
         "p",
         { class: "quiet" },
         waits
-          ? `Waits for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
+          ? `Waiting for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
           : "The front appears after the first round.",
       ),
     );

@@ -85,6 +85,6 @@ function standing(job) {
   return h(
     "div",
     { class: "quiet" },
-    inWords(job.reason) || (job.state === "queued" ? "waits for a worker" : ""),
+    inWords(job.reason) || (job.state === "queued" ? "waiting for a worker" : ""),
   );
 }

@@ -109,8 +109,8 @@ class Parser {
     if (this.rest)
       throw new Unreadable(
         this.rest[0] === ")"
-          ? `A bracket is closed in ${quoted(this.text)} that was not opened.`
-          : `A sign such as + or * is missing before ${quoted(this.rest)}.`,
+          ? `${quoted(this.text)} closes a bracket that was never opened.`
+          : `An operator such as + or * is missing before ${quoted(this.rest)}.`,
       );
     if (!by) return { value, unit, half: null };
     const half = Math.abs(
@@ -134,7 +134,7 @@ class Parser {
     const missing = terms.find(({ unit }) => unit === null);
     if (!bare && missing)
       throw new Unreadable(
-        `A part of ${quoted(this.text)} has no unit; write one behind each part, or only at the end.`,
+        `A part of ${quoted(this.text)} has no unit; write one after each part, or only at the end.`,
       );
     if (bare)
       return { value: terms.reduce((all, { value }, n) => all + signs[n] * value, 0), unit: last };
@@ -153,7 +153,7 @@ class Parser {
   factor(unit) {
     const factor = this.field.factors[unit ?? ""];
     if (factor === undefined)
-      throw new Unreadable(`A share and a value cannot be added, as in ${quoted(this.text)}.`);
+      throw new Unreadable(`A percentage and a value cannot be added, as in ${quoted(this.text)}.`);
     return factor;
   }
 
@@ -165,7 +165,7 @@ class Parser {
       const by = sign === "/" || sign === "÷";
       if (other.unit !== null && (product.unit !== null || by))
         throw new Unreadable(
-          `Only one part of a product has a unit, and not what it is divided by; got ${quoted(this.text)}.`,
+          `Only one factor of a product may have a unit, and a divisor may not; got ${quoted(this.text)}.`,
         );
       if (by && other.value === 0) throw new Unreadable(`${quoted(this.text)} divides by zero.`);
       product = this.withUnit({
@@ -204,10 +204,10 @@ class Parser {
       const inner = this.sum();
       if (SPREAD.test(this.rest))
         throw new Unreadable(
-          `A range such as 180 mm +- 0.5 mm has no brackets around it; got ${quoted(this.text)}.`,
+          `A range such as 180 mm +- 0.5 mm must not be in brackets; got ${quoted(this.text)}.`,
         );
       if (!this.taken(/^\)/))
-        throw new Unreadable(`A bracket of ${quoted(this.text)} is not closed.`);
+        throw new Unreadable(`A bracket in ${quoted(this.text)} is not closed.`);
       return inner;
     }
     const mixed = this.matched(MIXED);

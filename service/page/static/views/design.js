@@ -116,7 +116,7 @@ export async function show(place, { parts, query, signal }) {
     h(
       "p",
       { class: "quiet unchanged", hidden: true },
-      `Of design ${number} itself, without the change:`,
+      `For design ${number} itself, without the change:`,
     ),
   );
   const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
@@ -348,7 +348,7 @@ function startOf(query) {
     };
   const [name, text] = [bad[0].replace("_mm", ""), bad[1]];
   return {
-    wrong: `A link must give crank, rod and offset as numbers; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. Shown is the design itself.`,
+    wrong: `A link must give crank, rod and offset as numbers; got ${text === null ? `no ${name}` : `“${text}” as the ${name}`}. The design itself is shown.`,
   };
 }
 

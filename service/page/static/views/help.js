@@ -19,19 +19,19 @@ const STEPS = [
   ],
   [
     "Watch",
-    "The search runs by itself. The front of best compromises grows as you watch; you can cancel it and resume later.",
+    "The search needs no help. Its front of best compromises grows as you watch; you can pause it and resume later.",
     "#/",
     "Runs",
   ],
   [
     "Explore",
-    "Narrow the front down to what you can accept, and look at single designs: how they move, what they need, what you would give up for more.",
+    "Narrow the front down to acceptable designs and inspect them: how they move, what they need, and what an improvement costs.",
     null,
     null,
   ],
   [
     "Decide",
-    "Export the design: a drawing for CAD, its numbers, the motion, a report for the review.",
+    "Decide for a design and export it: a drawing for CAD, its numbers, the motion, a report for the review.",
     null,
     null,
   ],
@@ -92,7 +92,7 @@ function overview(place, quantities, sought) {
     fill(list, matches.map(card));
     none.textContent = matches.length
       ? `${matches.length} of ${quantities.length} quantities`
-      : "No quantity contains these words.";
+      : "No quantity matches these words.";
   };
   fill(
     place,

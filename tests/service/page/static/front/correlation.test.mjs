@@ -50,12 +50,12 @@ test("the rank correlation is Pearson's of the ranks, of the rows that count", (
 test("words follow the number", () => {
   assert.match(
     inWords("torque", "angle", 0.97, 50),
-    /^With more torque comes almost always more angle/,
+    /^Designs with a higher torque almost always have a higher angle/,
   );
   assert.match(
     inWords("torque", "angle", -0.8, 50),
-    /mostly less angle \(rank correlation −0.80, 50 designs\)/,
+    /mostly have a lower angle \(rank correlation −0.80, 50 designs\)/,
   );
-  assert.match(inWords("torque", "angle", 0.1, 50), /^Torque and angle hardly go together/);
+  assert.match(inWords("torque", "angle", 0.1, 50), /^Torque and angle are hardly related/);
   assert.match(inWords("torque", "angle", null, 50), /cannot be compared/);
 });
