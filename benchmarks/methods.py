@@ -42,7 +42,9 @@ def compare(
 
     evaluations: budget of all, their own by default. methods: names; by default all that take several objectives.
     """
-    names = methods or tuple(name for name, method in known().items() if method.takes(4) and not method.polishes)
+    names = methods or tuple(
+        name for name, method in known().items() if method.supports_objective_count(4) and not method.polishes
+    )
     rows, courses = [], {}
     for job in jobs:
         given = load_job(FOLDERS.get(job, "runs") + f"/{job}.toml")

@@ -21,7 +21,7 @@ from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, search_with
 from .methods.auto.partial_front import partial_front
-from .methods.registry import method_of, require_eliminated, require_fit, require_gradients
+from .methods.registry import method_of, require_gradients, require_supported_equalities, require_supported_settings
 from .problem.always_zero import require_ranking
 from .problem.impossible import require_possible
 from .problem.problem import Problem, require_problem
@@ -51,18 +51,19 @@ def solve(
 
     progress: called after every round; True shows a live bar, also in a notebook. stages: called about twice a second
     in a long stage between two rounds, or after the last. fronts: called just before `progress` with the objectives of
-    the front so far, see `Run.latest`. cancelled: called many times a second; once it returns True, `solve` returns the
-    front so far with status "cancelled". keep: called with records from which a later run can resume: after every
-    round, before its progress is reported, and about every second in a long one. resume: all records of an earlier run
-    of this problem, in order, any number; the run continues and returns the same front, bit for bit. engine: engine for
-    the expensive evaluations, by default this process; it does not change the front. The caller closes it.
+    the front so far, see `Run.latest_front`. cancelled: called many times a second; once it returns True, `solve`
+    returns the front so far with status "cancelled". keep: called with records from which a later run can resume: after
+    every round, before its progress is reported, and about every second in a long one. resume: all records of an
+    earlier run of this problem, in order, any number; the run continues and returns the same front, bit for bit.
+    engine: engine for the expensive evaluations, by default this process; it does not change the front. The caller
+    closes it.
 
     Raises `InputError` for a method that does not fit the problem, and `ForeignRecords` for records of another search.
     """
     require_problem(problem, "solve")
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise InputError(f"progress must be True, for a bar, or a function; got {progress!r}")
-    require_fit(problem)
+    require_supported_settings(problem)
     require_gradients(problem)
     require_ranking(problem)
     require_possible(problem)
@@ -76,7 +77,7 @@ def solve(
         return _solve_discrete(problem, solver) if problem.discrete else solver.solve(problem)
 
 
-def require_records(problem: Problem, records: Sequence[Record]) -> None:
+def require_resumable(problem: Problem, records: Sequence[Record]) -> None:
     """Raise `ForeignRecords` unless a search of the problem can resume from the records."""
     if records:
         require_records_of(records, identity_of(problem))
@@ -98,14 +99,16 @@ class _ContinuousSolver:
         """Return a new run for a problem, with nothing computed yet."""
         has_listener = self.fronts is not None or self.listener is not None
 
-        def with_front(entry: Progress) -> None:
+        def report_with_front(entry: Progress) -> None:
             if self.fronts is not None:
-                self.fronts(run.latest())
+                self.fronts(run.latest_front())
             if self.listener is not None:
                 self.listener(entry)
 
         last = self.runs[-1] if self.runs else None
-        run = Run(problem, 1, with_front if has_listener else None, self.checkpoints, stages=self.stages, previous=last)
+        run = Run(
+            problem, 1, report_with_front if has_listener else None, self.checkpoints, stages=self.stages, previous=last
+        )
         self.runs.append(run)
         return run
 
@@ -115,7 +118,7 @@ class _ContinuousSolver:
             Evaluator(problem, branch, self.checkpoints, self.engine)
             for branch in drop_mirrored_branches(problem, elimination_branches(problem))
         ]
-        require_eliminated(problem, searched_evaluators(evaluators))
+        require_supported_equalities(problem, searched_evaluators(evaluators))
         if len(self.runs) == 1:
             require_finite(problem, searched_evaluators(evaluators))
         return evaluators
@@ -141,15 +144,15 @@ def _solve_discrete(problem: Problem, solver: _ContinuousSolver) -> ParetoFront:
     run = solver.start_run(problem)
     evaluators: list[Evaluator] = []
 
-    def nothing(status: Status, message: str) -> ParetoFront:
+    def empty(status: Status, message: str) -> ParetoFront:
         return empty_front(problem, evaluators, run, status, message)
 
     try:
         with interrupted_by(solver.checkpoints.interrupt):
             evaluators = solver.evaluators(problem)
-        return discrete_front(problem, solver.solve, nothing, run.stage_reporter("judging combinations"))
+        return discrete_front(problem, solver.solve, empty, run.stage_reporter("judging combinations"))
     except Cancelled:
-        return nothing("cancelled", "cancelled while evaluating combinations of discrete values")
+        return empty("cancelled", "cancelled while evaluating combinations of discrete values")
 
 
 def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:

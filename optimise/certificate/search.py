@@ -16,7 +16,7 @@ from ..search.assemble import columns_of, span_of
 from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.recorded_polish import polish
+from ..search.recorded_polish import polish_on_engine
 from .boundable import ignored_sides, is_usable
 from .boxes import Boxes
 from .certificate import Certificate, Status, Step, message_of
@@ -253,7 +253,7 @@ class Search:
                 if time.perf_counter() - self.start > self.seconds or self.stopped:
                     return
                 k = evaluator.dimension
-                part = polish(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
+                part = polish_on_engine(evaluator, self.added.u[rows][:, :k], self.span, iterations=_STEPS)
                 fresh = self._scaled_exact_objectives(index, evaluator.branch.dimensions(part.u))
                 better = (part.violation <= FEASIBLE) & (fresh <= self.added.values[rows]).all(axis=1)
                 self.added.u[rows[better], :k] = part.u[better]

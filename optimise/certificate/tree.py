@@ -87,11 +87,11 @@ class Tree(Table):
         smear = np.where(wide > _FINEST, smear, -1.0)
         axis = np.where(smear.max(axis=1) < 0.0, -1, smear.argmax(axis=1)) if k else np.full(n, -1)
         columns = (np.full(n, index), boxes.lower, boxes.upper, corner, excess, np.full(n, counted), axis)
-        self.become(self.join(Tree(*columns, branches=self.branches)))
+        self.replace_content(self.join(Tree(*columns, branches=self.branches)))
 
     def keep(self, rows: IntArray | Mask) -> None:
         """Keep only these boxes."""
-        self.become(self[rows])
+        self.replace_content(self[rows])
 
     def rows_of_largest_excess(self, count: int) -> IntArray:
         """Return the splittable boxes with the largest excess."""

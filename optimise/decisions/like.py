@@ -34,7 +34,7 @@ from ..search.assemble import assemble, empty_front
 from ..search.candidates import FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.recorded_polish import polish
+from ..search.recorded_polish import polish_on_engine
 from ..search.sampling import generator
 from ..search.search import Archive, Run, enumerate_branches, explore, searched_evaluators
 from ..solve import solve
@@ -85,7 +85,7 @@ def nearest_optimal_design(
     archive = explore(extended_problem, free, run) if free else Archive.empty(len(span))
     order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
     for index, u in archive[order].by_branch(evaluators):
-        finished.add(index, polish(evaluators[index], u, span))
+        finished.add(index, polish_on_engine(evaluators[index], u, span))
     if not len(finished):
         return _keep_nearest(solve(extended_problem), values, span)
     _add_nearer_designs(finished, free, archive, values, extended_problem.settings.seed)
@@ -220,9 +220,9 @@ def _add_nearer_designs(
             evaluator = evaluators[index]
             points = np.repeat(u, _CHILDREN, axis=0)
             points = np.clip(points + width * random.standard_normal(points.shape), 0.0, 1.0)
-            points = points[evaluator.valid(points)]
+            points = points[evaluator.can_evaluate(points)]
             if len(points):
-                finished.add(index, polish(evaluator, points, finished.span))
+                finished.add(index, polish_on_engine(evaluator, points, finished.span))
         after = distance(finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span)[0]
         # A design that still moves nearer by about one step has farther to go.
         if before - after < 0.5 * width:

@@ -113,7 +113,7 @@ class Wishes:
             elsewhere = np.unique(u[~on_branch], axis=0)
             if len(elsewhere):
                 _, values, violation = evaluator.screen(elsewhere, band=BANDS[-1])
-                usable = np.isfinite(values).all(axis=1) & evaluator.valid(elsewhere)
+                usable = np.isfinite(values).all(axis=1) & evaluator.can_evaluate(elsewhere)
                 rest = (
                     np.full(int(usable.sum()), index),
                     elsewhere[usable],

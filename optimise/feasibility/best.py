@@ -16,7 +16,7 @@ from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.mirror import drop_mirrored_branches
 from ..search.sampling import first_samples
-from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, explore, is_beyond_sampling, samples_per_branch
+from ..search.search import BANDS, ENOUGH, Archive, Callback, Run, descents_stay_infeasible, explore, samples_per_branch
 
 _SAMPLES = 2048
 """Samples per round if only the dimensions count."""
@@ -71,7 +71,7 @@ def _search_in_stages(full: Problem, light: Problem, evaluators: list[Evaluator]
             (index, evaluator, first_samples(count, evaluator.dimension, light.settings.seed, index))
             for index, evaluator in enumerate(evaluators)
         )
-        if found >= ENOUGH or (not found and is_beyond_sampling(light, evaluators, BANDS[-2])):
+        if found >= ENOUGH or (not found and descents_stay_infeasible(light, evaluators, BANDS[-2])):
             run.report_round("sampling", evaluators, archive)
             return archive
     return explore(full, evaluators, run)

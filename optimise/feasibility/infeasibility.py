@@ -110,7 +110,7 @@ def _least_violation(
         u = first_samples(_SAMPLES, evaluator.dimension, problem.settings.seed, 100 + index)
         found = least_violation(evaluator, u, ranked=_RANKED, starts=_STARTS)
         if not len(found):
-            turned = u[evaluator.valid(u)][:_RANKED]
+            turned = u[evaluator.can_evaluate(u)][:_RANKED]
             blank = blank or (
                 valueless_quantity_text(evaluator.problem, branch.dimensions(turned)) if len(turned) else ""
             )

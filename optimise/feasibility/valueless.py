@@ -52,7 +52,7 @@ def require_finite(problem: Problem, evaluators: list[Evaluator]) -> None:
         found = []
         for index, evaluator in enumerate(evaluators):
             u = first_samples(_TRIED, evaluator.dimension, problem.settings.seed, 200 + index)
-            designs = evaluator.branch.dimensions(u[evaluator.valid(u)])
+            designs = evaluator.branch.dimensions(u[evaluator.can_evaluate(u)])
             found.append(evaluator.problem.quantity(name).evaluate(evaluator.problem.mechanism, designs).values)
         values = np.concatenate([np.zeros(0), *found])
         values = values[~np.isnan(values)]

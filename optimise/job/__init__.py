@@ -81,12 +81,12 @@ def warn_of(problem: Problem) -> None:
     Also warn about loads that drive it, or that are stated for more than the whole stroke, about loaded strokes that
     are fast in every design, and about offsets that a slow stroke excludes.
     """
-    from ..search.driving_loads import driven_by_loads
-    from ..search.loaded_stroke import expected_warnings
+    from ..search.driving_loads import driving_load_warnings
+    from ..search.loaded_stroke import stroke_warnings
     from ..search.whole_stroke_loads import loads_over_whole_strokes
 
-    sentences = [*driven_by_loads(problem), *loads_over_whole_strokes(problem)]
-    for sentence in (*problem.warnings, *sentences, *expected_warnings(problem, certain=True)):
+    sentences = [*driving_load_warnings(problem), *loads_over_whole_strokes(problem)]
+    for sentence in (*problem.warnings, *sentences, *stroke_warnings(problem, certain=True)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 
 

@@ -29,7 +29,7 @@ from ..problem.impossible import require_longer_slow_stroke
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
 from ..problem.restatement import restate
-from ..search.elimination import require_slow_side, signs
+from ..search.elimination import offset_signs, require_offset_for_slow_stroke
 from .linear_contradictions import require_compatible
 from .messages import key_of
 from .options import require_options
@@ -236,14 +236,14 @@ def require_slow_stroke(problem: Problem) -> None:
     Call it only if some designs within the ranges rotate fully.
     """
     parts = problem.parts()
-    require_slow_side(problem, parts)
+    require_offset_for_slow_stroke(problem, parts)
     if any(part.slow_stroke is None for part in parts):
         return
     ratio = next((c for c in problem.constraints if c.quantity == TIME_RATIO.name), None)
     require_longer_slow_stroke(problem)
     if any(part.mechanism.speed_profile is not None for part in parts):
         return  # neither the offset's sign nor a closed form then decides which stroke is slow
-    ends = [sign * size for part in parts for sign, sizes in signs(part) for size in (sizes.lower, sizes.upper)]
+    ends = [sign * size for part in parts for sign, sizes in offset_signs(part) for size in (sizes.lower, sizes.upper)]
     narrowed = replace(
         problem,
         offset=Range(lower=min(ends), upper=max(ends)),

@@ -18,7 +18,7 @@ from ...objectives.formula.expression import Call
 from ...objectives.formula.linear import Linear, unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ..problem.problem import Problem
-from ..search.elimination import signs
+from ..search.elimination import offset_signs
 from ..search.linear_rules import linear_equations, with_offset_size
 from .messages import key_of
 
@@ -43,7 +43,7 @@ def require_compatible(problem: Problem) -> None:
     is_possible: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
     for part in parts:
-        sides = [(sign, *_linear_rows(part, sign)) for sign, _ in signs(part)]
+        sides = [(sign, *_linear_rows(part, sign)) for sign, _ in offset_signs(part)]
         if not sides or any(not rows for _, rows, _ in sides):
             return
         for sign, rows, ends in sides:
@@ -57,7 +57,7 @@ def require_compatible(problem: Problem) -> None:
 
 def _conflict_text(part: Problem) -> str:
     """Describe a small set of requirements that exclude each other on either sign of the offset."""
-    sides = [_linear_rows(part, sign) for sign, _ in signs(part)]
+    sides = [_linear_rows(part, sign) for sign, _ in offset_signs(part)]
     names = list(dict.fromkeys(row.name for rows, _ in sides for row in rows))
     for name in list(names):
         fewer = [rest for rest in names if rest != name]
@@ -94,7 +94,7 @@ def _conflict_text(part: Problem) -> str:
 
 def _linear_rows(part: Problem, sign: float) -> tuple[list[_Row], dict[str, tuple[float, float]]]:
     """Return the linear requirements for one sign of the offset, and the ranges."""
-    sizes = next(sizes for side, sizes in signs(part) if side == sign)
+    sizes = next(sizes for side, sizes in offset_signs(part) if side == sign)
     ends = {
         "crank": (part.crank.lower, part.crank.upper),
         "rod": (part.rod.lower, part.rod.upper),

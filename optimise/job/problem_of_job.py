@@ -16,7 +16,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swinging import swing_quantities
 from ..discrete.meetable import require_meetable
-from ..methods.registry import require_fit
+from ..methods.registry import require_supported_settings
 from ..problem.impossible import no_option
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
@@ -114,7 +114,7 @@ def problem_of(
         if require_feasible:
             error.problem = problem
             raise
-    require_fit(problem)
+    require_supported_settings(problem)
     return robustly(problem, job.robust)
 
 

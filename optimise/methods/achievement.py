@@ -26,13 +26,13 @@ class Achievement:
         self.evaluator, self.form = evaluator, form
         self.ideal, self.span = ideal, span
 
-    def valid(self, u: Array) -> Mask:
+    def can_evaluate(self, u: Array) -> Mask:
         """Return which points give a linkage that rotates fully."""
-        return self.evaluator.valid(u)
+        return self.evaluator.can_evaluate(u)
 
-    def exact(self, u: Array) -> tuple[Rows, Rows]:
+    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
         """Return the rows of the form's 1 + m objectives, and the rows of constraints and ceilings."""
-        goals, limits = self.evaluator.exact(u)
+        goals, limits = self.evaluator.exact_rows(u)
         owner, form = goals.owner, self.form
         values = (goals.values - self.ideal[owner]) / self.span[owner]
         slopes = goals.gradients / self.span[owner][:, None]

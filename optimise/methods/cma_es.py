@@ -21,7 +21,7 @@ import numpy as np
 from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE
-from ..search.candidates import stacked
+from ..search.candidates import stack_rows
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed, generation_size
@@ -48,7 +48,7 @@ def cmaes(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
         for generation in past[climb.index :: len(climbs)][climb.generations :]:
             climb.learn(generation)
         u = climb.ask(generation_seed(seed, len(past)))
-        return Brood(np.full(len(u), climb.index), stacked(np.zeros((0, widest)), u))
+        return Brood(np.full(len(u), climb.index), stack_rows(np.zeros((0, widest)), u))
 
     return evolve(problem, evaluators, run, breed, size=size)
 

@@ -60,9 +60,9 @@ class _ExactEvaluation:
     def _evaluate(self, u: Array) -> tuple[Array, Array]:
         """Return objective and violation (n,) of points; infinite and `_FAR` where no linkage rotates fully."""
         values, violation = np.full(len(u), np.inf), np.full(len(u), _FAR)
-        valid = np.flatnonzero(self.evaluator.valid(u))
+        valid = np.flatnonzero(self.evaluator.can_evaluate(u))
         if len(valid):
-            goals, limits = self.evaluator.exact(u[valid])
+            goals, limits = self.evaluator.exact_rows(u[valid])
             values[valid] = goals.values.max(axis=1)
             violation[valid] = np.minimum(limits.values.max(axis=1, initial=0.0), _FAR)
         return values, violation
@@ -172,7 +172,7 @@ def _search_basins(
         options={"minimize_every_iter": False},
     )
     basins = np.clip(np.atleast_2d(getattr(optima, "xl", np.zeros((0, evaluator.dimension)))), 0.0, 1.0)
-    basins = basins[evaluator.valid(basins)][:_BASINS] if len(basins) else basins
+    basins = basins[evaluator.can_evaluate(basins)][:_BASINS] if len(basins) else basins
     if not len(basins):
         return
     values = evaluator.screen(basins, band=np.inf)[1]

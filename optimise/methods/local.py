@@ -38,7 +38,7 @@ _EXACT = 1e-12  # relative to the objective's range
 Local = Callable[[Programme, Array], Array | None]
 
 
-def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
+def starting_samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
     """Return feasible samples from all branches; if there are few, also samples with violations of up to 16 %.
 
     Solvers remove the violation. No sample meets the remaining equalities.
@@ -50,7 +50,7 @@ def samples(problem: Problem, evaluators: list[Evaluator]) -> Candidates:
             count = -(-SAMPLES * 4 ** min(attempt, 1) // len(evaluators))
             u = first_samples(count, evaluator.dimension, problem.settings.seed, _STREAM + 10 * attempt + index)
             _, values, violation = evaluator.screen(u, band=band)
-            good = (violation <= band + FEASIBLE) & evaluator.valid(u)
+            good = (violation <= band + FEASIBLE) & evaluator.can_evaluate(u)
             feasible = violation[good] <= FEASIBLE
             parts.append(Candidates(np.full(len(feasible), index), u[good], values[good], feasible))
         sampled = parts[0].join(*parts[1:])
@@ -63,14 +63,14 @@ def search_from_starts(
     problem: Problem, evaluators: list[Evaluator], run: Run, *, solve: Local, starts: int
 ) -> Archive:
     """Return the local optima that a solver finds from `starts` starts, which are the best distant samples."""
-    sampled = samples(problem, evaluators)
+    sampled = starting_samples(problem, evaluators)
     archive = Archive.empty(1)
     run.archive.add(sampled[sampled.is_feasible])
     if not len(sampled):
         run.report_round("sampling", evaluators, archive)
         return archive
     ideal, span = sampled.values.min(axis=0), span_of(problem, sampled.values)
-    rows = sampled.leading(0, starts)
+    rows = sampled.leading_rows(0, starts)
     run.rounds = 1 + len(rows)
     run.report_round("sampling", evaluators, archive)
     for row in rows:
@@ -130,11 +130,11 @@ def _slsqp_run(programme: Programme, u: Array) -> Array:
 
     minimised: Any = minimize  # its stubs do not allow mixed arguments
     constraints: list[dict[str, Any]] = [
-        {"type": "ineq", "fun": lambda z: -programme.inequalities(z), "jac": lambda z: -programme.slopes(z)}
+        {"type": "ineq", "fun": lambda z: -programme.inequalities(z), "jac": lambda z: -programme.inequality_slopes(z)}
     ]
-    begin = programme.begin(u)
+    begin = programme.start_vector(u)
     if len(programme.equalities(begin)):
-        constraints.append({"type": "eq", "fun": programme.equalities, "jac": programme.equal_slopes})
+        constraints.append({"type": "eq", "fun": programme.equalities, "jac": programme.equality_slopes})
     solution = minimised(
         lambda z: programme.cost @ z,
         begin,
@@ -168,11 +168,13 @@ def _interior_point_run(programme: Programme, u: Array, margin: float) -> tuple[
     from scipy.optimize import BFGS, Bounds, NonlinearConstraint, minimize
 
     minimised: Any = minimize
-    begin = programme.begin(np.clip(u, _INSIDE, 1.0 - _INSIDE))
+    begin = programme.start_vector(np.clip(u, _INSIDE, 1.0 - _INSIDE))
     begin[programme.k :] += margin
     begin[-1] += margin * programme.form.weights.max()
     starts_inside = bool((programme.inequalities(begin) < 0.0).all() and (begin < programme.upper).all())
-    limits = [NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.slopes, BFGS(), starts_inside)]
+    limits = [
+        NonlinearConstraint(programme.inequalities, -np.inf, 0.0, programme.inequality_slopes, BFGS(), starts_inside)
+    ]
     no_curvature = np.zeros((len(begin), len(begin)))
     with warnings.catch_warnings():
         # Intermediate rows may be dependent and slopes constant, which SciPy can handle.

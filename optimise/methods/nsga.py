@@ -46,7 +46,9 @@ def nsga3(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     from optuna.samplers import NSGAIIISampler
 
     size, objectives = population_size(problem), len(problem.objectives)
-    return _search_genetic(problem, evaluators, run, NSGAIIISampler, dividing_parameter=divisions(size, objectives))
+    return _search_genetic(
+        problem, evaluators, run, NSGAIIISampler, dividing_parameter=axis_divisions(size, objectives)
+    )
 
 
 def population_size(problem: Problem) -> int:
@@ -60,7 +62,7 @@ def population_size(problem: Problem) -> int:
     return size
 
 
-def divisions(population: int, objectives: int) -> int:
+def axis_divisions(population: int, objectives: int) -> int:
     """Return the number of axis divisions that gives at most as many reference directions as designs.
 
     p divisions give (p + m - 1 over m - 1) directions (Das and Dennis, 1998).

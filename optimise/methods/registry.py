@@ -61,7 +61,7 @@ class Method:
     equalities: bool = True
     polishes: bool = False
 
-    def takes(self, count: int) -> bool:
+    def supports_objective_count(self, count: int) -> bool:
         """Whether the method supports this number of objectives."""
         return self.objectives == "any" or (self.objectives == "one") == (count == 1)
 
@@ -95,7 +95,7 @@ def budget(problem: Problem) -> int:
     return problem.settings.evaluations or default
 
 
-def require_fit(problem: Problem) -> None:
+def require_supported_settings(problem: Problem) -> None:
     """Raise `InputError` for an unsupported number of objectives, or for a budget that the method does not use."""
     method, count = method_of(problem), len(problem.objectives)
     evaluations = problem.settings.evaluations
@@ -103,15 +103,15 @@ def require_fit(problem: Problem) -> None:
         raise InputError(
             f"the method {method.name} has no budget of evaluations; got {evaluations}; leave it out, or name a method"
         )
-    if method.takes(count):
+    if method.supports_objective_count(count):
         return
-    fitting = ", ".join(name for name, candidate in methods().items() if candidate.takes(count))
+    fitting = ", ".join(name for name, candidate in methods().items() if candidate.supports_objective_count(count))
     objectives = ", ".join(objective.quantity for objective in problem.objectives)
     takes = "one objective" if method.objectives == "one" else "several objectives"
     raise InputError(f"the method {method.name} needs {takes}; got {count} ({objectives}); use one of {fitting}")
 
 
-def require_eliminated(problem: Problem, evaluators: list[Evaluator]) -> None:
+def require_supported_equalities(problem: Problem, evaluators: list[Evaluator]) -> None:
     """Raise `InputError` if the method cannot meet an equality that remains after elimination."""
     method = method_of(problem)
     if method.equalities:
@@ -136,7 +136,11 @@ def require_gradients(problem: Problem, caller: str | None = None) -> None:
     method = method_of(problem)
     if caller is not None or method.gradients:
         count = len(problem.objectives)
-        fitting = [name for name, candidate in methods().items() if not candidate.gradients and candidate.takes(count)]
+        fitting = [
+            name
+            for name, candidate in methods().items()
+            if not candidate.gradients and candidate.supports_objective_count(count)
+        ]
         instead = "" if caller else f"use one of {', '.join(fitting)}, or "
         raise InputError(
             f"{caller or f'the method {method.name}'} needs the gradient of every quantity; got {', '.join(lacking)} "

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ..search.evaluation import Evaluator
-from ..search.pieces import Rows, alone, greatest
+from ..search.pieces import Rows, greatest_pieces, rows_of_designs
 
 SUM = 1e-4
 """rho: excludes a design that loses less than 1e-4 of a range in one objective for a whole range of another."""
@@ -80,31 +80,31 @@ class Programme:
         self._limits: Rows
         self._valid = True
 
-    def begin(self, u: Array) -> Array:
+    def start_vector(self, u: Array) -> Array:
         """Return z at a point u (k,) where the evaluator is valid, with the lowest possible s and t.
 
         An equality holds the piece that is highest here; another one may be highest after a run of the solver.
         """
         self._u = None
-        self._go(u)
-        s = np.minimum(greatest(self._goals, self.m), self.form.ceilings)
+        self._evaluate_at(u)
+        s = np.minimum(greatest_pieces(self._goals, self.m), self.form.ceilings)
         is_weighted = self.form.weights > 0.0
         t = (self.form.weights[is_weighted] * (s[is_weighted] - self.form.reference[is_weighted])).max()
         return np.concatenate([u, s, [t]])
 
     def objectives(self, u: Array) -> Array:
         """Return the scaled objectives (m,) at a point."""
-        self._go(u)
-        return greatest(self._goals, self.m)
+        self._evaluate_at(u)
+        return greatest_pieces(self._goals, self.m)
 
     def violation(self, u: Array) -> float:
         """Return the greatest relative violation of the problem's constraints at a point."""
-        self._go(u)
+        self._evaluate_at(u)
         return float(self._limits.values.max(initial=0.0)) if self._valid else np.inf
 
     def inequalities(self, z: Array) -> Array:
         """Return the rows g(z) <= 0, (r,)."""
-        self._go(z[: self.k])
+        self._evaluate_at(z[: self.k])
         goals = self._goals.values - z[self.k + self._goals.owner]
         goals[~np.isfinite(self._goals.values)] = _ABSENT
         limits = self._limits.values[self._unequal]
@@ -113,9 +113,9 @@ class Programme:
             goals, limits = goals + _OUT, limits + _OUT
         return np.concatenate([goals, limits, self._fixed @ z - self._bound])
 
-    def slopes(self, z: Array) -> Array:
+    def inequality_slopes(self, z: Array) -> Array:
         """Return the derivatives (r, k + m + 1) of the inequalities."""
-        self._go(z[: self.k])
+        self._evaluate_at(z[: self.k])
         goals = np.zeros((len(self._goals.owner), self.k + self.m + 1))
         goals[:, : self.k] = self._goals.gradients
         goals[np.arange(len(goals)), self.k + self._goals.owner] = -1.0
@@ -125,12 +125,12 @@ class Programme:
 
     def equalities(self, z: Array) -> Array:
         """Return the rows h(z) = 0 of the remaining equalities."""
-        self._go(z[: self.k])
+        self._evaluate_at(z[: self.k])
         return self._limits.values[self._equality_rows()] + (0.0 if self._valid else _OUT)
 
-    def equal_slopes(self, z: Array) -> Array:
+    def equality_slopes(self, z: Array) -> Array:
         """Return the derivatives of the equalities."""
-        self._go(z[: self.k])
+        self._evaluate_at(z[: self.k])
         return np.pad(self._limits.gradients[self._equality_rows()], ((0, 0), (0, self.m + 1)))
 
     def _equality_rows(self) -> IntArray:
@@ -138,17 +138,17 @@ class Programme:
         highest, instead = self._equal.T
         return np.asarray(np.where(np.isfinite(self._limits.values[highest]), highest, instead))
 
-    def _go(self, u: Array) -> None:
+    def _evaluate_at(self, u: Array) -> None:
         if self._u is not None and np.array_equal(u, self._u):
             return
         first = self._u is None
         self._u = np.array(u)
         clipped = np.clip(self._u, 0.0, 1.0)[None]  # solvers leave the box by rounding errors
-        self._valid = bool(self.evaluator.valid(clipped)[0])
+        self._valid = bool(self.evaluator.can_evaluate(clipped)[0])
         if not self._valid:
             assert not first  # solvers start at valid points
             return
-        goals, limits = (alone(rows, 0) for rows in self.evaluator.exact(clipped))
+        goals, limits = (rows_of_designs(rows, 0) for rows in self.evaluator.exact_rows(clipped))
         goals = Rows(
             (goals.values - self.ideal[goals.owner]) / self.span[goals.owner],
             goals.gradients / self.span[goals.owner][:, None],
@@ -156,16 +156,16 @@ class Programme:
             goals.owner,
         )
         if first:
-            self._equal = _equal_rows(self.evaluator, limits)
+            self._equal = _row_pairs_of_equalities(self.evaluator, limits)
             self._unequal = np.setdiff1d(np.arange(len(limits.owner)), self._equal)
-            self._groups = _swappable_columns(self.evaluator, goals, limits)
+            self._groups = _columns_of_swapping_peaks(self.evaluator, goals, limits)
         else:
             goals = _align_pieces(goals, self._goals, self._groups[0])
             limits = _align_pieces(limits, self._limits, self._groups[1])
         self._goals, self._limits = goals, limits
 
 
-def _equal_rows(evaluator: Evaluator, limits: Rows) -> IntArray:
+def _row_pairs_of_equalities(evaluator: Evaluator, limits: Rows) -> IntArray:
     """Return two constraint rows of each equality (e, 2), of which one must vanish: highest piece, opposite row.
 
     Every piece has a row on one side; only the highest has one on the other side too. Its two rows are equivalent: with
@@ -183,7 +183,7 @@ def _equal_rows(evaluator: Evaluator, limits: Rows) -> IntArray:
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
-def _swappable_columns(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[IntArray], ...]:
+def _columns_of_swapping_peaks(evaluator: Evaluator, goals: Rows, limits: Rows) -> tuple[list[IntArray], ...]:
     """Return the columns of goals and limits that are peaks of one curve and may swap; lower bounds may not."""
     groups_by_kind: tuple[list[IntArray], ...] = ([], [])
     last = [objective.target is not None for objective in evaluator.problem.objectives]

@@ -23,7 +23,7 @@ from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.search import Archive, Run
-from .local import archive_optimum, by_slsqp, is_budget_spent, samples
+from .local import archive_optimum, by_slsqp, is_budget_spent, starting_samples
 from .registry import Method
 from .scalar_objective import SUM, Form, Programme
 
@@ -80,31 +80,31 @@ def chebyshev(front: _Front) -> Aims:
         direction = np.maximum(direction, _SLIVER)
         return Form(direction.min() / direction, np.full(m, -_UTOPIAN), no_ceilings, SUM)
 
-    return [form_towards(direction) for direction in simplex(m, _aims_per_round(front.problem))], form_towards
+    return [form_towards(direction) for direction in simplex_weights(m, _aims_per_round(front.problem))], form_towards
 
 
 def nbi(front: _Front) -> Aims:
     """Return aims by normal-boundary intersection.
 
     From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
-    move as far as possible along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex`). Where the front is
-    not met, some design is better than the point reached, so F <= Phi beta + t n is required rather than equality (A.
-    Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result is
-    Pareto-optimal, even on a folded front. With three or more objectives, the plane's triangle does not cover the whole
-    front, so points outside it are used as well.
+    move as far as possible along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex_weights`). Where the
+    front is not met, some design is better than the point reached, so F <= Phi beta + t n is required rather than
+    equality (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result
+    is Pareto-optimal, even on a folded front. With three or more objectives, the plane's triangle does not cover the
+    whole front, so points outside it are used as well.
     """
     m = len(front.payoff)
     payoff = front.scaled(front.payoff)
     normal = np.maximum(payoff.sum(axis=0), _SLIVER)
-    shares = simplex(m, _aims_per_round(front.problem))
+    shares = simplex_weights(m, _aims_per_round(front.problem))
     if m > 2:
         shares = 1.0 / m + (shares - 1.0 / m) * _WIDER
     no_ceilings = np.full(m, np.inf)
 
-    def through(point: Array) -> Form:
+    def form_through(point: Array) -> Form:
         return Form(normal.min() / normal, point, no_ceilings, SUM)
 
-    return [through(share @ payoff) for share in shares], through
+    return [form_through(share @ payoff) for share in shares], form_through
 
 
 @dataclass
@@ -118,7 +118,7 @@ class _Front:
     problem: Problem
     evaluators: list[Evaluator]
     run: Run
-    samples: Candidates
+    starting_samples: Candidates
     archive: Archive
     ideal: Array
     span: Array
@@ -144,12 +144,12 @@ class _Front:
                     for index, u in self._starts(form):
                         self.optimum(form, index, u)
                 self.run.report_round("scalarising", self.evaluators, self.archive)
-            forms = [aimed(aim) for aim in self._gaps()]
+            forms = [aimed(aim) for aim in self._gap_points()]
             if not forms:
                 break
         return self.archive
 
-    def _gaps(self) -> Array:
+    def _gap_points(self) -> Array:
         """Return scaled objectives (n, m) in gaps between optima, farthest from all first; empty if there are none.
 
         They are non-dominated samples, and midpoints between neighbouring optima: those with no other optimum in the
@@ -188,7 +188,7 @@ class _Front:
         return [(index, u) for value, index, u in starts if value <= least + _WORSE]
 
 
-def simplex(objectives: int, least: int) -> Array:
+def simplex_weights(objectives: int, least: int) -> Array:
     """Return at least `least` points (n, m) of the unit simplex: all sums of m multiples of 1 / p.
 
     I. Das and J. E. Dennis, "Normal-boundary intersection: a new method for generating the Pareto surface in nonlinear
@@ -231,7 +231,7 @@ def _aims_per_round(problem: Problem) -> int:
 def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _Front | None:
     """Return samples and payoff table; None if there are no starts."""
     m = len(problem.objectives)
-    sampled = samples(problem, evaluators)
+    sampled = starting_samples(problem, evaluators)
     front = Archive.empty(m)
     run.archive.add(sampled[sampled.is_feasible])
     if not len(sampled):
@@ -243,7 +243,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
     run.report_round("sampling", evaluators, front)
     for column in range(m):
         best = np.full(m, np.inf)
-        for row in sampled.leading(column, _STARTS):
+        for row in sampled.leading_rows(column, _STARTS):
             values = shared.optimum(Form.single(m, column, rho=SUM), int(sampled.branch[row]), sampled.u[row])
             if values is not None and values[column] < best[column]:
                 best = values

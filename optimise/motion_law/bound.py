@@ -38,13 +38,13 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
 
     It bounds the peak torque, N m, the mean square torque over the cycle time, N^2 m^2, or the time, s.
     """
-    by_torque, by_energy, constant = _coefficients(turn, limits, multipliers)
+    by_torque, by_energy, constant = _integrand_coefficients(turn, limits, multipliers)
     pace = multipliers.pace
     time = needs.longest if pace > 0.0 else needs.least
-    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+    low, high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
     torque_limit = math.inf if needs.torque_limit is None else needs.torque_limit
 
-    def at_energies(energy: Array) -> Array:
+    def least_integrand(energy: Array) -> Array:
         """Return the least integrand over T at K; it omits a torque that only its limit bounds."""
         slowness = np.sqrt(0.5 * turn.terms.inertia / energy)
         value = by_energy * energy + pace * slowness
@@ -54,7 +54,7 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
         torque = np.clip(-0.5 * by_torque / weight, -torque_limit, torque_limit)
         return np.asarray(value + torque * (weight * torque + by_torque))
 
-    least = _least(at_energies, low, high)
+    least = _least_over_energy(least_integrand, low, high)
     total = float(np.sum(turn.weights * (constant + least))) - (0.0 if time is None else pace * time)
     if aim == "rms torque":
         return total
@@ -64,7 +64,7 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
     return total - torque_limit * size
 
 
-def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) -> tuple[Array, Array, Array]:
+def _integrand_coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) -> tuple[Array, Array, Array]:
     """Return the integrand's coefficients of T and K and its constant, at the nodes, without time and objective.
 
     p is continuous. Near a limit of acceleration, it changes as the limit's multipliers require, so that the
@@ -73,7 +73,7 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
     p, place, width = multipliers.momentum, NODES, turn.width
     by_torque, by_energy, constant = np.zeros((3, *turn.angle.shape))
     gains = np.zeros((2, len(p)))  # changes of p by the limit, near the start and the end of a cell
-    limit, ends = limits.acceleration(turn.terms), limits.acceleration(turn.end_terms)
+    limit, ends = limits.acceleration_limit(turn.terms), limits.acceleration_limit(turn.end_terms)
     if limit is not None and ends is not None:
         hats = 2.0 * np.stack([1.0 - place, place]) / width[:, None, None]  # (n, 2, 16)
         sides = np.maximum(multipliers.sides, 0.0)
@@ -84,7 +84,7 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
         upper, lower = (np.einsum("en,nei->ni", factor * sides[:, side], hats) for side in range(2))
         by_torque, by_energy = upper - lower, (upper - lower) * limit.by_energy
         constant = (lower - upper) * turn.terms.load - (upper + lower) * limit.greatest
-    starts = _at_starts(turn, p, gains)
+    starts = _momentum_at_cell_starts(turn, p, gains)
     for cell, outside in limits.window_cells(turn):
         # K is limited from here on, or up to here: p may jump, but only within the window.
         starts[cell] = p[outside] + (gains[1, outside] if outside != cell else -gains[0, outside])
@@ -93,7 +93,7 @@ def _coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multipliers) ->
     return by_torque - momentum, np.repeat(-even[:, None], len(place), axis=1), constant + momentum * turn.terms.load
 
 
-def _at_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
+def _momentum_at_cell_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
     """Return p (n,) at the starts of cells, from the cells' multipliers (n,) and the gains (2, n) near their ends.
 
     The programme determines the mean of two cells weighted by their widths, which is p at the centroid of the hat
@@ -110,7 +110,7 @@ def _at_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
     return np.asarray(before + np.interp(turn.passed, places, means))
 
 
-def _least(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
+def _least_over_energy(function: Callable[[Array], Array], low: Array, high: Array) -> Array:
     """Return the least values of a function of K between limits, on successively finer grids over the speed."""
     first, last = np.sqrt(low), np.sqrt(np.maximum(high, low))
     best = np.full(low.shape, np.inf)

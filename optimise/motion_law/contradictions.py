@@ -9,7 +9,7 @@ import numpy as np
 from ...model.errors import InputError
 from ...model.motion_law.law_turn import LawTurn
 from ...model.transient.equation import TURN
-from .law_limits import LawLimits, rpm
+from .law_limits import LawLimits, rpm_text
 from .programme import Margins, Programme, Requirement
 from .reachable import Reachable
 
@@ -19,19 +19,19 @@ _ROUNDING = 1e-9
 
 def require_consistent_limits(turn: LawTurn, limits: LawLimits) -> None:
     """Raise `InputError` if the least crank speed exceeds what the slider's speed limit allows."""
-    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+    low, high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
     worst = np.unravel_index(int(np.argmax(low - high)), low.shape)
     if not low[worst] <= high[worst]:
         allowed = math.sqrt(2.0 * high[worst] / turn.terms.inertia[worst])
         angle = math.degrees(float(turn.angle[worst])) % 360.0
         raise InputError(
             f"limits of a motion law exclude each other: at a crank angle of {angle:.6g} deg the slider's speed limit "
-            f"allows {rpm(allowed)}, and {limits.name('least_speed')} is {rpm(limits.least_speed)}; reduce the latter "
-            "or raise the slider's speed"
+            f"allows {rpm_text(allowed)}, and {limits.name('least_speed')} is {rpm_text(limits.least_speed)}; reduce "
+            "the latter or raise the slider's speed"
         )
 
 
-def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
+def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
     """Return the error for limits without a law: which limits exclude each other, and the least change."""
     request, load = limits.request, float(np.abs(turn.terms.load).max())
     programme = Programme(turn, limits, Margins(*np.zeros((3, len(turn.width)))))
@@ -68,7 +68,7 @@ def unreachable(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"a law within these limits needs a torque of at least {least:.6g} N m; {name} is "
                 f"{request.torque_limit:.6g} N m{slower}"
             )
-    narrow = [limits.name(field) for field in request.narrowing]
+    narrow = [limits.name(field) for field in request.narrowing_fields]
     return InputError(
         "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
         "beside the work of its loads, or limits that leave almost no room; state or raise the inertia in [drive] "

@@ -50,7 +50,7 @@ class LawRequest:
                 raise InputError(f"{item.name} of a motion law must be positive and finite; got {value:g}")
 
     @property
-    def narrowing(self) -> list[str]:
+    def narrowing_fields(self) -> list[str]:
         """Fields with a limit that may leave almost no law."""
         return [
             item.name for item in fields(self) if item.metadata == _NARROWS and getattr(self, item.name) is not None
@@ -81,7 +81,7 @@ class LawLimits:
     names: Mapping[str, str]
 
     @property
-    def marks(self) -> tuple[float, ...]:
+    def window_ends(self) -> tuple[float, ...]:
         """Crank angles at the start and the end of the window, rad."""
         return () if self.window is None else (self.window[0], self.window[0] + self.way * self.window[1])
 
@@ -93,23 +93,23 @@ class LawLimits:
         """Return the cells that start at the start and the end of the window, each with the adjacent cell outside."""
         if self.window is None:
             return []
-        begin, end = (int(turn.locate(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.marks)
+        begin, end = (int(turn.locate(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.window_ends)
         return [(begin, (begin - 1) % len(turn.width)), (end, end)]
 
-    def slider_speed(self, crank_angle: Array) -> Array:
+    def greatest_slider_speed(self, crank_angle: Array) -> Array:
         """Return the greatest allowed slider speed, m/s, at crank angles."""
         speed = np.full(crank_angle.shape, self.request.slider_speed or math.inf)
         if self.request.window_speed is not None:
             speed[self._in_window(crank_angle)] = min(self.request.window_speed, self.request.slider_speed or math.inf)
         return speed
 
-    def energies(self, crank_angle: Array, inertia: Array, travel: Array) -> tuple[Array, Array]:
+    def energy_limits(self, crank_angle: Array, inertia: Array, travel: Array) -> tuple[Array, Array]:
         """Return the least and the greatest allowed K, J, at crank angles. inertia: J, kg m^2. travel: x', m."""
         with np.errstate(divide="ignore"):
-            fastest = np.minimum(self.greatest_speed, self.slider_speed(crank_angle) / np.abs(travel))
+            fastest = np.minimum(self.greatest_speed, self.greatest_slider_speed(crank_angle) / np.abs(travel))
         return 0.5 * inertia * self.least_speed**2, 0.5 * inertia * fastest**2
 
-    def acceleration(self, terms: LawTerms) -> AccelerationLimit | None:
+    def acceleration_limit(self, terms: LawTerms) -> AccelerationLimit | None:
         """Return the limit on crank acceleration as one on J alpha, at crank angles with terms of any shape."""
         greatest = self.request.crank_acceleration
         if greatest is None:
@@ -162,31 +162,31 @@ def resolve_limits(
     least = min(mean, greatest) / RANGE if request.least_speed is None else request.least_speed
     if least > greatest:
         raise InputError(
-            f"{name('least_speed')} must not exceed {name('greatest_speed')}; got {rpm(least)} and {rpm(greatest)}; "
-            "change one"
+            f"{name('least_speed')} must not exceed {name('greatest_speed')}; got {rpm_text(least)} and "
+            f"{rpm_text(greatest)}; change one"
         )
     if request.objective != "cycle time":
         if mean > greatest * (1.0 + 1e-12):
             raise InputError(
-                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm(mean)}; {name('greatest_speed')} is "
-                f"{rpm(greatest)}; raise it, or allow {TURN / greatest:.6g} s"
+                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm_text(mean)}; "
+                f"{name('greatest_speed')} is {rpm_text(greatest)}; raise it, or allow {TURN / greatest:.6g} s"
             )
         if request.timing == "equal" and mean < least * (1.0 - 1e-12):
             raise InputError(
-                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm(mean)}; {name('least_speed')} is "
-                f"{rpm(least)}; reduce it, or ask for {TURN / least:.6g} s"
+                f"a cycle of {cycle_time:.6g} s needs a mean crank speed of {rpm_text(mean)}; {name('least_speed')} is "
+                f"{rpm_text(least)}; reduce it, or ask for {TURN / least:.6g} s"
             )
         for field, limit in (("least_speed", least), ("greatest_speed", greatest)):
             if abs(mean / limit - 1.0) < _ONLY_CONSTANT and (field == "greatest_speed" or request.timing == "equal"):
                 raise InputError(
-                    f"a cycle of {cycle_time:.6g} s has a mean crank speed of {rpm(mean)}; {name(field)} is "
-                    f"{rpm(limit)}, which leaves constant speed alone; change one of them"
+                    f"a cycle of {cycle_time:.6g} s has a mean crank speed of {rpm_text(mean)}; {name(field)} is "
+                    f"{rpm_text(limit)}, which leaves constant speed alone; change one of them"
                 )
-    window = _window(mechanism, linkage, request, name("window"), name("window_speed"))
+    window = _crank_angle_window(mechanism, linkage, request, name("window"), name("window_speed"))
     return LawLimits(request, cycle_time, least, greatest, window, mechanism.direction, labels)
 
 
-def _window(
+def _crank_angle_window(
     mechanism: Mechanism, linkage: Linkage, request: LawRequest, distance_name: str, speed_name: str
 ) -> tuple[float, float] | None:
     if request.window is None and request.window_speed is None:
@@ -206,6 +206,6 @@ def _window(
     return dead - mechanism.direction * float(angles[0]), float(angles[0])
 
 
-def rpm(speed: float) -> str:
+def rpm_text(speed: float) -> str:
     """Return a speed, rad/s, as text in rpm."""
     return f"{30.0 / math.pi * speed:.6g} rpm"

@@ -18,10 +18,10 @@ from ...model.motion_law.law_turn import LawTurn
 from ...model.motion_law.motion_law import MotionLaw
 from ...model.transient.equation import TURN
 from .bound import lower_bound
-from .contradictions import require_consistent_limits, unreachable
+from .contradictions import require_consistent_limits, unreachable_limits_error
 from .law_limits import LawLimits, LawRequest, resolve_limits
 from .reachable import Reachable
-from .stage import Stage, solve_stage
+from .stage import Stage, solve_on_cells
 
 GAP = 1e-3
 """Greatest relative gap between a law and the bound at which the law counts as proven."""
@@ -82,14 +82,14 @@ def optimal_law(
     """
     limits = resolve_limits(mechanism, linkage, request, names)
     at_speed = replace(mechanism, speed=mechanism.direction * TURN / limits.cycle_time)
-    turn = LawTurn(at_speed, linkage, limits.marks)
+    turn = LawTurn(at_speed, linkage, limits.window_ends)
     require_consistent_limits(turn, limits)
     best, bound = None, 0.0
     for count in range(_ROUNDS):
-        stage = solve_stage(turn, limits, None if best is None else best.law)
+        stage = solve_on_cells(turn, limits, None if best is None else best.law)
         if stage is not None:
             dual = max(lower_bound(turn, limits, *proof) for proof in stage.proofs)
-            bound = max(bound, _bound(dual, stage, limits))
+            bound = max(bound, _bound_on_objective(dual, stage, limits))
             if stage.exceeded <= LIMIT_TOLERANCE and not stage.coarse.any():
                 last = math.inf if best is None else best.gap
                 best = OptimalLaw(stage.law, limits, stage.value, bound, stage.relaxed, count, stage.exceeded)
@@ -101,11 +101,11 @@ def optimal_law(
         coarse = np.zeros(len(turn.width), np.bool_) if stage is None else stage.coarse
         turn = turn.finer(coarse if coarse.any() else np.ones_like(coarse))
     if best is None:
-        raise unreachable(turn, limits)
+        raise unreachable_limits_error(turn, limits)
     return best
 
 
-def _bound(dual: float, stage: Stage, limits: LawLimits) -> float:
+def _bound_on_objective(dual: float, stage: Stage, limits: LawLimits) -> float:
     """Return a bound in the unit of the objective: from multipliers, or from what a torque can reach."""
     request = limits.request
     if request.objective == "rms torque":

@@ -98,7 +98,7 @@ class Programme:
         self.half_loads = turn.width * np.einsum("ni,ni->n", half, turn.terms.load) / self.unit
         self.angles = np.stack([turn.low, turn.low + 0.5 * turn.way * turn.width])
         self.inertia = turn.inertia_at(self.angles)
-        low, high = limits.energies(self.angles, self.inertia, turn.slider(self.angles)[0])
+        low, high = limits.energy_limits(self.angles, self.inertia, turn.slider(self.angles)[0])
         lifted, lowered = (np.stack([np.maximum(by, np.roll(by, 1)), by]) for by in (margins.least, margins.greatest))
         self.low, self.high = low * (1.0 + lifted) / self.energy_unit, high * (1.0 - lowered) / self.energy_unit
         self.low = np.minimum(self.low, self.high)
@@ -110,7 +110,7 @@ class Programme:
         """Return the time of a turn, s, by Simpson's rule; K (2, n), J: at starts and middles."""
         return float(self.slowness @ np.sqrt(self.energy_unit / energies.ravel())) * self.time_unit
 
-    def size_of(self, aim: Aim) -> float:
+    def objective_unit(self, aim: Aim) -> float:
         """Return the objective in SI that equals 1 in the programme."""
         return {"peak torque": self.unit, "cycle time": self.time_unit, "rms torque": self.unit**2}.get(aim, 1.0)
 
@@ -133,7 +133,7 @@ class Programme:
                 return None
         if cone.torque.value is None or "infeasible" in problem.status:
             return None
-        size = self.size_of(aim)
+        size = self.objective_unit(aim)
         n = len(self.turn.width)
         duals = np.array([side.dual_value for side in sides] or np.zeros((4, n))).reshape(2, 2, n) * size / self.unit
         multipliers = Multipliers(
@@ -177,7 +177,7 @@ class _Cone:
         return self.cp.SOC(first + second, self.cp.vstack([2.0 * factor, first - second]), axis=0)
 
     @property
-    def root(self) -> Any:
+    def energy_root(self) -> Any:
         """An unknown that is at most the root of K."""
         if self._root is None:
             self._root = self.cp.Variable(len(self.ones))
@@ -187,7 +187,7 @@ class _Cone:
     def time(self) -> Any:
         """Return an upper bound on the time of the turn."""
         inverse = self.cp.Variable(len(self.ones))
-        self.rules.append(self._product(self.root, inverse, self.ones))
+        self.rules.append(self._product(self.energy_root, inverse, self.ones))
         return self.programme.slowness @ inverse
 
     def limit_time(self, needs: Requirement) -> list[tuple[float, Any]]:
@@ -211,7 +211,7 @@ class _Cone:
     def limit_acceleration(self, relaxed: bool) -> list[Any]:
         """Add the acceleration limit, multiplied by `size` if relaxed; return its sides: by end, upper one first."""
         turn, unit = self.programme.turn, self.programme.unit
-        limit = self.programme.limits.acceleration(turn.end_terms)
+        limit = self.programme.limits.acceleration_limit(turn.end_terms)
         sides: list[Any] = []
         if limit is None:
             return []
@@ -237,5 +237,5 @@ class _Cone:
         if aim == "long cycle":
             return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`reachable`)
         square = self.cp.Variable(len(self.ones))
-        self.rules.append(self._product(square, self.root, self.torques))
+        self.rules.append(self._product(square, self.energy_root, self.torques))
         return slowness @ square

@@ -46,7 +46,7 @@ class Reachable:
 
     def __init__(self, turn: LawTurn, limits: LawLimits) -> None:
         self.turn = turn
-        self.low, self.high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+        self.low, self.high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
         cell, node = np.divmod(np.arange(turn.angle.size), turn.angle.shape[1])
         place = NODES[node]
         before = np.concatenate([[0.0], np.cumsum(np.sum(turn.weights * turn.terms.load, axis=1))[:-1]])
@@ -55,9 +55,9 @@ class Reachable:
 
     def laws_within(self, torque: float) -> ReachableLaws:
         """Return the slowest and fastest law within a torque, N m."""
-        loss = self._three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
-        gain = self._three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
-        slowest, fastest = self._least(self.low, loss, gain), -self._least(-self.high, gain, loss)
+        loss = self._continue_over_three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
+        gain = self._continue_over_three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
+        slowest, fastest = self._least_energies(self.low, loss, gain), -self._least_energies(-self.high, gain, loss)
         within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
         fastest = np.maximum(fastest, slowest)  # it may be lower if no law exists
         closes = abs(self.turn.work) <= torque * TURN * (1.0 + _ROUNDING)
@@ -88,7 +88,7 @@ class Reachable:
     def _time(self, energy: Array) -> float:
         return float(np.sum(self.turn.weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
 
-    def _least(self, limit: Array, loss: Array, gain: Array) -> Array:
+    def _least_energies(self, limit: Array, loss: Array, gain: Array) -> Array:
         """Return the least K above a limit that loses at most `loss` and gains at most `gain`.
 
         It loses after an angle at which it is on the limit, and gains before it.
@@ -100,5 +100,5 @@ class Reachable:
         return np.asarray(np.maximum(after, before)[middle].reshape(limit.shape))
 
     @staticmethod
-    def _three_turns(integral: Array, turn: float) -> Array:
+    def _continue_over_three_turns(integral: Array, turn: float) -> Array:
         return np.concatenate([integral, integral + turn, integral + 2.0 * turn])

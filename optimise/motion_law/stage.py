@@ -55,7 +55,7 @@ class Stage:
     coarse: Mask
 
 
-def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> Stage | None:
+def solve_on_cells(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> Stage | None:
     """Return the best law on the cells, or None. guess: a law on other cells.
 
     Between the programme's angles, a law may exceed limits, and its time differs from that of Simpson's rule. Both
@@ -67,20 +67,20 @@ def solve_stage(turn: LawTurn, limits: LawLimits, guess: MotionLaw | None) -> St
         answer = search.best()
         if answer is None:
             return None
-        law, missing, fast = _timed(turn, limits, *answer)
-        found = _excess(law, limits)
+        law, missing, fast = _law_with_cycle_time(turn, limits, *answer)
+        found = _relative_excess(law, limits)
         excess = np.max([found.least, found.greatest, found.acceleration], axis=0)
-        coarse = (excess > _COARSE) | (np.abs(search.time_errors(law)) > _UNTIMED * limits.cycle_time)
+        coarse = (excess > _COARSE) | (np.abs(search.simpson_time_errors(law)) > _UNTIMED * limits.cycle_time)
         if coarse.any() or (excess.max() <= _MARGIN and abs(missing) <= _EQUAL * limits.cycle_time):
             break
         guess, target = law, target + missing
         parts = ((getattr(margins, name), getattr(found, name)) for name in ("least", "greatest", "acceleration"))
         margins = Margins(*(margin + 1.5 * np.maximum(part, 0.0) for margin, part in parts))
-    value = value_of(law, limits) if law.node_energies.min() > 0.0 else math.inf
+    value = objective_value(law, limits) if law.node_energies.min() > 0.0 else math.inf
     return Stage(law, value, search.proofs, fast, float(excess.max()), coarse)
 
 
-def value_of(law: MotionLaw, limits: LawLimits) -> float:
+def objective_value(law: MotionLaw, limits: LawLimits) -> float:
     """Return peak torque, N m, RMS torque over time, N m, or cycle time, s, whichever is the objective."""
     objective = limits.request.objective
     if objective == "peak torque":
@@ -111,16 +111,18 @@ class _Search:
             if not self._too_fast(fast):
                 return fast, None
             self._prove("rms torque", replace(needs, longest=None, least=self.cycle_time))
-            slow = self._renewed("rms torque", needs, self._reference(None), prove=True)
+            slow = self._solve_by_tangents("rms torque", needs, self._reference_energies(None), prove=True)
             return None if slow is None else (slow, fast)
         peak, reference = fast.value, fast.energies
         if self._too_fast(fast):
             slow = self.programme.solve("long cycle", Requirement(torque_limit=peak * (1.0 + _TIE)))
             if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
-                reference = self._combined(fast.energies, slow.energies)
+                reference = self._combine_to_cycle_time(fast.energies, slow.energies)
             else:
-                slow = self._renewed("peak torque", needs, self._reference(slow), prove=True)
-                slow = slow or self._renewed("peak torque", needs, self._slow_reference(fast, request), prove=True)
+                slow = self._solve_by_tangents("peak torque", needs, self._reference_energies(slow), prove=True)
+                slow = slow or self._solve_by_tangents(
+                    "peak torque", needs, self._slow_reference_energies(fast, request), prove=True
+                )
                 if slow is None:
                     return None
                 peak, reference = max(peak, slow.value), slow.energies
@@ -128,10 +130,10 @@ class _Search:
         calm = self.programme.solve("rms torque", needs) or fast
         if not self._too_fast(calm):
             return calm, None
-        slow = self._renewed("rms torque", needs, reference)
+        slow = self._solve_by_tangents("rms torque", needs, reference)
         return None if slow is None else (slow, calm)
 
-    def time_errors(self, law: MotionLaw) -> Array:
+    def simpson_time_errors(self, law: MotionLaw) -> Array:
         """Return the errors of the programme's time in each cell of a law, (n,), s."""
         turn = self.programme.turn
         if not law.node_energies.min() > 0.0:
@@ -152,24 +154,24 @@ class _Search:
             self.proofs.append((aim, needs, solution.multipliers))
         return solution
 
-    def _combined(self, fast: Array, slow: Array) -> Array:
+    def _combine_to_cycle_time(self, fast: Array, slow: Array) -> Array:
         """Return the convex combination of K with the cycle time, from one that takes less and one that takes more."""
         from scipy.optimize import brentq
 
-        def late(share: float) -> float:
+        def lateness(share: float) -> float:
             return self.programme.time(fast + share * (slow - fast)) - self.cycle_time
 
-        return np.asarray(fast + float(brentq(late, 0.0, 1.0, xtol=1e-15)) * (slow - fast))
+        return np.asarray(fast + float(brentq(lateness, 0.0, 1.0, xtol=1e-15)) * (slow - fast))
 
-    def _reference(self, slow: Solution | None) -> Array:
+    def _reference_energies(self, slow: Solution | None) -> Array:
         """Return K of a law near the best one: the guess, otherwise a slow one, otherwise constant speed."""
         if self.guess is not None:
             return np.stack([self.guess.energy(angles) for angles in self.programme.angles])
         if slow is not None:
             return slow.energies
-        return self._constant_speed
+        return self._constant_speed_energies
 
-    def _slow_reference(self, fast: Solution, request: LawRequest) -> Array:
+    def _slow_reference_energies(self, fast: Solution, request: LawRequest) -> Array:
         """Return K of a law with the cycle time, by torques above those of a faster law; otherwise of constant speed.
 
         The tangent of the time at a law is at most 1.5 times the law's own time, so no law satisfies it if that law is
@@ -180,16 +182,18 @@ class _Search:
             torque = min(2.0 * torque, most)
             slow = self.programme.solve("long cycle", Requirement(torque_limit=torque))
             if slow is not None and self.programme.time(slow.energies) >= self.cycle_time:
-                return self._combined(fast.energies, slow.energies)
+                return self._combine_to_cycle_time(fast.energies, slow.energies)
             if torque == most:
                 break
-        return self._constant_speed
+        return self._constant_speed_energies
 
     @property
-    def _constant_speed(self) -> Array:
+    def _constant_speed_energies(self) -> Array:
         return np.asarray(0.5 * self.programme.inertia * (TURN / self.cycle_time) ** 2)
 
-    def _renewed(self, aim: Aim, needs: Requirement, reference: Array, *, prove: bool = False) -> Solution | None:
+    def _solve_by_tangents(
+        self, aim: Aim, needs: Requirement, reference: Array, *, prove: bool = False
+    ) -> Solution | None:
         """Return the best law of at least the cycle time near a reference, by tangents of the time."""
         least = replace(needs, longest=None, least=self.cycle_time)
         last = None
@@ -198,7 +202,7 @@ class _Search:
             solution = self.programme.solve(aim, least)
             if solution is None:
                 break
-            least_change = max(_CONVERGED * abs(solution.value), _NOTHING * self.programme.size_of(aim))
+            least_change = max(_CONVERGED * abs(solution.value), _NOTHING * self.programme.objective_unit(aim))
             converged = last is not None and abs(last.value - solution.value) <= least_change
             last, reference = solution, solution.energies
             if converged:
@@ -208,7 +212,9 @@ class _Search:
         return last
 
 
-def _timed(turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None) -> tuple[MotionLaw, float, bool]:
+def _law_with_cycle_time(
+    turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None
+) -> tuple[MotionLaw, float, bool]:
     """Return the law with the cycle time, or at most that; the time that was missing; whether laws were combined."""
     law = MotionLaw.closed(turn, slow.torque, float(slow.energy[0]))
     request, cycle_time = limits.request, limits.cycle_time
@@ -237,11 +243,11 @@ def _with_period(law_of: Callable[[float], MotionLaw], first: float, last: float
     return law_of(float(brentq(lambda number: law_of(number).period - period, first, last, xtol=1e-15, rtol=1e-14)))
 
 
-def _excess(law: MotionLaw, limits: LawLimits) -> Margins:
+def _relative_excess(law: MotionLaw, limits: LawLimits) -> Margins:
     """Return the greatest relative excess of a law over limits at the nodes of each cell."""
     turn, energy = law.turn, law.node_energies
-    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
-    limit = limits.acceleration(turn.terms)
+    low, high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
+    limit = limits.acceleration_limit(turn.terms)
     by_node = [1.0 - energy / low, energy / high - 1.0, np.full(energy.shape, -1.0)]
     if limit is not None:
         by_node[2] = np.abs(law.node_torques - turn.terms.load + limit.by_energy * energy) / limit.greatest - 1.0

@@ -64,7 +64,7 @@ def assemble(
     finishing = run.stage_reporter(FINISHING)
     columns = columns_of(problem, variants, dimensions, finishing)
     columns[RESIDUAL] = residual
-    proven = (residual <= STATIONARY) & ~_on_unseen_kink(problem, variants, dimensions)
+    proven = (residual <= STATIONARY) & ~_on_partly_described_kink(problem, variants, dimensions)
     columns[STATUS] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
     message = f"{counted(len(best), 'design')}, {evaluated} evaluated"
@@ -86,7 +86,7 @@ def assemble(
     )
 
 
-def _on_unseen_kink(problem: Problem, variants: IntArray, dimensions: Array) -> Mask:
+def _on_partly_described_kink(problem: Problem, variants: IntArray, dimensions: Array) -> Mask:
     """Return which designs (n,) lie on a kink that their slopes describe only in part.
 
     For a formula with both kinds of kinks, such as a difference of peaks, slopes cover the kinks of one kind with the

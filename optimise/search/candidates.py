@@ -43,16 +43,16 @@ class Table:
         return replace(self, **{name: getattr(self, name)[rows] for name in self._columns()})
 
     def join(self, *tables: Table) -> Self:
-        """Return these rows with those of other tables below; see `stacked`."""
+        """Return these rows with those of other tables below; see `stack_rows`."""
         parts = (self, *tables)
-        return replace(self, **{name: stacked(*(getattr(part, name) for part in parts)) for name in self._columns()})
+        return replace(self, **{name: stack_rows(*(getattr(part, name) for part in parts)) for name in self._columns()})
 
-    def become(self, other: Self) -> None:
+    def replace_content(self, other: Self) -> None:
         """Replace this table's content by that of another table of the same kind."""
         vars(self).update(vars(other))
 
 
-def stacked(*parts: NDArray[Any]) -> NDArray[Any]:
+def stack_rows(*parts: NDArray[Any]) -> NDArray[Any]:
     """Return arrays stacked by rows; points with fewer columns are padded with zeros."""
     if parts[0].ndim == 2:
         width = max(part.shape[1] for part in parts)
@@ -66,7 +66,7 @@ def _pad_columns(part: NDArray[Any], width: int) -> NDArray[Any]:
     return padded
 
 
-def ragged(parts: Iterable[object]) -> NDArray[np.object_]:
+def object_array(parts: Iterable[object]) -> NDArray[np.object_]:
     """Return an array (n,) with one entry of any shape per design."""
     return np.fromiter(parts, dtype=np.object_)
 
@@ -90,11 +90,11 @@ class Candidates(Table):
         """Return no designs."""
         return cls(np.zeros(0, np.int64), np.zeros((0, 3)), np.zeros((0, objectives)), np.zeros(0, np.bool_))
 
-    def groups(self) -> list[Self]:
+    def feasible_and_infeasible(self) -> list[Self]:
         """Return the feasible designs and those to move onto the constraints, as separate groups."""
         return [group for group in (self[self.is_feasible], self[~self.is_feasible]) if len(group)]
 
-    def leading(self, column: int, count: int) -> IntArray:
+    def leading_rows(self, column: int, count: int) -> IntArray:
         """Return at most `count` rows that meet every constraint, and at most `count` others.
 
         The best in an objective come first, each at a distance from the better ones.
@@ -161,7 +161,7 @@ class FrontCandidates(Candidates):
         part = part[(part.violation <= FEASIBLE) & np.isfinite(part.values).all(axis=1)]
         branch, is_feasible = np.full(len(part), index), np.ones(len(part), np.bool_)
         columns = (branch, part.u, part.values * self.span, is_feasible, part.residual, part.goals, part.active)
-        self.become(self.join(FrontCandidates(*columns, span=self.span)))
+        self.replace_content(self.join(FrontCandidates(*columns, span=self.span)))
 
     @property
     def free(self) -> Mask:

@@ -96,7 +96,7 @@ class Checkpoints:
         require_records_of(past, self._identity)
         self.repeated, self.resumed = 0, len(past)
         self.ended: float | None = None
-        self._past = _decode_steps(self._gone_through(past))
+        self._past = _decode_steps(self._count_replayed(past))
         self._next = next(self._past, None)
         self.earlier_rounds = past[-1].rounds if past else 0
         self._number = len(past)
@@ -165,7 +165,7 @@ class Checkpoints:
         self._flush(ends=unreported)
         return unreported
 
-    def _gone_through(self, past: Sequence[Record]) -> Iterator[Record]:
+    def _count_replayed(self, past: Sequence[Record]) -> Iterator[Record]:
         """Yield records, and count those whose steps have all been replayed."""
         for record in past:
             yield record

@@ -26,7 +26,7 @@ from ...model.swing.work import work_of_loads
 from ...objectives.energy import DELIVERED_WORK
 from ..problem.problem import Problem
 from ..problem.remark import Change, Remark
-from .samples import samples
+from .samples import sampled_designs
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
@@ -37,12 +37,14 @@ _NAMED = 3
 """Maximum number of loads to name one by one."""
 
 
-def driven_by_loads(problem: Problem) -> list[str]:
+def driving_load_warnings(problem: Problem) -> list[str]:
     """Return the warning about loads that do positive net work on sampled designs of a problem, if any."""
-    return _load_warning(samples(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
+    return (
+        _load_warning(sampled_designs(problem), "sampled design") if any(map(_may_be_driven, problem.parts())) else []
+    )
 
 
-def front_driven_by_loads(front: ParetoFront) -> list[str]:
+def front_driving_load_warnings(front: ParetoFront) -> list[str]:
     """Return the warning about loads that do positive net work on designs of a front, if any."""
     variants = front.variants or (0,) * len(front)
     rows = [

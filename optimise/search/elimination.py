@@ -28,7 +28,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.restatement import restate
 from .elimination_rule import Rule
-from .linear_rules import NOTHING, Block, blocks, linear_equations, solution, target_of
+from .linear_rules import NOTHING, Block, blocks, evaluate_linear_rule, linear_equations, solve_for_target
 from .swing_rules import swing_rules
 
 _LINEAR = "linear: "
@@ -46,11 +46,11 @@ class ClosedRule(Rule):
 
 
 class LinearRule(Rule):
-    """A rule from a set of linear equalities. wanted: numbers from `linear_rules.solution`."""
+    """A rule from a set of linear equalities. wanted: numbers from `linear_rules.solve_for_target`."""
 
     def formula(self, *sources: Any) -> Any:
         """Return the target computed from the sources."""
-        return target_of(*self.values, *sources)
+        return evaluate_linear_rule(*self.values, *sources)
 
 
 @dataclass(frozen=True)
@@ -128,20 +128,20 @@ def elimination_branches(problem: Problem, *, eliminate: bool = True) -> tuple[E
     that sign.
     """
     parts = problem.parts()
-    require_slow_side(problem, parts)
+    require_offset_for_slow_stroke(problem, parts)
     branches = (
         replace(branch, steps=steps)
         for variant, part in enumerate(parts)
-        for sign, offset in signs(part)
+        for sign, offset in offset_signs(part)
         for branch in [_eliminate(part, sign, offset, eliminate=eliminate, variant=variant)]
         for steps in itertools.product(*(step.solutions for step in branch.steps))
     )
     return tuple(sorted(branches, key=lambda branch: not branch.free))
 
 
-def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
+def require_offset_for_slow_stroke(problem: Problem, parts: tuple[Problem, ...]) -> None:
     """Raise `InfeasibleError` if no offset within the range of any part gives the required slow stroke."""
-    if any(signs(part) for part in parts):
+    if any(offset_signs(part) for part in parts):
         return
     part = parts[0]
     side = part.slow_side()
@@ -156,7 +156,7 @@ def require_slow_side(problem: Problem, parts: tuple[Problem, ...]) -> None:
     )
 
 
-def signs(problem: Problem) -> list[tuple[float, Range]]:
+def offset_signs(problem: Problem) -> list[tuple[float, Range]]:
     """Return the signs that the offset may have, each with the range of its magnitude."""
     lower, upper = problem.offset.lower, problem.offset.upper
     signed = []
@@ -254,7 +254,7 @@ def _rule_orders(computed: set[str], rules: list[Rule], steps: tuple[Rule, ...] 
 def _linear_rules(block: Block) -> Iterator[LinearRule]:
     """Yield the rules from solved linear equalities, one for each target."""
     for target, row in zip(block.targets, block.rows, strict=True):
-        yield LinearRule(f"{_LINEAR}{target}", target, *solution(row, target))
+        yield LinearRule(f"{_LINEAR}{target}", target, *solve_for_target(row, target))
 
 
 def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
@@ -291,7 +291,7 @@ def _excess_angle(ratio: float) -> tuple[float, float]:
     return math.sin(b), math.cos(b)
 
 
-def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
+def _crank_from_stroke_and_ratio(stroke: float, ratio: float, l: Any) -> Any:
     """Return the crank from the cosine rule in the triangle of crank pivot and dead centres.
 
     l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2.
@@ -300,13 +300,13 @@ def _crank_of_pair(stroke: float, ratio: float, l: Any) -> Any:
     return np.sqrt((0.5 * stroke**2 - l * l * (1.0 - cosine)) / (1.0 + cosine))
 
 
-def _rod_of_pair(stroke: float, ratio: float, r: Any) -> Any:
+def _rod_from_stroke_and_ratio(stroke: float, ratio: float, r: Any) -> Any:
     """Return the rod from the same rule."""
     cosine = _excess_angle(ratio)[1]
     return np.sqrt((0.5 * stroke**2 - r * r * (1.0 + cosine)) / (1.0 - cosine))
 
 
-def _offset_of_ratio(ratio: float, r: Any, l: Any) -> Any:
+def _offset_from_ratio(ratio: float, r: Any, l: Any) -> Any:
     return geometry.offset_from_excess_angle(r, l, *_excess_angle(ratio))
 
 
@@ -319,14 +319,14 @@ _FORMULAS: dict[tuple[str, str], tuple[tuple[str, ...], Callable[..., Any]]] = {
     (TRANSMISSION_ANGLE.name, "rod"): (("crank", "offset"), lambda mu, r, a: (r + a) / math.cos(mu)),
     (TRANSMISSION_ANGLE.name, "crank"): (("rod", "offset"), lambda mu, l, a: math.cos(mu) * l - a),
     (TRANSMISSION_ANGLE.name, "offset"): (("crank", "rod"), lambda mu, r, l: math.cos(mu) * l - r),
-    (_PAIRS[TIME_RATIO.name], "crank"): (("rod",), _crank_of_pair),
-    (_PAIRS[TIME_RATIO.name], "rod"): (("crank",), _rod_of_pair),
-    (TIME_RATIO.name, "offset"): (("crank", "rod"), _offset_of_ratio),
+    (_PAIRS[TIME_RATIO.name], "crank"): (("rod",), _crank_from_stroke_and_ratio),
+    (_PAIRS[TIME_RATIO.name], "rod"): (("crank",), _rod_from_stroke_and_ratio),
+    (TIME_RATIO.name, "offset"): (("crank", "rod"), _offset_from_ratio),
     (STROKE.name, "crank"): (("rod", "offset"), geometry.crank_from_stroke),
     (STROKE.name, "rod"): (("crank", "offset"), geometry.rod_from_stroke),
     (STROKE.name, "offset"): (("crank", "rod"), geometry.offset_from_stroke),
-    (_PAIRS[CRANK_ANGLE_RATIO.name], "crank"): (("rod",), _crank_of_pair),
-    (_PAIRS[CRANK_ANGLE_RATIO.name], "rod"): (("crank",), _rod_of_pair),
-    (CRANK_ANGLE_RATIO.name, "offset"): (("crank", "rod"), _offset_of_ratio),
+    (_PAIRS[CRANK_ANGLE_RATIO.name], "crank"): (("rod",), _crank_from_stroke_and_ratio),
+    (_PAIRS[CRANK_ANGLE_RATIO.name], "rod"): (("crank",), _rod_from_stroke_and_ratio),
+    (CRANK_ANGLE_RATIO.name, "offset"): (("crank", "rod"), _offset_from_ratio),
 }
 """By requirements and target: the sources, and the formula for the target from the required values and the sources."""

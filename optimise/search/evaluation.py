@@ -53,7 +53,7 @@ class Evaluator:
         self.mechanism = problem.mechanism
         self.dimension = len(branch.free)
         remaining = [
-            self._off_excluded_end(restate(problem, c))
+            self._move_off_excluded_end(restate(problem, c))
             for c in constraints_of(problem)
             if c.quantity not in branch.eliminated
         ]
@@ -76,7 +76,7 @@ class Evaluator:
             quantity = self._quantities[name] = self.problem.quantity(name)
         return quantity
 
-    def _off_excluded_end(self, constraint: Constraint) -> Constraint:
+    def _move_off_excluded_end(self, constraint: Constraint) -> Constraint:
         """Return a constraint with its lower bound moved off an excluded end of the domain, where the linkage locks."""
         domain = self.quantity(constraint.quantity).domain
         if domain is None or domain.idle or not domain.open or constraint.lower != domain.lower:
@@ -97,13 +97,13 @@ class Evaluator:
         """
         dimensions = self.branch.dimensions(u)
         rows, values, violation = self.step(
-            "screening", (u, np.array([band])), lambda: self._screened(dimensions, band)
+            "screening", (u, np.array([band])), lambda: self._screen_designs(dimensions, band)
         )
         objectives = np.full((len(u), len(self.problem.objectives)), np.nan)
         objectives[rows] = values
         return dimensions, objectives, violation
 
-    def _screened(self, dimensions: Array, band: float) -> tuple[IntArray, Array, Array]:
+    def _screen_designs(self, dimensions: Array, band: float) -> tuple[IntArray, Array, Array]:
         """Return the rows (r,) of designs with objectives, their objectives (r, m), and the violation (n,) of all."""
         self.checkpoints.poll()
         violation = self._geometry_violation(dimensions)
@@ -113,13 +113,15 @@ class Evaluator:
             constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
-                values_by_quantity = self._quick([constraint.quantity for constraint in constraints], dimensions[rows])
+                values_by_quantity = self._screened_values(
+                    [constraint.quantity for constraint in constraints], dimensions[rows]
+                )
                 for constraint, values in zip(constraints, values_by_quantity, strict=True):
                     violation[rows] = np.maximum(violation[rows], violated_by(constraint, values))
         rows = np.flatnonzero(violation <= band + FEASIBLE)
         objectives = np.zeros((len(rows), len(self.problem.objectives)))
         if len(rows):
-            values_by_quantity = self._quick(
+            values_by_quantity = self._screened_values(
                 [objective.quantity for objective in self.problem.objectives], dimensions[rows]
             )
             for column, (objective, values) in enumerate(zip(self.problem.objectives, values_by_quantity, strict=True)):
@@ -128,7 +130,7 @@ class Evaluator:
         violation[rows[~has_objectives]] = np.inf
         return rows[has_objectives], objectives[has_objectives], violation
 
-    def _quick(self, names: list[str], dimensions: Array) -> list[Array]:
+    def _screened_values(self, names: list[str], dimensions: Array) -> list[Array]:
         parts: list[list[Array]] = self.chunked(screen_quantities, tuple(names), dimensions)
         return (
             [np.concatenate(chunk_values) for chunk_values in zip(*parts, strict=True)] if len(parts) > 1 else parts[0]
@@ -158,12 +160,12 @@ class Evaluator:
 
     # ---- exact: for the polish and the proof ---------------------------------------------------------------------
 
-    def valid(self, u: Array) -> Mask:
+    def can_evaluate(self, u: Array) -> Mask:
         """Return which points give a linkage that rotates fully, or makes the problem's swing."""
         return np.isfinite(self._geometry_violation(self.branch.dimensions(u)))
 
-    def light_violation(self, u: Array) -> Array:
-        """Return the greatest violation (n,) of requirements that need no cycle, for points where `valid` holds."""
+    def violation_without_cycle(self, u: Array) -> Array:
+        """Return the greatest violation (n,) of requirements that need no cycle, where `can_evaluate` holds."""
         dimensions = self.branch.dimensions(u)
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
@@ -173,8 +175,8 @@ class Evaluator:
                 violation = np.maximum(violation, violated_by(constraint, values))
         return violation
 
-    def exact(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
-        """Return objective rows, empty unless requested, and constraint rows for points where `valid` holds.
+    def exact_rows(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:
+        """Return objective rows, empty unless requested, and constraint rows for points where `can_evaluate` holds.
 
         Gradients are with respect to the coordinates of the unit box.
         """
@@ -198,7 +200,7 @@ class Evaluator:
         for index, constraint in enumerate(self.constraints):
             quantity_pieces = pieces[constraint.quantity]
             parts += [
-                (index, _excess_pieces(_binding_pieces(quantity_pieces, side[0]), *side)) for side in sides(constraint)
+                (index, _excess_pieces(_deciding_pieces(quantity_pieces, side[0]), *side)) for side in sides(constraint)
             ]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = DIMENSIONS.index(name)
@@ -236,10 +238,10 @@ def _range_sides(bounds: Range) -> list[Side]:
 
 
 def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
-    low = _binding_pieces(pieces, 1.0)
+    low = _deciding_pieces(pieces, 1.0)
     if objective.sense == "minimise":
         return [low]
-    top = _binding_pieces(pieces, -1.0)
+    top = _deciding_pieces(pieces, -1.0)
     if objective.target is None:
         # An infinite value is out of reach, not an optimum; in the least of pieces, infinite ones are absent.
         is_finite = np.isfinite(top.values)
@@ -253,7 +255,7 @@ def _excess_pieces(pieces: Pieces, side: float, bound: float, scale: float = 1.0
     return Pieces(excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
-def _binding_pieces(pieces: Pieces, side: float) -> Pieces:
+def _deciding_pieces(pieces: Pieces, side: float) -> Pieces:
     """Return the pieces that must stay low (side 1) or high (-1) for the quantity to do so.
 
     A minimum of pieces stays low by its lowest piece alone, a maximum stays high by its highest: the other pieces are

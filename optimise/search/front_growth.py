@@ -16,7 +16,7 @@ _LEAST_SIDE = 0.1  # relative to the best value: minimum side of the box if the 
 _OF_TARGET = 0.01  # the same for a target, because designs that meet it differ by rounding
 
 
-class Growth:
+class FrontVolume:
     """Volume that the designs found so far dominate.
 
     It is measured from a fixed corner in boxes of fixed size, so it only grows as more designs are found. If there are

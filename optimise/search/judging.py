@@ -66,7 +66,7 @@ def join_batches(parts: list[list[Pieces]]) -> list[Pieces]:
 def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
     widest, least = max(part.values.shape[1] for part in parts), parts[0].least
 
-    def rows(columns: list[Array], absent: float = 0.0) -> Array:
+    def stack_columns(columns: list[Array], absent: float = 0.0) -> Array:
         padding = [[(0, 0), (0, widest - column.shape[1]), *[(0, 0)] * (column.ndim - 2)] for column in columns]
         filled = [
             np.pad(column, widths, constant_values=absent) for column, widths in zip(columns, padding, strict=True)
@@ -75,9 +75,9 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
 
     opposite = [_opposite_pieces(part) for part in parts] if any(part.opposite for part in parts) else []
     return Pieces(
-        rows([part.values for part in parts], np.inf if least else -np.inf),
-        rows([part.gradients for part in parts]),
-        rows([part.labels for part in parts]),
+        stack_columns([part.values for part in parts], np.inf if least else -np.inf),
+        stack_columns([part.gradients for part in parts]),
+        stack_columns([part.labels for part in parts]),
         least,
         _join_pieces(opposite) if opposite else None,
     )

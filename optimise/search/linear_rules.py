@@ -90,16 +90,16 @@ def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Bl
             yield Block(tuple(origins), targets, solved)
 
 
-def solution(row: Linear, target: str) -> tuple[tuple[str, ...], tuple[float, ...]]:
-    """Return the sources of a target, and the numbers that `target_of` needs: factors, constant and divisor."""
+def solve_for_target(row: Linear, target: str) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """Return a target's sources, and the numbers for `evaluate_linear_rule`: factors, constant and divisor."""
     factors = dict(row.factors)
     divisor = factors.pop(target)
     numbers = [*(-factor for factor in factors.values()), -row.constant, divisor]
     return tuple(factors), tuple(float(number) for number in numbers)
 
 
-def target_of(*numbers: Any) -> Any:
-    """Return a target from the numbers of `solution`, followed by its sources."""
+def evaluate_linear_rule(*numbers: Any) -> Any:
+    """Return a target from the numbers of `solve_for_target`, followed by its sources."""
     count = (len(numbers) - 2) // 2
     *factors, constant, divisor = numbers[: count + 2]
     total: Any = 0.0

@@ -14,14 +14,14 @@ from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ..problem.problem import Problem
 from ..problem.remark import Change, Remark
-from .elimination import signs
-from .samples import samples
+from .elimination import offset_signs
+from .samples import sampled_designs
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
 
 
-def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
+def stroke_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
     """Return the warnings for a problem: fast loaded strokes within its ranges, and excluded offsets.
 
     The first applies only if the problem requires no slow stroke, the second only if it does. certain: whether to warn
@@ -30,9 +30,9 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
     if problem.motion is not None:  # forward and return strokes differ only in their drive
         return []
     if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # this saves sampling
-        return _offset_warnings(problem)
+        return _excluded_offset_warnings(problem)
     fast, turning, sides = 0, 0, []
-    for part, designs in samples(problem):
+    for part, designs in sampled_designs(problem):
         if part.slow_stroke is not None or not len(designs):
             continue
         linkage = Linkage(designs[:, 0], designs[:, 1], designs[:, 2], part.mechanism.branch)
@@ -42,12 +42,12 @@ def expected_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
         fast, turning = fast + int(is_fast.sum()), turning + int((_is_one_stroke(slow) & _is_one_stroke(loaded)).sum())
         sides += [str(stroke) for stroke in loaded[is_fast]]
     if not fast or (certain and fast < turning):
-        return _offset_warnings(problem)
+        return _excluded_offset_warnings(problem)
     extent = "in every sampled design" if fast == turning else "in some sampled designs"
-    return [*_offset_warnings(problem), _fast_stroke_warning(problem, extent, sides)]
+    return [*_excluded_offset_warnings(problem), _fast_stroke_warning(problem, extent, sides)]
 
 
-def front_warnings(front: ParetoFront) -> list[str]:
+def front_stroke_warnings(front: ParetoFront) -> list[str]:
     """Return the warnings for a front: fast loaded strokes of its designs, and excluded offsets."""
     if not len(front):
         return []
@@ -57,16 +57,16 @@ def front_warnings(front: ParetoFront) -> list[str]:
     slow, loaded = (front.columns[name] for name in ("slow_stroke", "loaded_stroke"))
     is_fast = free & _has_fast_load(slow, loaded)
     if not is_fast.any():
-        return _offset_warnings(front.problem)
+        return _excluded_offset_warnings(front.problem)
     count = int(is_fast.sum())
     extent = f"in {count} of {len(front)} designs" if len(front) > 1 else "in this design"
     return [
-        *_offset_warnings(front.problem),
+        *_excluded_offset_warnings(front.problem),
         _fast_stroke_warning(front.problem, extent, [str(stroke) for stroke in loaded[is_fast]]),
     ]
 
 
-def _offset_warnings(problem: Problem) -> list[str]:
+def _excluded_offset_warnings(problem: Problem) -> list[str]:
     """Return the warning about a slow stroke that excludes the larger part of a range of offsets."""
     for part in problem.parts():
         side, lower, upper = part.slow_side(), part.offset.lower, part.offset.upper
@@ -99,7 +99,7 @@ def _is_one_stroke(strokes: NDArray[np.str_]) -> Mask:
 
 def _fast_stroke_warning(problem: Problem, extent: str, loaded: list[str]) -> str:
     stroke: SlowStroke = "outward" if 2 * loaded.count("outward") >= len(loaded) else "inward"
-    has = any(signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
+    has = any(offset_signs(replace(part, slow_stroke=stroke)) for part in problem.parts())
     turn = "" if has else ", with the opposite sign of the offset or direction of rotation"
     opposite = "inward" if stroke == "outward" else "outward"
     required = stroke if has else opposite

@@ -70,7 +70,12 @@ def _wider_and_narrower(
 def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
     machine = part.mechanism.fullest
-    if any(map(_may_differ, part.own)) or machine.gravity[1] or machine.acceleration or machine.friction.acts:
+    if (
+        any(map(_may_distinguish_mirror_images, part.own))
+        or machine.gravity[1]
+        or machine.acceleration
+        or machine.friction.acts
+    ):
         return True
     if is_shaft(part.mechanism):
         return True
@@ -93,7 +98,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
     )
 
 
-def _may_differ(quantity: Quantity) -> bool:
+def _may_distinguish_mirror_images(quantity: Quantity) -> bool:
     """Whether a quantity may distinguish offsets e and -e where random designs do not.
 
     All custom quantities of a job may, except formulas without the offset's sign.
@@ -101,7 +106,7 @@ def _may_differ(quantity: Quantity) -> bool:
     if quantity.constant:
         return False
     if isinstance(quantity, FormulaQuantity):
-        return quantity.has_signed_offset or any(map(_may_differ, quantity.parts))
+        return quantity.has_signed_offset or any(map(_may_distinguish_mirror_images, quantity.parts))
     return QUANTITIES.get(quantity.name) != quantity
 
 

@@ -40,17 +40,17 @@ class Rows:
         self.labels[row] = replacement.labels[source]
 
 
-def greatest(rows: Rows, count: int) -> Array:
+def greatest_pieces(rows: Rows, count: int) -> Array:
     """Return the greatest piece of each owner, (..., count)."""
     return np.stack([rows.values[..., rows.owner == owner].max(axis=-1) for owner in range(count)], axis=-1)
 
 
-def alone(rows: Rows, row: int | slice) -> Rows:
+def rows_of_designs(rows: Rows, row: int | slice) -> Rows:
     """Return the rows of one design, or of several."""
     return Rows(rows.values[row], rows.gradients[row], rows.labels[row], rows.owner)
 
 
-def box(u: Array, *, tolerance: float = ACTIVE) -> Array:
+def active_bound_normals(u: Array, *, tolerance: float = ACTIVE) -> Array:
     """Return the gradients of the box's active bounds."""
     edge = np.eye(len(u))
     return np.concatenate([-edge[u < tolerance], edge[u > 1.0 - tolerance]])
@@ -66,7 +66,7 @@ def active_pieces(goals: Rows, chosen: tuple[int, ...], *, tolerance: float = AC
     return np.concatenate(pieces)
 
 
-def partners(rows: Rows, others: Rows, columns: IntArray) -> tuple[IntArray, Mask]:
+def matching_rows(rows: Rows, others: Rows, columns: IntArray) -> tuple[IntArray, Mask]:
     """Return the rows of other designs (..., p) that match rows (p,) of one design, and whether they exist.
 
     Rows match by label, because peaks may swap their order. Rows of one owner with equal labels (lower and upper bound)
@@ -82,13 +82,13 @@ def partners(rows: Rows, others: Rows, columns: IntArray) -> tuple[IntArray, Mas
     return rank.argmin(axis=-1), near.any(axis=-1)
 
 
-def difference(rows: Rows, others: Rows, weight: Array) -> Array:
+def weighted_gradient_change(rows: Rows, others: Rows, weight: Array) -> Array:
     """Return the weighted change of gradients (n, k) from one design to n others."""
     n = len(others.values)
     total, columns = np.zeros((n, rows.gradients.shape[1])), np.flatnonzero(weight > 0.0)
     if not len(columns):
         return total
-    twins, is_matched = partners(rows, others, columns)
+    twins, is_matched = matching_rows(rows, others, columns)
     changes = weight[columns, None] * (others.gradients[np.arange(n)[:, None], twins] - rows.gradients[columns])
     if not is_matched.all():
         changes = np.where(is_matched[..., None], changes, 0.0)
@@ -97,13 +97,13 @@ def difference(rows: Rows, others: Rows, weight: Array) -> Array:
     return total
 
 
-def bent(rows: Rows, end_rows: Rows, step: Array) -> Array:
+def values_corrected_for_curvature(rows: Rows, end_rows: Rows, step: Array) -> Array:
     """Return values such that the linearised rows agree with the true rows at the end of a step."""
     values = rows.values.copy()
     columns = np.flatnonzero(np.isfinite(values))
     if len(columns):
         for index, twin, is_matched in zip(
-            columns.tolist(), *(array.tolist() for array in partners(rows, end_rows, columns)), strict=True
+            columns.tolist(), *(array.tolist() for array in matching_rows(rows, end_rows, columns)), strict=True
         ):
             if is_matched:
                 values[index] = end_rows.values[twin] - rows.gradients[index] @ step

@@ -22,9 +22,18 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, row_lengths
 from ..front.stationarity import multipliers, multipliers_with_positive_weights
-from .candidates import Polished, ragged
-from .pieces import ACTIVE, Rows, active_pieces, alone, bent, box, difference, greatest
-from .polish_programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, roots, solve_step
+from .candidates import Polished, object_array
+from .pieces import (
+    ACTIVE,
+    Rows,
+    active_bound_normals,
+    active_pieces,
+    greatest_pieces,
+    rows_of_designs,
+    values_corrected_for_curvature,
+    weighted_gradient_change,
+)
+from .polish_programme import FIRM, LOSS, ROUNDING, VIOLATION, Aim, Step, solve_step, transposed_inverse_roots
 
 ITERATIONS = 100
 CONVERGED = 1e-9
@@ -46,11 +55,11 @@ _RESTORING = 12  # steps onto the constraints; Newton's method needs 3 to 6
 class Evaluates(Protocol):
     """The part of an evaluator that the polish needs."""
 
-    def valid(self, u: Array) -> Mask:
+    def can_evaluate(self, u: Array) -> Mask:
         """Return which points can be evaluated."""
         ...
 
-    def exact(self, u: Array) -> tuple[Rows, Rows]:
+    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
         """Return objective rows and constraint rows."""
         ...
 
@@ -76,7 +85,7 @@ def polish(
     if best_in is not None:
         batch.loss[np.arange(len(start)), best_in] = FIRM
     if iterations != 0:
-        batch.restore()
+        batch.move_onto_constraints()
     for _ in range(iterations or 0):
         if not batch.advance():
             break
@@ -98,7 +107,7 @@ class _Batch:
         self.weight = np.full(n, VIOLATION)
         self.loss = np.full((n, len(scale)), LOSS)
         self.roots = np.tile(np.eye(k), (n, 1, 1))
-        """Roots of the Hessians; see `polish_programme.roots`."""
+        """Roots of the Hessians; see `polish_programme.transposed_inverse_roots`."""
         self._begin()
         self.safe = np.where(self._feasible()[:, None], self.u, np.nan)
 
@@ -108,22 +117,22 @@ class _Batch:
         self.stalls = np.zeros(n, dtype=np.int64)
         self.radius = np.full(n, 0.25)
         self.moved = np.ones(n, dtype=bool)
-        self.held = greatest(self.goals, len(self.scale))
+        self.held = greatest_pieces(self.goals, len(self.scale))
 
-    def restore(self) -> None:
+    def move_onto_constraints(self) -> None:
         """Move designs that violate constraints onto them by the shortest step."""
         for _ in range(_RESTORING):
             outside = np.flatnonzero(self.open & ~self._feasible())
             if not len(outside):
                 break
             steps = [self._programme(row, ()).move for row in outside.tolist()]
-            self._search(outside, np.array(steps), (), correct=False)
+            self._take_steps(outside, np.array(steps), (), correct=False)
         self._begin()
 
     def advance(self) -> bool:
         """Take one step with every open design; return whether any was open."""
         for row in np.flatnonzero(self.open & self.moved & self._feasible()).tolist():
-            if self._residual(row) < CONVERGED:
+            if self._benson_residual(row) < CONVERGED:
                 self.open[row] = False
         rows = np.flatnonzero(self.open)
         if not len(rows):
@@ -132,13 +141,13 @@ class _Batch:
         if len(fresh):
             # The multipliers that the Hessian needs hardly depend on it, so those from the previous programme suffice.
             drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
-            self.roots[fresh] = roots(self._hessians(fresh, drafts))
+            self.roots[fresh] = transposed_inverse_roots(self._hessians(fresh, drafts))
         steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
-        self._search(rows, np.array(steps), self.chosen, correct=True)
+        self._take_steps(rows, np.array(steps), self.chosen, correct=True)
         self.open &= self.stalls < 2
         feasible = rows[self._feasible()[rows]]
         self.safe[feasible] = self.u[feasible]
-        self.held[feasible] = greatest(self.goals, len(self.scale))[feasible]
+        self.held[feasible] = greatest_pieces(self.goals, len(self.scale))[feasible]
         return True
 
     def result(self) -> Polished:
@@ -154,20 +163,22 @@ class _Batch:
         moved = tuple(owner for owner in range(m) if owner not in self.goals.constant)
         chosen = tuple(owner for owner in self.chosen if owner in moved) or self.chosen
         for row in range(n):
-            design_goals, edge = alone(self.goals, row), alone(self.limits, row)
+            design_goals, edge = rows_of_designs(self.goals, row), rows_of_designs(self.limits, row)
             columns = active_pieces(design_goals, moved)
             pieces.append((design_goals.owner[columns].astype(np.float64), design_goals.gradients[columns]))
-            active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], box(self.u[row])]))
+            active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], active_bound_normals(self.u[row])]))
             chosen_pieces = active_pieces(design_goals, chosen)
             residual[row], _, _ = multipliers(design_goals.gradients[chosen_pieces], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
-        return Polished(self.u, greatest(self.goals, m), violation, residual, ragged(pieces), ragged(active))
+        return Polished(
+            self.u, greatest_pieces(self.goals, m), violation, residual, object_array(pieces), object_array(active)
+        )
 
     def _feasible(self) -> Mask:
         return np.asarray(self.limits.values.max(axis=1, initial=0.0) <= ROUNDING)
 
     def _evaluate(self, u: Array) -> tuple[Rows, Rows]:
-        goals, limits = self.evaluator.exact(u)
+        goals, limits = self.evaluator.exact_rows(u)
         factor = 1.0 / self.scale[goals.owner]
         return replace(goals, values=goals.values * factor, gradients=goals.gradients * factor[:, None]), limits
 
@@ -176,18 +187,20 @@ class _Batch:
         self.goals.overwrite(row, goals, source)
         self.limits.overwrite(row, limits, source)
 
-    def _residual(self, row: int) -> float:
+    def _benson_residual(self, row: int) -> float:
         """Return the residual of Benson's problem; only fully active rows count, so that the polish reaches them."""
-        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        goals, limits = rows_of_designs(self.goals, row), rows_of_designs(self.limits, row)
         pieces = active_pieces(goals, self.chosen, tolerance=_TIGHT)
-        edges = np.concatenate([limits.gradients[limits.values > -_TIGHT], box(self.u[row], tolerance=_TIGHT)])
+        edges = np.concatenate(
+            [limits.gradients[limits.values > -_TIGHT], active_bound_normals(self.u[row], tolerance=_TIGHT)]
+        )
         return multipliers_with_positive_weights(
             goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold
         )[0]
 
     def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
-        goals, limits = alone(self.goals, row), alone(self.limits, row)
+        goals, limits = rows_of_designs(self.goals, row), rows_of_designs(self.limits, row)
         first = step = self._solve(row, goals, limits, chosen)
         light = self.weight[row]
         while chosen and step.limits.sum() >= 0.5 * self.weight[row] and self.weight[row] < _HEAVIEST:
@@ -221,25 +234,31 @@ class _Batch:
         # All coordinates form one batch, because overhead dominates when there are few designs.
         still = np.tile(u, (k, 1))
         moved = still + (np.eye(k)[:, None, :] * steps).reshape(k * n, k)
-        goals, limits = self._evaluate(np.where(self.evaluator.valid(moved)[:, None], moved, still))
+        goals, limits = self._evaluate(np.where(self.evaluator.can_evaluate(moved)[:, None], moved, still))
         for i, (row, draft) in enumerate(zip(rows.tolist(), drafts, strict=True)):
-            design_goals, edge, at = alone(self.goals, row), alone(self.limits, row), slice(i, None, n)
-            change = difference(
-                design_goals, alone(goals, at), np.minimum(draft.goals, self.loss[row, design_goals.owner])
+            design_goals, edge, at = (
+                rows_of_designs(self.goals, row),
+                rows_of_designs(self.limits, row),
+                slice(i, None, n),
             )
-            change = change + difference(edge, alone(limits, at), np.minimum(draft.limits, _HEAVIEST))
+            change = weighted_gradient_change(
+                design_goals, rows_of_designs(goals, at), np.minimum(draft.goals, self.loss[row, design_goals.owner])
+            )
+            change = change + weighted_gradient_change(
+                edge, rows_of_designs(limits, at), np.minimum(draft.limits, _HEAVIEST)
+            )
             hessians[i] = change / steps[i, :, None]
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
-        return np.stack([convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
+        return np.stack([make_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
-    def _search(self, rows: IntArray, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+    def _take_steps(self, rows: IntArray, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
         """Take the steps that lower the merit, corrected if necessary; shrink the radius for the others.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.
         """
         m, columns = len(self.scale), list(chosen)
-        before, limits_to_hold = greatest(self.goals, m)[:, columns], self.held[:, columns]
-        violation = _clear_rounding(self.limits.values.max(axis=1, initial=0.0))
+        before, limits_to_hold = greatest_pieces(self.goals, m)[:, columns], self.held[:, columns]
+        violation = _zero_below_rounding(self.limits.values.max(axis=1, initial=0.0))
         self.moved[rows] = False
         pending = np.arange(len(rows))
         steps = steps.copy()
@@ -247,14 +266,16 @@ class _Batch:
         for left in range(passes, 0, -1):
             at = rows[pending]
             trial = np.clip(self.u[at] + steps[pending], 0.0, 1.0)
-            valid = self.evaluator.valid(trial)
+            valid = self.evaluator.can_evaluate(trial)
             trial = np.where(valid[:, None], trial, self.u[at])
             goals, limits = self._evaluate(trial)
-            after = greatest(goals, m)[:, columns]
+            after = greatest_pieces(goals, m)[:, columns]
             # Infinite before and after (rod / offset at 0), the merit is undefined and the step is not accepted.
             with np.errstate(invalid="ignore"):
-                loss = _clear_rounding(after - limits_to_hold[at]) - _clear_rounding(before[at] - limits_to_hold[at])
-                worse = _clear_rounding(limits.values.max(axis=1, initial=0.0)) - violation[at]
+                loss = _zero_below_rounding(after - limits_to_hold[at]) - _zero_below_rounding(
+                    before[at] - limits_to_hold[at]
+                )
+                worse = _zero_below_rounding(limits.values.max(axis=1, initial=0.0)) - violation[at]
                 penalty = self.loss[at][:, columns] * loss if self.hold else 0.0
                 merit = (after - before[at] + penalty).sum(axis=1) + self.weight[at] * worse
             distance = np.abs(trial - self.u[at]).max(axis=1)
@@ -269,8 +290,8 @@ class _Batch:
                 self.stalls[row] = self.stalls[row] + 1 if merit[i] > -_STALLED else 0
             if left > 1:
                 for i in np.flatnonzero(~accepted & valid).tolist():
-                    steps[pending[i]] = self._corrected(
-                        int(at[i]), steps[pending[i]], alone(goals, i), alone(limits, i), chosen
+                    steps[pending[i]] = self._second_order_step(
+                        int(at[i]), steps[pending[i]], rows_of_designs(goals, i), rows_of_designs(limits, i), chosen
                     )
             pending = pending[~accepted]
             if not len(pending):
@@ -281,19 +302,22 @@ class _Batch:
         self.radius[lost] = 0.25 * np.minimum(self.radius[lost], size)
         self.open[lost] &= self.radius[lost] > _SHORTEST
 
-    def _corrected(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
+    def _second_order_step(self, row: int, step: Array, goals: Rows, limits: Rows, chosen: tuple[int, ...]) -> Array:
         """Return the step that also holds rows from which the first one curves away.
 
         rows: the rows at the first step's end.
         """
         goals, limits = [
-            replace(present, values=bent(present, trial_rows, step))
-            for present, trial_rows in ((alone(self.goals, row), goals), (alone(self.limits, row), limits))
+            replace(present, values=values_corrected_for_curvature(present, trial_rows, step))
+            for present, trial_rows in (
+                (rows_of_designs(self.goals, row), goals),
+                (rows_of_designs(self.limits, row), limits),
+            )
         ]
         return self._solve(row, goals, limits, chosen).move
 
 
-def convex(hessian: Array, normals: Array) -> Array:
+def make_convex(hessian: Array, normals: Array) -> Array:
     """Return a positive definite matrix that agrees with the Hessian along the active rows, if possible."""
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
@@ -320,5 +344,5 @@ def _violation_after(limits: Rows, move: Array) -> float:
     return float(np.max(limits.values[near] + limits.gradients[near] @ move, initial=0.0))
 
 
-def _clear_rounding(excess: Array) -> Array:
+def _zero_below_rounding(excess: Array) -> Array:
     return np.maximum(excess - ROUNDING, 0.0)

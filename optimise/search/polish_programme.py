@@ -66,7 +66,7 @@ class Aim(NamedTuple):
 def solve_step(u: Array, goals: Rows, limits: Rows, root: Array, *, radius: float, violation: float, aim: Aim) -> Step:
     """Return the step from u (k,) with one design's rows; a zero step if the programme cannot be solved.
 
-    root: transposed inverse of L with B = L L', see `roots`. violation: C.
+    root: transposed inverse of L with B = L L', see `transposed_inverse_roots`. violation: C.
 
     With B = L L' and x = (L' d, t + 1, K v + 1, C w + 1), the programme becomes min |x|^2 / 2 subject to G x >= h, and
     its dual is a non-negative least-squares problem (Lawson and Hanson, "Solving Least Squares Problems", 1974, ch.
@@ -123,7 +123,7 @@ def _identity(size: int) -> Array:
     return np.eye(size)
 
 
-def roots(hessians: Array) -> Array:
+def transposed_inverse_roots(hessians: Array) -> Array:
     """Return the transposed inverses (n, k, k) of L for positive definite matrices L L'."""
     return np.linalg.inv(np.linalg.cholesky(hessians)).transpose(0, 2, 1)
 

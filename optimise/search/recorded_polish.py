@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ..engine.engine import Serial
-from .candidates import Polished, ragged
+from .candidates import Polished, object_array
 from .checkpoints import Numbers
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
@@ -19,7 +19,7 @@ _PolishOptions = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bo
 """Scale, chosen objectives and iterations of a polish, and whether the last column of its starts is `best_in`."""
 
 
-def polished(
+def polish_recorded(
     evaluator: Evaluator,
     start: Array,
     scale: Array,
@@ -28,24 +28,27 @@ def polished(
     viewed_evaluator: Evaluates | None = None,
     best_in: IntArray | None = None,
 ) -> Polished:
-    """Return the result of `polish`. viewed_evaluator: a view of the evaluator that the polish uses instead."""
+    """Return the result of `polish_on_engine` as a recorded step.
+
+    viewed_evaluator: a view of the evaluator that the polish uses instead.
+    """
     inputs: tuple[Numbers, ...] = (start, scale, np.array([-1] if chosen is None else chosen, dtype=np.int64))
     inputs = inputs if best_in is None else (*inputs, best_in)
 
     def compute() -> Polished:
-        return polish(viewed_evaluator or evaluator, start, scale, chosen=chosen, best_in=best_in)
+        return polish_on_engine(viewed_evaluator or evaluator, start, scale, chosen=chosen, best_in=best_in)
 
     return _recorded_polish(evaluator, "polish", inputs, compute)
 
 
-def projected(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
+def project_recorded(evaluator: Evaluator, start: Array, scale: Array) -> Polished:
     """Return designs from `start` (n, k), only moved onto violated constraints by the shortest step."""
     return _recorded_polish(
-        evaluator, "projection", (start, scale), lambda: polish(evaluator, start, scale, iterations=None)
+        evaluator, "projection", (start, scale), lambda: polish_on_engine(evaluator, start, scale, iterations=None)
     )
 
 
-def polish(
+def polish_on_engine(
     evaluator: Evaluates,
     start: Array,
     scale: Array,
@@ -102,4 +105,6 @@ def _recorded_polish(
     n, ends = len(pieces), np.cumsum(pieces)[:-1]
     goals = zip(np.split(owners, ends), np.split(slopes, ends), strict=True)
     active_rows = np.split(active, np.cumsum(edges)[:-1])
-    return Polished(u, values, violation, residual, ragged(goals if n else ()), ragged(active_rows if n else ()))
+    return Polished(
+        u, values, violation, residual, object_array(goals if n else ()), object_array(active_rows if n else ())
+    )

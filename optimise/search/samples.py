@@ -27,7 +27,7 @@ _NARROW = 0.1
 """Relative width of a range that points rarely hit; its middle is required instead."""
 
 
-def samples(problem: Problem) -> Iterator[tuple[Problem, Array]]:
+def sampled_designs(problem: Problem) -> Iterator[tuple[Problem, Array]]:
     """Yield designs (n, 3 + k) that make the required motion, with the problem for their choices.
 
     They meet the requirements on lengths, stroke and everything else that needs no cycle. If no point does, those with
@@ -55,8 +55,8 @@ def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[A
     """Return designs (n, 3 + k) of a branch that make the required motion, and their violation (n,)."""
     evaluator = Evaluator(part, branch)
     points = first_samples(count, len(branch.free), 0, 0)
-    points = points[evaluator.valid(points)]
-    return branch.dimensions(points), evaluator.light_violation(points)
+    points = points[evaluator.can_evaluate(points)]
+    return branch.dimensions(points), evaluator.violation_without_cycle(points)
 
 
 def _has_feasible(tried: tuple[Array, Array]) -> bool:

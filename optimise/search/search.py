@@ -19,8 +19,8 @@ from ..problem.violation import FEASIBLE
 from .candidates import Candidates, FrontCandidates
 from .checkpoints import Checkpoints
 from .evaluation import Evaluator
-from .front_growth import Growth
-from .recorded_polish import polished
+from .front_growth import FrontVolume
+from .recorded_polish import polish_recorded
 from .sampling import first_samples, generator, sample_near
 from .violation import least_violation
 
@@ -92,7 +92,7 @@ class Archive(Candidates):
         together = self.join(*tables)
         rows = _rows_to_keep(together)
         as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())
-        self.become(together if as_they_are else together[rows])
+        self.replace_content(together if as_they_are else together[rows])
 
 
 def _spread_sample(values: Array) -> Array:
@@ -146,7 +146,7 @@ class Run:
         count = len(self.problem.objectives)
         self.archive, self.candidates = Archive.empty(count), FrontCandidates.without_designs(np.ones(count))
         self._targets = np.array([objective.target or 0.0 for objective in self.problem.objectives])
-        self._growth: Growth = Growth(self._targets) if self.previous is None else self.previous._growth
+        self._growth: FrontVolume = FrontVolume(self._targets) if self.previous is None else self.previous._growth
         self._last_report = time.monotonic()
         self._earlier_rounds: int = (
             0 if self.previous is None else self.previous._earlier_rounds + len(self.previous.round_reports)
@@ -184,7 +184,7 @@ class Run:
         else:
             self.report_stage(stage, 0, 1)
 
-    def latest(self) -> Array:
+    def latest_front(self) -> Array:
         """Return the objectives (n, m) of the front after the last round, SI, as minimised.
 
         At most a few hundred designs.
@@ -226,7 +226,7 @@ class Run:
 
         max_designs: number of designs per round that count; the others would add little. poll: called for each round.
         """
-        growth = Growth(self._targets, box=(ideal, span), max_designs=max_designs)
+        growth = FrontVolume(self._targets, box=(ideal, span), max_designs=max_designs)
         rounds: list[Progress] = []
         for entry, front in zip(self.round_reports, self.fronts, strict=True):
             poll()
@@ -249,8 +249,8 @@ def enumerate_branches(problem: Problem, evaluators: list[Evaluator], run: Run) 
     point = np.zeros((1, 0))
     for place, evaluator in enumerate(run.enumerated):
         run.checkpoints.poll()
-        if evaluator.valid(point)[0]:
-            candidates.add(len(free) + place, polished(evaluator, point, candidates.span))
+        if evaluator.can_evaluate(point)[0]:
+            candidates.add(len(free) + place, polish_recorded(evaluator, point, candidates.span))
         if (place + 1) % _ROUND == 0 or place + 1 == len(run.enumerated):
             run.report_round("enumerating", free, Archive.empty(len(problem.objectives)))
     return candidates
@@ -273,7 +273,7 @@ def explore(problem: Problem, evaluators: list[Evaluator], run: Run | None = Non
             for index, evaluator in enumerate(evaluators)
         )
         if hits >= min(ENOUGH, samples) or (
-            not attempt and not hits and is_beyond_sampling(problem, evaluators, bands[-1])
+            not attempt and not hits and descents_stay_infeasible(problem, evaluators, bands[-1])
         ):
             break
     run.report_round("sampling", evaluators, archive)
@@ -307,7 +307,7 @@ def _samples_around(
     return sample_near(parents.u[on_branch][:, :dimension], parents.values[on_branch], count, width, random)
 
 
-def is_beyond_sampling(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
+def descents_stay_infeasible(problem: Problem, evaluators: list[Evaluator], band: float) -> bool:
     """Whether descent from the best samples stays outside the band of the last samples.
 
     Sixteen times as many samples in that band would cost more and prove less, because their best are not local optima.

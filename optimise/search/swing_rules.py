@@ -49,12 +49,12 @@ def swing_rules(problem: Problem, required: Mapping[str, float], sign: float) ->
     travel, angle = ACTUATOR_TRAVEL.name, SWING_ANGLE.name
     if motion.stated_for == "crank" and travel in required:
         numbers = (required[travel], *swing_values)
-        yield SwingRule(travel, "rod", ("crank", "offset", *free), numbers, _rod_of_travel, 2)
-        yield SwingRule(travel, "offset", ("crank", "rod", *free), numbers, _offset_of_travel, 4)
+        yield SwingRule(travel, "rod", ("crank", "offset", *free), numbers, _rod_from_travel, 2)
+        yield SwingRule(travel, "offset", ("crank", "rod", *free), numbers, _offset_from_travel, 4)
     if motion.stated_for == "slider" and angle in required:
         numbers = (required[angle], *swing_values)
-        yield SwingRule(angle, "crank", ("rod", "offset", *free), numbers, _crank_of_angle, 4)
-        yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_of_angle, 4)
+        yield SwingRule(angle, "crank", ("rod", "offset", *free), numbers, _crank_from_swing_angle, 4)
+        yield SwingRule(angle, "rod", ("crank", "offset", *free), numbers, _rod_from_swing_angle, 4)
 
 
 def _swing_ends(start: float, end: float, follows: float, free: tuple[Any, ...]) -> tuple[Any, Any]:
@@ -74,7 +74,7 @@ def _crank_pins(root: int, travel: float, ends: tuple[Any, Any], r: Any) -> tupl
     return r * np.cos(first), r * np.sin(first), r * np.cos(last) - way * travel, r * np.sin(last)
 
 
-def _rod_of_travel(
+def _rod_from_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
     x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
@@ -83,7 +83,7 @@ def _rod_of_travel(
     return np.sqrt((x_0 - x) ** 2 + (y_0 - e) ** 2)
 
 
-def _offset_of_travel(
+def _offset_from_travel(
     root: int, travel: float, sign: float, start: float, end: float, follows: float, r: Any, l: Any, *free: Any
 ) -> Any:
     x_0, y_0, x_1, y_1 = _crank_pins(root, travel, _swing_ends(start, end, follows, free), r)
@@ -92,7 +92,7 @@ def _offset_of_travel(
     return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))
 
 
-def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
+def _slider_pin_bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
     """Return a point and the direction of the bisector between the slider pin's start and its turned-back end."""
     first, last = ends
     turn = _root_signs(root)[0] * angle
@@ -101,18 +101,18 @@ def _bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[A
     return 0.5 * (first + x_1), 0.5 * (e + y_1), e - y_1, x_1 - first
 
 
-def _crank_of_angle(
+def _crank_from_swing_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, l: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
+    x, y, u, v = _slider_pin_bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
     away = _root_signs(root)[1] * np.sqrt(l * l / (u * u + v * v) - 0.25)
     return np.sqrt((x + away * u) ** 2 + (y + away * v) ** 2)
 
 
-def _rod_of_angle(
+def _rod_from_swing_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
+    x, y, u, v = _slider_pin_bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
     square = u * u + v * v
     projection = (x * u + y * v) / square
     away = -projection + _root_signs(root)[1] * np.sqrt(projection * projection + (r * r - x * x - y * y) / square)

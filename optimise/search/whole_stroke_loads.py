@@ -8,7 +8,7 @@ from ...model.machine.loads.load import Load
 from ...model.machine.loads.position_table import PositionTable
 from ...objectives.proportions import STROKE
 from ..problem.problem import Problem
-from .samples import samples
+from .samples import sampled_designs
 
 _ROUNDING = 1e-9
 """Relative: a part that is longer by less is the whole stroke, as intended."""
@@ -24,7 +24,7 @@ def loads_over_whole_strokes(problem: Problem) -> list[str]:
     ):
         return []
     machines, longest = [], 0.0
-    for part, designs in samples(problem):
+    for part, designs in sampled_designs(problem):
         strokes = STROKE.evaluate(part.mechanism, designs).values
         machines.append(part.mechanism)
         longest = max([longest, *strokes[np.isfinite(strokes)].tolist()])

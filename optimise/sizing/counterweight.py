@@ -43,7 +43,7 @@ from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 from .input_words import Measure
-from .shaking_rows import mean_rows, moving_moment, rows, with_masses
+from .shaking_rows import first_moment_of_moving_parts, rms_shaking_rows, shaking_rows, with_masses
 
 ROUNDS = 60
 _START = 24  # crank angles per turn in the first round
@@ -161,7 +161,7 @@ def balance(
             f"the counterweight does not affect the shaking moment about the crank pivot; got an arm of {arm:g} m "
             "without a rod balance; add space on the rod, or leave out the arm"
         )
-    if not moving_moment(mechanism, linkage) > 0.0:
+    if not first_moment_of_moving_parts(mechanism, linkage) > 0.0:
         raise InputError("balancing needs masses; crank, rod and slider have none; give at least one")
     return _Programme(mechanism, linkage, measure, arm, greatest_moment, rod).solve(
         radius or mechanism.counterweight.radius or float(linkage.crank)
@@ -180,7 +180,7 @@ class _Programme:
     rod: RodSpace | None
 
     def __post_init__(self) -> None:
-        moment = moving_moment(self.mechanism, self.linkage)
+        moment = first_moment_of_moving_parts(self.mechanism, self.linkage)
         mass, arm_radius = moment / float(self.linkage.crank), 1.0 if self.rod is None else self.rod.radius
         self.unit = np.array([moment, moment, mass, mass * arm_radius, mass * arm_radius, mass * arm_radius**2])
         self.force = moment * self.mechanism.speed**2  # of the same order as the forces, N
@@ -192,11 +192,11 @@ class _Programme:
         for count in range(1, ROUNDS + 1):
             x, bound, saving = self._cone(angles)
             after = with_masses(self.mechanism, self.linkage, x, radius)
-            fresh = self._rising(x, angles, after) if self.measure == "peak" else np.empty(0)
+            fresh = self._angles_of_higher_peaks(x, angles, after) if self.measure == "peak" else np.empty(0)
             if not len(fresh) or count == ROUNDS:
                 break
             angles = np.concatenate([angles, fresh])
-        before, shaken = (shaking_of(each, self.linkage) for each in (self.mechanism, after))
+        before, shaken = (shaking_peaks_and_means(each, self.linkage) for each in (self.mechanism, after))
         force, moment = (getattr(shaken, f"{self.measure}_{name}") for name in ("force", "moment"))
         return Balance(
             math.hypot(x[0], x[1]),
@@ -222,7 +222,7 @@ class _Programme:
         goals, rules = [], []
         peaks = self.measure == "peak"
         design = self.mechanism, self.linkage
-        force, moment = rows(*design, angles) if peaks else mean_rows(*design)
+        force, moment = shaking_rows(*design, angles) if peaks else rms_shaking_rows(*design)
         for table, size in ((force, self.force), *([(moment, self.force * self.arm)] if self.arm else [])):
             first, others = table[..., 0] / size, table[..., 1 : 1 + self.count] * self.unit[: self.count] / size
             if not peaks:
@@ -248,7 +248,7 @@ class _Programme:
         x[: self.count] = z.value * self.unit[: self.count]
         tight = self.greatest_moment is not None and math.hypot(x[0], x[1]) > self.greatest_moment * (1.0 - 1e-6)
         price = held[0].dual_value * self.force / self.unit[0] if tight else 0.0
-        return self._lightest(self._clip(x)), float(problem.value * self.force), float(price)
+        return self._with_lightest_rod_balance(self._clip(x)), float(problem.value * self.force), float(price)
 
     def _clip(self, x: Array) -> Array:
         """Return x moved within its bounds, which the solver's rounding may have left."""
@@ -261,7 +261,7 @@ class _Programme:
             x[2], x[5] = mass, inertia
         return x
 
-    def _lightest(self, x: Array) -> Array:
+    def _with_lightest_rod_balance(self, x: Array) -> Array:
         """Return the answer with equal forces, and an equal moment if it counts, that adds least mass to the rod."""
         if self.rod is None:
             return x
@@ -271,9 +271,9 @@ class _Programme:
         light = np.array([x[0] + (x[2] - mass) * float(self.linkage.crank), x[1], mass, x[3], x[4], inertia])
         return light if self.greatest_moment is None or math.hypot(light[0], light[1]) <= self.greatest_moment else x
 
-    def _rising(self, x: Array, angles: Array, after: Mechanism) -> Array:
+    def _angles_of_higher_peaks(self, x: Array, angles: Array, after: Mechanism) -> Array:
         """Return the crank angles of exact peaks that exceed all those at the programme's angles."""
-        force, moment = (table @ np.array([1.0, *x]) for table in rows(self.mechanism, self.linkage, angles))
+        force, moment = (table @ np.array([1.0, *x]) for table in shaking_rows(self.mechanism, self.linkage, angles))
         fresh = []
         for kind, size, unit in (
             (Signal.SHAKING_FORCE, np.hypot(*force), self.force),
@@ -284,7 +284,7 @@ class _Programme:
         return np.concatenate(fresh)
 
 
-def shaking_of(mechanism: Mechanism, linkage: Linkage) -> Shaking:
+def shaking_peaks_and_means(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of a linkage's shaking force and moment."""
     numbers: list[float] = []
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):

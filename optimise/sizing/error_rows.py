@@ -44,7 +44,7 @@ class ErrorRows:
         parts = (np.abs(source_influences(self.mechanism, self.linkage, angles)) / self.limit) ** self.power
         return parts[self._chosen].T * self.scale, 1.0 - self._given**self.power @ parts
 
-    def scaled(self, tolerances: Array) -> Array:
+    def scale_tolerances(self, tolerances: Array) -> Array:
         """Return x for tolerances (n,), m and rad."""
         return np.asarray(tolerances**self.power / self.scale)
 

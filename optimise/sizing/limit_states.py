@@ -64,7 +64,7 @@ Above = Callable[[Any], Any]
 """Replaces an expression by a variable that is at least as large, which keeps a programme's expressions short."""
 
 
-def same(expression: Any) -> Any:
+def identity(expression: Any) -> Any:
     """Return the expression."""
     return expression
 
@@ -100,7 +100,7 @@ def limit_states(
     loads: BarLoads,
     material: Material,
     limits: SectionLimits,
-    above: Above = same,
+    above: Above = identity,
 ) -> dict[str, Any]:
     """Return the utilisation of each limit state (1 is the limit), by name.
 
@@ -110,7 +110,7 @@ def limit_states(
     """
     exact = z is None
 
-    def eye(stress: Any, hole: Any) -> Any:
+    def eye_utilisation(stress: Any, hole: Any) -> Any:
         """Return the utilisation of an eye by the stress without its hole, and the fraction that the hole removes."""
         return stress / (1.0 - hole) if exact and hole < 1.0 else stress + hole
 
@@ -130,9 +130,9 @@ def limit_states(
     }
     raised = limits.eye_concentration
     for name, (force, diameter) in loads.pins.items():
-        states[f"net section at the {name}"] = eye(static * raised * force / (w * d), diameter / w)
+        states[f"net section at the {name}"] = eye_utilisation(static * raised * force / (w * d), diameter / w)
         tired = limits.fatigue_safety * raised * loads.fatigue_axial
-        states[f"fatigue of the eye at the {name}"] = eye(tired / (w * d), diameter / w)
+        states[f"fatigue of the eye at the {name}"] = eye_utilisation(tired / (w * d), diameter / w)
         states[f"bearing at the {name}"] = force / (diameter * d * material.bearing_pressure)
     if loads.bent_eye:
         diameter = loads.pins[loads.bent_eye][1]
@@ -144,7 +144,9 @@ def limit_states(
                 ("fatigue of the ", limits.fatigue_safety, loads.fatigue_axial, tiring),
             ):
                 stress = n * (pulled * axial * rest + 6.0 * bent * turned * lever) / (d * w**3)
-                states[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = eye(stress, (diameter / w) ** 3)
+                states[f"{kind}{edge} of the eye at the {loads.bent_eye}"] = eye_utilisation(
+                    stress, (diameter / w) ** 3
+                )
     states["least width"], states["greatest width"] = limits.width[0] / w, w / limits.width[1]
     states["least depth"], states["greatest depth"] = limits.depth[0] / d, d / limits.depth[1]
     return states
@@ -155,14 +157,16 @@ def rod_loads(
 ) -> BarLoads:
     """Return the loads on the rod, including its own mass."""
     rho, fatigue = material.density, 1.0 / material.endurance
-    axial = rho * d * (_positive(whip.spinning * length**2 / 8.0) * w + _positive(math.pi / 8.0 * whip.axial) * w**2)
+    axial = (
+        rho * d * (_above_zero(whip.spinning * length**2 / 8.0) * w + _above_zero(math.pi / 8.0 * whip.axial) * w**2)
+    )
     moment = (
         rho
         * d
         * (
-            _positive(whip.moment) * w
-            + _positive(whip.lateral / 12.0) * w**3
-            + _positive(math.pi / 128.0 * whip.turning) * w**4
+            _above_zero(whip.moment) * w
+            + _above_zero(whip.lateral / 12.0) * w**3
+            + _above_zero(math.pi / 128.0 * whip.turning) * w**4
         )
     )
     return BarLoads(
@@ -191,8 +195,10 @@ def crank_loads(
     rho, fatigue, pull = material.density, 1.0 / material.endurance, math.hypot(*mechanism.gravity)
     first = length**2 / 2.0 * w + math.pi * length / 8.0 * w**2 + w**3 / 12.0
     second = length**3 / 3.0 * w + math.pi * length**2 / 8.0 * w**2 + length / 6.0 * w**3 + math.pi / 128.0 * w**4
-    axial = rho * d * (_positive(mechanism.speed**2) * first + _positive(pull) * (length * w + math.pi / 8.0 * w**2))
-    moment = rho * d * (_positive(pull) * first + _positive(abs(mechanism.acceleration)) * second)
+    axial = (
+        rho * d * (_above_zero(mechanism.speed**2) * first + _above_zero(pull) * (length * w + math.pi / 8.0 * w**2))
+    )
+    moment = rho * d * (_above_zero(pull) * first + _above_zero(abs(mechanism.acceleration)) * second)
     return BarLoads(
         axial=joints["crank"] + axial,
         compression=joints["crank compression"] + axial,
@@ -207,7 +213,7 @@ def crank_loads(
     )
 
 
-def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -> dict[str, float]:
+def joint_load_terms(joints: JointLoads, material: Material, limits: SectionLimits) -> dict[str, float]:
     """Return the joints' loads as terms of the limit states, all positive: N, N m, and those divided by Pa."""
     mean = material.ultimate_strength if limits.criterion == "goodman" else material.yield_strength
 
@@ -229,9 +235,9 @@ def joint_terms(joints: JointLoads, material: Material, limits: SectionLimits) -
     }
     least = _NOTHING * max(terms.values())
     floors = {name: least / material.endurance if name.endswith("fatigue") else least for name in terms}
-    return {name: _positive(max(value, floors[name])) for name, value in terms.items()}
+    return {name: _above_zero(max(value, floors[name])) for name, value in terms.items()}
 
 
-def _positive(value: float) -> float:
+def _above_zero(value: float) -> float:
     """Return a coefficient that a posynomial may have: above zero."""
     return max(value, _TINY)

@@ -111,7 +111,7 @@ def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
     )
 
 
-def whip_of(mechanism: Mechanism, linkage: Linkage) -> Whip:
+def greatest_rod_accelerations(mechanism: Mechanism, linkage: Linkage) -> Whip:
     """Return the greatest accelerations of the rod; they do not depend on any mass."""
     angles = np.arange(_ANGLES) * (2.0 * np.pi / _ANGLES)
     motion = linkage.at(angles, speed=mechanism.speed, acceleration=mechanism.acceleration)

@@ -29,8 +29,8 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import require_plain
 from ...model.machine.strength import Material
 from ..problem.section_limits import SectionLimits
-from .limit_states import AMPLIFICATION, Above, crank_loads, joint_terms, limit_states, rod_loads, same
-from .section_loads import Whip, joint_loads, whip_of
+from .limit_states import AMPLIFICATION, Above, crank_loads, identity, joint_load_terms, limit_states, rod_loads
+from .section_loads import Whip, greatest_rod_accelerations, joint_loads
 
 _ITERATIONS = 60
 _CONVERGED = 1e-8  # relative change of the sections at which the iteration ends
@@ -77,15 +77,15 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     require_frictionless(mechanism.friction, "section sizing")
     require_plain(replace(mechanism, arrangement=None), "section sizing")
     linkage = single(mechanism, linkage)
-    task = _Task(mechanism, linkage, material, limits, whip_of(mechanism, linkage))
+    task = _Task(mechanism, linkage, material, limits, greatest_rod_accelerations(mechanism, linkage))
     sizes = np.log([limits.width[0], limits.depth[0]] * 2)
-    programme = _Programme(task, list(task.terms(sizes)))
+    programme = _Programme(task, list(task.joint_load_terms(sizes)))
     radius, before = _ANYWHERE, math.inf
     for iteration in range(_ITERATIONS):
         count = iteration + 1
         # The first programme only finds the order of magnitude, because slopes at the least sections are misleading.
-        loads = np.array(list(task.terms(sizes).values()))
-        powers = task.powers(sizes) if iteration else np.zeros((len(loads), 4))
+        loads = np.array(list(task.joint_load_terms(sizes).values()))
+        powers = task.load_exponents(sizes) if iteration else np.zeros((len(loads), 4))
         new, sensitivity = programme.solve(sizes, loads, powers, radius)
         change = float(np.abs(new - sizes).max())
         sizes = new
@@ -96,7 +96,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
         elif change > 0.7 * before:
             radius = 0.5 * min(radius, change)  # two crank angles alternate as the worst
         before = change if iteration else math.inf
-    sizes = task.widened(sizes)
+    sizes = task.widen_eyes(sizes)
     states = {name: state for name, state in task.states(sizes).items() if not name.endswith(AMPLIFICATION)}
     # If a bar buckles, its stress is infinite; the buckling limit shows the extent.
     worst = max((name for name, state in states.items() if state < math.inf), key=lambda name: states[name])
@@ -136,23 +136,23 @@ class _Task:
 
     def states(self, sizes: Array) -> dict[str, float]:
         """Return the limit states of sizes with their own loads."""
-        return self.limit_states(np.exp(sizes).tolist(), [None, None], self.terms(sizes))
+        return self.limit_states(np.exp(sizes).tolist(), [None, None], self.joint_load_terms(sizes))
 
-    def terms(self, sizes: Array) -> dict[str, float]:
+    def joint_load_terms(self, sizes: Array) -> dict[str, float]:
         """Return the joints' loads of these sizes."""
         crank, rod = self.bars(sizes)
         joints = joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
-        return joint_terms(joints, self.material, self.limits)
+        return joint_load_terms(joints, self.material, self.limits)
 
-    def powers(self, sizes: Array) -> Array:
+    def load_exponents(self, sizes: Array) -> Array:
         """Return the slopes (n, 4) of the loads' logarithms by the sizes."""
         ends = [
-            [self.terms(sizes + side * _STEP * np.eye(len(sizes))[row]) for side in (1.0, -1.0)]
+            [self.joint_load_terms(sizes + side * _STEP * np.eye(len(sizes))[row]) for side in (1.0, -1.0)]
             for row in range(len(sizes))
         ]
         return np.array([[math.log(up[name] / down[name]) / (2.0 * _STEP) for up, down in ends] for name in ends[0][0]])
 
-    def widened(self, sizes: Array) -> Array:
+    def widen_eyes(self, sizes: Array) -> Array:
         """Return sizes whose eyes carry their loads to rounding.
 
         The solver's error is relative to the width, which is large compared with a net section of a few micrometres.
@@ -176,7 +176,9 @@ class _Task:
             widths = wider
         return np.log(widths)
 
-    def limit_states(self, x: list[Any], z: list[Any], joints: dict[str, Any], above: Above = same) -> dict[str, Any]:
+    def limit_states(
+        self, x: list[Any], z: list[Any], joints: dict[str, Any], above: Above = identity
+    ) -> dict[str, Any]:
         """Return the limit states of widths and depths x, amplifications z and joint loads, by bar and name."""
         crank, rod = float(self.linkage.crank), float(self.linkage.rod)
         of_crank = crank_loads(x[0], x[1], crank, joints, self.mechanism, self.material, self.limits)

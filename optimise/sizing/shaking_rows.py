@@ -37,37 +37,37 @@ moment along and across the rod, kg m, and inertia, kg m^2, about the crank pin.
 _NODES = 192  # nodes for the means, as in `model.signals.averages`
 
 
-def rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:
+def shaking_rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple[Array, Array]:
     """Return force (2, k, 7), N, and moment (k, 7), N m, at crank angles (k,), rad.
 
     The first column is the shaking without a counterweight; the others are per unit of `NAMES`.
     """
 
-    def curves(**masses: Any) -> Array:
+    def curves_with_masses(**masses: Any) -> Array:
         machine = Mechanism(speed=mechanism.speed, branch=mechanism.branch, **masses)
         shaking = shaking_curves(machine, linkage, angles)
         return np.stack([shaking.force_x, shaking.force_y, shaking.moment])
 
-    bare = curves(crank=mechanism.crank, rod=mechanism.rod, slider_mass=mechanism.slider_mass)
+    bare = curves_with_masses(crank=mechanism.crank, rod=mechanism.rod, slider_mass=mechanism.slider_mass)
     axial, lateral = (
-        curves(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi)
+        curves_with_masses(counterweight=Counterweight(mass=1.0, radius=1.0, angle=at)) for at in (0.0, 0.5 * math.pi)
     )
-    mass = curves(rod=RigidLink(mass=1.0, centre=0.0, inertia=0.0))
-    inertia = curves(rod=RigidLink(mass=0.0, inertia=1.0))
+    mass = curves_with_masses(rod=RigidLink(mass=1.0, centre=0.0, inertia=0.0))
+    inertia = curves_with_masses(rod=RigidLink(mass=0.0, inertia=1.0))
     pin = mass + inertia  # a mass of 1 kg at 1 m has both, besides its first moment
-    ahead = curves(rod=RigidLink(mass=1.0, centre=1.0, inertia=0.0)) - pin
-    aside = curves(rod=RigidLink(mass=1.0, centre=0.0, centre_across=1.0, inertia=0.0)) - pin
+    ahead = curves_with_masses(rod=RigidLink(mass=1.0, centre=1.0, inertia=0.0)) - pin
+    aside = curves_with_masses(rod=RigidLink(mass=1.0, centre=0.0, centre_across=1.0, inertia=0.0)) - pin
     table = np.stack([bare, axial, lateral, mass, ahead, aside, inertia], axis=-1)
     return table[:2], table[2]
 
 
-def mean_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
+def rms_shaking_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
     """Return force and moment rows (7, 7) each; |rows @ (1, x)| is the root mean square over the cycle."""
     kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     tau = np.arange(_NODES) * (2.0 * math.pi / _NODES)
     angles = np.array([uncrowded(float(t), kappa) for t in tau])
     weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2) / _NODES
-    force, moment = rows(mechanism, linkage, angles)
+    force, moment = shaking_rows(mechanism, linkage, angles)
     share = np.sqrt(weight)[:, None]
     weights = np.concatenate([share * force[0], share * force[1]]), share * moment
     reduced: list[Array] = [np.asarray(np.linalg.qr(table, mode="r")) for table in weights]
@@ -105,7 +105,7 @@ def _link_moments(link: Link, length: float) -> Array:
     return np.array(link_properties(length, *numbers))
 
 
-def moving_moment(mechanism: Mechanism, linkage: Linkage) -> float:
+def first_moment_of_moving_parts(mechanism: Mechanism, linkage: Linkage) -> float:
     """Return the first moment, kg m, of crank, rod and slider, with the last two at the crank pin."""
     crank = _link_moments(mechanism.crank, float(linkage.crank))
     mass = _link_moments(mechanism.rod, float(linkage.rod))[0] + mechanism.slider_mass

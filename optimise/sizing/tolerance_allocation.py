@@ -135,7 +135,8 @@ class _Programme:
     def __init__(self, rows: ErrorRows, costs: Costs) -> None:
         self.error, self.costs = rows, list(costs.by_name.values())
         self.least, self.greatest, at = (
-            rows.scaled(np.array([getattr(cost, name) for cost in self.costs])) for name in ("least", "greatest", "at")
+            rows.scale_tolerances(np.array([getattr(cost, name) for cost in self.costs]))
+            for name in ("least", "greatest", "at")
         )
         self.q = np.array([cost.exponent for cost in self.costs]) / rows.power
         self.beta = np.array([cost.cost for cost in self.costs]) * at**self.q
@@ -152,8 +153,8 @@ class _Programme:
         for count in range(1, ROUNDS + 1):
             x, carried = self._cone(angles)
             values, at = self.error.peaks(x)
-            rough = self._grouped(x, angles, carried, at[values > 1.0 - _NEAR])
-            point = self._exact(rough) if values.max() <= 1.0 + _NEAR else None
+            rough = self._group_at_peaks(x, angles, carried, at[values > 1.0 - _NEAR])
+            point = self._solve_optimality_conditions(rough) if values.max() <= 1.0 + _NEAR else None
             if point is not None or values.max() <= 1.0 + _EXCESS or count == ROUNDS:
                 # Without an exact point, the case is degenerate: as exact as the cone solver, which the residual shows.
                 return self._allocation(point or rough, count)
@@ -184,22 +185,22 @@ class _Programme:
             )
         return np.clip(x.value, self.least, self.greatest), size * np.maximum(within.dual_value, 0.0)
 
-    def _grouped(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
+    def _group_at_peaks(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
         """Return the multipliers of sampled angles, collected at the nearest peaks."""
         multipliers = np.zeros(len(at))
         if len(at):
             np.add.at(multipliers, _nearest_angles(angles, at), carried)
         active = multipliers > _CARRIES * multipliers.sum()
-        return self._point(x, at[active], multipliers[active])
+        return self._evaluate_point(x, at[active], multipliers[active])
 
-    def _point(self, x: Array, angles: Array, multipliers: Array) -> _Point:
+    def _evaluate_point(self, x: Array, angles: Array, multipliers: Array) -> _Point:
         pull = multipliers @ self.error.rows(angles)[0] if len(angles) else np.zeros(len(x))
         push = self.q * self.beta * x ** (-self.q - 1.0)
         inside = (x > self.least * (1.0 + _AT_BOUND)) & (x < self.greatest * (1.0 - _AT_BOUND))
         residual = np.abs(pull / push - 1.0)[inside].max(initial=0.0)
         return _Point(x, angles, multipliers, np.where(inside, 0.0, pull - push), float(residual))
 
-    def _exact(self, start: _Point) -> _Point | None:
+    def _solve_optimality_conditions(self, start: _Point) -> _Point | None:
         """Return the point near another that meets the optimality conditions; None if there is none."""
         from scipy.optimize import least_squares
 
@@ -209,14 +210,14 @@ class _Programme:
         free = np.flatnonzero(~(low | high))
         count, weight = len(free), start.multipliers
 
-        def place(z: Array) -> tuple[Array, Array]:
+        def unpack(z: Array) -> tuple[Array, Array]:
             here = pinned.copy()
             here[free] *= np.exp(z[:count])
             found = self.error.peaks(here)[1]
             return here, found[_nearest_angles(start.angles, found)]
 
         def conditions(z: Array) -> Array:
-            here, where = place(z)
+            here, where = unpack(z)
             rows, margin = self.error.rows(where)
             pull = (weight * (1.0 + z[count:])) @ rows
             push = self.q * self.beta * here ** (-self.q - 1.0)
@@ -227,8 +228,8 @@ class _Programme:
             z = least_squares(conditions, z, xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=40).x
             if not np.abs(conditions(z)).max() <= _SOLVED:
                 return None
-        here, where = place(z)
-        point = self._point(here, where, weight * (1.0 + z[count:]))
+        here, where = unpack(z)
+        point = self._evaluate_point(here, where, weight * (1.0 + z[count:]))
         met = (
             np.all(point.multipliers >= 0.0)
             and np.all((here >= self.least) & (here <= self.greatest))

@@ -181,7 +181,7 @@ def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, si
     """
     objective = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(objective,)), branch)
-    start = start[evaluator.valid(start)]
+    start = start[evaluator.can_evaluate(start)]
     if not branch.free or not len(start):
         return -np.inf
     polished = polish(evaluator, start, np.ones(1))

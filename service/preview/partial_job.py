@@ -21,7 +21,7 @@ from ...optimise.job.values import RangeOf
 from ...optimise.job.varying import ends_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
-from ...optimise.search.elimination import require_slow_side
+from ...optimise.search.elimination import require_offset_for_slow_stroke
 
 _MOST_POINTS = 100
 """Maximum points of tabulated loads: each is a breakpoint of every curve, and adds to the cost of every sample."""
@@ -72,7 +72,7 @@ def _with_slow_stroke(problem: Problem, stroke: Any) -> Problem:
         return problem
     try:
         with_stroke = replace(problem, slow_stroke=stroke)
-        require_slow_side(with_stroke, (with_stroke,))
+        require_offset_for_slow_stroke(with_stroke, (with_stroke,))
     except InputError:
         return problem
     return with_stroke

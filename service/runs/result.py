@@ -141,8 +141,8 @@ def stored_objectives(problem: Problem) -> list[StoredObjective]:
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
     from ...optimise.problem.always_zero import idle_rules
-    from ...optimise.search.driving_loads import front_driven_by_loads
-    from ...optimise.search.loaded_stroke import front_warnings
+    from ...optimise.search.driving_loads import front_driving_load_warnings
+    from ...optimise.search.loaded_stroke import front_stroke_warnings
 
     has_designs = len(front) > 0
     several = has_designs and len(front.objectives) > 1
@@ -162,8 +162,8 @@ def result_of(front: ParetoFront, run: str) -> Result:
         trade_offs=front.trade_offs(front.knee()) if several else [],
         warnings=(
             *front.problem.warnings,
-            *front_driven_by_loads(front),
-            *front_warnings(front),
+            *front_driving_load_warnings(front),
+            *front_stroke_warnings(front),
             *idle_rules(front.problem),
         ),
         violated=_violated_columns(front),

@@ -29,9 +29,9 @@ from ...optimise.problem.remark import changes_of
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
-from ...optimise.search.driving_loads import driven_by_loads
+from ...optimise.search.driving_loads import driving_load_warnings
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
-from ...optimise.search.loaded_stroke import expected_warnings
+from ...optimise.search.loaded_stroke import stroke_warnings
 from ...optimise.search.whole_stroke_loads import loads_over_whole_strokes
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
@@ -48,9 +48,9 @@ def summarise(problem: Problem) -> dict[str, Any]:
     samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
     warnings = [
         *problem.warnings,
-        *driven_by_loads(problem),
+        *driving_load_warnings(problem),
         *loads_over_whole_strokes(problem),
-        *expected_warnings(problem),
+        *stroke_warnings(problem),
         *idle_rules(problem),
         *idle_options(problem),
     ]

@@ -52,12 +52,12 @@ def resumed_run(
 
     text: its name or number. read: function that returns a job's problem from its run folder.
     """
-    from ...optimise.solve import require_records
+    from ...optimise.solve import require_resumable
 
     job = stopped_job(store, text, place)
     with folder_of(store, job, place) as folder:
         problem = read(store.tables(job.id), folder.path)
-        require_records(problem, store.records(job.id))
+        require_resumable(problem, store.records(job.id))
         claim = take_up(store, job)
         with end_job_on_error(claim):
             folder.go_on()

@@ -23,8 +23,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.tables import problem as stated
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.driving_loads import driven_by_loads, front_driven_by_loads, net_work
-from slidercrank.optimise.search.samples import samples
+from slidercrank.optimise.search.driving_loads import driving_load_warnings, front_driving_load_warnings, net_work
+from slidercrank.optimise.search.samples import sampled_designs
 from slidercrank.optimise.solve import solve
 from tests.model.test_load_text import random_load
 from tests.model.virtual_work import crank_torque, path, slider_load
@@ -128,18 +128,18 @@ def test_the_net_work_of_random_loads_is_the_integral_over_a_swing_and_back() ->
 
 def test_a_load_that_pushes_with_the_stroke_is_questioned_with_its_sentence_and_its_work() -> None:
     asked = problem(PUSH)
-    (said,) = driven_by_loads(asked)
+    (said,) = driving_load_warnings(asked)
     assert said.startswith("in every sampled design loads do more work on the machine than they absorb, by ")
     assert "load #1 (350 N outward, helps the outward stroke, from 60 mm before the outer dead centre to it;" in said
     least, greatest = map(float, re.findall(r"by ([\d.]+) to ([\d.]+) J", said)[0])
     turn = np.linspace(0.0, 2.0 * math.pi, 20_001)
-    works = [integral(part.mechanism, design, turn) for part, designs in samples(asked) for design in designs]
+    works = [integral(part.mechanism, design, turn) for part, designs in sampled_designs(asked) for design in designs]
     assert (least, greatest) == pytest.approx((min(works), max(works)), rel=1e-3)
 
 
 @pytest.mark.parametrize("load", [[PUSH, {"force": "900 N", "opposes": "motion"}], [PRESS], [ENGINE], [COMPRESSOR]])
 def test_loads_that_take_more_than_they_give_and_engines_are_not_questioned(load: list[dict[str, Any]]) -> None:
-    assert driven_by_loads(problem(*load)) == []
+    assert driving_load_warnings(problem(*load)) == []
 
 
 @pytest.mark.parametrize(
@@ -153,28 +153,28 @@ def test_loads_that_take_more_than_they_give_and_engines_are_not_questioned(load
     ],
 )
 def test_what_is_stated_to_help_and_what_gives_back_what_it_takes_is_not_questioned(load: dict[str, Any]) -> None:
-    assert driven_by_loads(problem(load)) == []
+    assert driving_load_warnings(problem(load)) == []
 
 
 def test_loads_beside_one_that_is_stated_to_drive_are_questioned_alone() -> None:
-    (said,) = driven_by_loads(problem(ENGINE, PUSH))
+    (said,) = driving_load_warnings(problem(ENGINE, PUSH))
     assert "loads that are not declared as driving do more work" in said
     assert "load #2 (350 N" in said
     assert "load #1" not in said
-    assert driven_by_loads(problem(ENGINE, {"crank_torque": "-50 N m"})) == []
+    assert driving_load_warnings(problem(ENGINE, {"crank_torque": "-50 N m"})) == []
 
 
 def test_a_job_that_requires_delivered_work_states_an_engine() -> None:
-    assert driven_by_loads(problem(PUSH, constraints={"delivered_work": {"min": "0 J"}})) == []
-    assert driven_by_loads(problem(PUSH, constraints={"delivered_work": {"max": "90 J"}})) != []
+    assert driving_load_warnings(problem(PUSH, constraints={"delivered_work": {"min": "0 J"}})) == []
+    assert driving_load_warnings(problem(PUSH, constraints={"delivered_work": {"max": "90 J"}})) != []
 
 
 def test_a_torque_with_the_rotation_is_questioned_and_one_against_it_is_not() -> None:
     for speed, torque in (("90 rpm", "5 N m"), ("-90 rpm", "-5 N m")):
-        (said,) = driven_by_loads(problem({"crank_torque": torque}, mechanism={"speed": speed}))
+        (said,) = driving_load_warnings(problem({"crank_torque": torque}, mechanism={"speed": speed}))
         assert f"by {2.0 * math.pi * 5.0:.4g} J per cycle" in said
     for speed, torque in (("90 rpm", "-5 N m"), ("-90 rpm", "5 N m")):
-        assert driven_by_loads(problem({"crank_torque": torque}, mechanism={"speed": speed})) == []
+        assert driving_load_warnings(problem({"crank_torque": torque}, mechanism={"speed": speed})) == []
 
 
 def test_cylinders_on_one_crankshaft_give_the_sum_of_their_works() -> None:
@@ -182,7 +182,7 @@ def test_cylinders_on_one_crankshaft_give_the_sum_of_their_works() -> None:
     three = {"speed": "90 rpm", "cylinders": {"phases": ["0 deg", "120 deg", "240 deg"]}}
     works = []
     for tables in ({}, {"mechanism": three}):
-        ((part, designs),) = samples(problem(PUSH, **fixed, **tables, objectives={"peak_torque": "minimise"}))
+        ((part, designs),) = sampled_designs(problem(PUSH, **fixed, **tables, objectives={"peak_torque": "minimise"}))
         works.append(net_work(part, designs)[0])
     assert works[1] == pytest.approx(3.0 * works[0], rel=1e-9)
 
@@ -193,41 +193,43 @@ def test_a_cycle_of_two_turns_counts_both() -> None:
         "torques": ["0 N m", "6 N m", "0 N m"],
         "cycle": "720 deg",
     }
-    (said,) = driven_by_loads(problem(table))
+    (said,) = driving_load_warnings(problem(table))
     assert f"by {3.0 * 4.0 * math.pi:.4g} J per cycle" in said
 
 
 def test_a_load_in_part_of_the_designs_is_said_to_be_in_part() -> None:
     """The load of 350 N resists within 80 mm of the dead centre and helps beyond, in long strokes."""
     table = PUSH | {"positions": ["0 mm", "80 mm", "80 mm", "90 mm"], "forces": ["-350 N", "-350 N", "350 N", "350 N"]}
-    (said,) = driven_by_loads(problem(table))
+    (said,) = driving_load_warnings(problem(table))
     assert said.startswith("in some sampled designs loads do more work")
 
 
 def test_a_swing_is_questioned_without_a_word_of_delivered_work() -> None:
-    (said,) = driven_by_loads(problem({"force": "350 N", "direction": "outward", "during": "outward stroke"}, **SWING))
+    (said,) = driving_load_warnings(
+        problem({"force": "350 N", "direction": "outward", "during": "outward stroke"}, **SWING)
+    )
     assert "350 N outward, helps the outward stroke" in said
     assert "delivered" not in said
-    assert driven_by_loads(problem(PRESS, **SWING)) == []
+    assert driving_load_warnings(problem(PRESS, **SWING)) == []
 
 
 def test_numbers_that_vary_count_in_every_design() -> None:
     varying = JOB["variables"] | {"load.1.force": ["100 N", "300 N"]}
     load = {"force": "200 N", "direction": "outward", "during": "outward stroke"}
-    (said,) = driven_by_loads(problem(load, variables=varying))
+    (said,) = driving_load_warnings(problem(load, variables=varying))
     least, greatest = map(float, re.findall(r"by ([\d.]+) to ([\d.]+) J", said)[0])
     assert least >= 100.0 * 0.04 * 0.99
     assert greatest > 250.0 * 0.1
     helping = problem({"force": "200 N", "helps": "outward stroke"}, variables=varying)
-    assert driven_by_loads(helping) == []
+    assert driving_load_warnings(helping) == []
     assert isinstance(helping.mechanism.loads[0], StrokeForce)
 
 
 @pytest.mark.slow
 def test_the_front_has_the_warning_too() -> None:
-    (said,) = front_driven_by_loads(solve(problem(PUSH)))
+    (said,) = front_driving_load_warnings(solve(problem(PUSH)))
     assert said.startswith("in every design loads do more work on the machine than they absorb")
-    assert front_driven_by_loads(solve(problem(PRESS))) == []
+    assert front_driving_load_warnings(solve(problem(PRESS))) == []
 
 
 def test_python_warns_once_of_a_problem_whose_loads_drive_it() -> None:
@@ -250,18 +252,18 @@ def test_a_load_that_drives_the_longest_strokes_alone_is_questioned_for_these(si
     """The force is 100 N up to 130 mm and -150 kN beyond: the longest strokes reverse the sign."""
     forces = [f"{sign * force} N" for force in (100, 100, -150_000, -150_000)]
     load = PUSH | {"positions": ["0 mm", "130 mm", "130 mm", "200 mm"], "forces": forces}
-    (said,) = driven_by_loads(problem(load, constraints={"stroke": {"min": "50 mm"}}, **CORNER))
+    (said,) = driving_load_warnings(problem(load, constraints={"stroke": {"min": "50 mm"}}, **CORNER))
     assert said.startswith("in some sampled designs loads do more work")
 
 
 def test_designs_that_the_stroke_excludes_are_not_questioned() -> None:
     load = PUSH | {"positions": ["0 mm", "60 mm", "60 mm", "200 mm"], "forces": ["100 N", "100 N", "-5 kN", "-5 kN"]}
-    assert driven_by_loads(problem(load, constraints={"stroke": {"min": "80 mm"}}, **CORNER)) == []
+    assert driving_load_warnings(problem(load, constraints={"stroke": {"min": "80 mm"}}, **CORNER)) == []
 
 
 @pytest.mark.parametrize("half", ["0.5 mm", "0.001 mm"])
 def test_the_work_of_a_stroke_within_a_narrow_range_is_that_of_the_range(half: str) -> None:
-    (said,) = driven_by_loads(problem(PUSH, constraints={"stroke": {"equals": f"100 mm +- {half}"}}, **CORNER))
+    (said,) = driving_load_warnings(problem(PUSH, constraints={"stroke": {"equals": f"100 mm +- {half}"}}, **CORNER))
     assert all(
         float(end) == pytest.approx(35.0, abs=0.19)
         for end in re.findall(r"by ([\d.]+)(?: to ([\d.]+))? J", said)[0]

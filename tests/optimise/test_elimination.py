@@ -74,7 +74,7 @@ def test_requirements_are_eliminated_exactly_or_listed(names: tuple[str, ...], o
         u = np.concatenate([own_point(branch), np.random.default_rng(1).random((400, len(branch.free)))])
         designs = branch.dimensions(u)
         assert designs[0] == pytest.approx(BASE * (1.0, 1.0, branch.sign), rel=1e-12)
-        good = evaluator.valid(u)
+        good = evaluator.can_evaluate(u)
         assert good[0]
         for name in branch.eliminated:
             value = CLOSED[name](BASE[None])[0]
@@ -140,7 +140,7 @@ def test_a_crank_whose_dead_centres_lie_on_both_sides_is_refused() -> None:
     spurious = turns.copy()
     spurious[turns] = np.abs(CLOSED["stroke"](designs[turns]) - 0.4) > 1e-6
     assert spurious.any()
-    assert not Evaluator(wanted, branch).valid(u)[spurious].any()
+    assert not Evaluator(wanted, branch).can_evaluate(u)[spurious].any()
     _, _, violation = Evaluator(wanted, branch).screen(u)
     assert np.isinf(violation[spurious]).all()
 

@@ -46,7 +46,7 @@ ELIMINATED = problem({"peak_torque": "minimise"}, {"stroke": 0.2, "peak_torque":
 
 def points(evaluator: Evaluator, count: int) -> Array:
     u = np.random.default_rng(11).random((count, evaluator.dimension))
-    return u[evaluator.valid(u)]
+    return u[evaluator.can_evaluate(u)]
 
 
 def greatest(rows: Rows, owner: int) -> Array:
@@ -81,7 +81,7 @@ def test_exact_rows_are_objectives_and_relative_violations(wanted: Problem) -> N
         evaluator = Evaluator(wanted, branch)
         u = points(evaluator, 300)
         designs = branch.dimensions(u)
-        goals, limits = evaluator.exact(u)
+        goals, limits = evaluator.exact_rows(u)
         expected = objectives(wanted, designs)
         for column in range(len(wanted.objectives)):
             assert greatest(goals, column) == pytest.approx(expected[:, column], rel=1e-9, abs=1e-12)
@@ -102,8 +102,8 @@ def test_slopes_of_all_rows_match_differences(wanted: Problem) -> None:
             move = np.zeros(evaluator.dimension)
             move[column] = step
             around = [u + n * move for n in (-2, -1, 0, 1, 2)]
-            keep = np.all([evaluator.valid(points) for points in around], axis=0)
-            rows = [evaluator.exact(points[keep]) for points in around]
+            keep = np.all([evaluator.can_evaluate(points) for points in around], axis=0)
+            rows = [evaluator.exact_rows(points[keep]) for points in around]
             for which in (0, 1):
                 values = [np.where(np.isfinite(row[which].values), row[which].values, np.nan) for row in rows]
                 slope = (8.0 * (values[3] - values[1]) - (values[4] - values[0])) / (12.0 * step)
@@ -123,7 +123,7 @@ def test_a_footprint_is_maximised_and_bounded_below_through_its_greatest_form() 
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 50)
     area = value(wanted, "footprint", evaluator.branch.dimensions(u))
-    goals, limits = evaluator.exact(u)
+    goals, limits = evaluator.exact_rows(u)
     assert greatest(goals, 0) == pytest.approx(-area, rel=1e-12)
     assert greatest(limits, [c.quantity for c in evaluator.constraints].index("footprint")) == pytest.approx(
         (0.05 - area) / 0.05, rel=1e-12, abs=1e-12
@@ -134,7 +134,7 @@ def test_ties_of_a_peak_are_rows_of_their_own() -> None:
     """Two equal forces half a turn apart, without masses: the peaks of the two strokes tie without offset."""
     pushing = Mechanism(loads=(StrokeForce(outward=-100.0, inward=100.0),))
     wanted = problem({"peak_torque": "minimise"}, offset=0.0, mechanism=pushing)
-    goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact(np.array([[0.5, 0.3]]))
+    goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact_rows(np.array([[0.5, 0.3]]))
     values = np.sort(goals.values[0])[::-1]
     assert values[0] == pytest.approx(values[1], rel=1e-12)
 
@@ -147,7 +147,7 @@ def test_an_infinite_quantity_makes_rows_without_slope() -> None:
             evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
             u = np.full((1, 2), 0.5)
             u[0, evaluator.branch.free.index("offset")] = 0.0
-            _, limits = evaluator.exact(u)
+            _, limits = evaluator.exact_rows(u)
             owner = [c.quantity for c in evaluator.constraints].index("rod_to_offset")
             assert greatest(limits, owner)[0] == expected
             assert np.isfinite(limits.gradients).all()
@@ -162,7 +162,7 @@ def test_what_is_not_a_number_meets_no_limit_and_is_no_optimum(bounds: Bounds, s
     wanted = replace(wanted, mechanism=machine)
     (evaluator, *_) = (Evaluator(wanted, branch) for branch in elimination_branches(wanted))
     u = points(evaluator, 20)
-    goals, limits = evaluator.exact(u)
+    goals, limits = evaluator.exact_rows(u)
     for rows, owner in ((goals, 0), (limits, [c.quantity for c in evaluator.constraints].index("mean_torque"))):
         assert (greatest(rows, owner) == np.inf).all()
 
@@ -171,7 +171,7 @@ def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
     """The transmission angle has a kink at zero offset: along either branch it falls with |offset|."""
     for offset in ((0.0, 0.1), (-0.1, 0.0)):
         wanted = problem({"transmission_angle": "maximise"}, crank=0.1, rod=0.3, offset=offset)
-        goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact(np.zeros((1, 1)))
+        goals, _ = Evaluator(wanted, elimination_branches(wanted)[0]).exact_rows(np.zeros((1, 1)))
         # d mu / d a = -1 / sqrt(l^2 - r^2) for a range of 0.1 m; the objective is -mu.
         assert goals.gradients[0, 0, 0] == pytest.approx(0.1 / math.sqrt(0.3**2 - 0.1**2), rel=1e-12)
 
@@ -217,7 +217,7 @@ def test_a_bound_of_zero_is_absolute() -> None:
     wanted = problem({"peak_torque": "minimise"}, {"mean_torque": (None, 0.0)})
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 20)
-    _, limits = evaluator.exact(u)
+    _, limits = evaluator.exact_rows(u)
     owner = [c.quantity for c in evaluator.constraints].index("mean_torque")
     mean = value(wanted, "mean_torque", evaluator.branch.dimensions(u))
     assert greatest(limits, owner) == pytest.approx(mean, rel=1e-12)
@@ -238,7 +238,7 @@ def test_evaluations_are_counted() -> None:
     evaluator = Evaluator(wanted, elimination_branches(wanted)[0])
     u = points(evaluator, 30)
     evaluator.screen(u)
-    evaluator.exact(u)
+    evaluator.exact_rows(u)
     assert evaluator.evaluations == 2 * len(u)
 
 

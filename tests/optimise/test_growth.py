@@ -13,7 +13,7 @@ from slidercrank.optimise.front.hypervolume import REFERENCE
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.checkpoints import Record
-from slidercrank.optimise.search.front_growth import Growth
+from slidercrank.optimise.search.front_growth import FrontVolume
 from slidercrank.optimise.search.search import Archive, Run
 from slidercrank.optimise.solve import solve
 
@@ -30,7 +30,7 @@ MIXED: dict[str, Bounds] = {
 
 
 def volumes(rounds: list[np.ndarray], **more: object) -> list[float]:
-    growth = Growth(np.zeros(rounds[0].shape[1]), **more)  # type: ignore[arg-type]
+    growth = FrontVolume(np.zeros(rounds[0].shape[1]), **more)  # type: ignore[arg-type]
     return [growth.add(values) for values in rounds]
 
 
@@ -69,7 +69,7 @@ def test_nothing_one_design_ties_and_what_is_not_defined() -> None:
     assert volumes([NONE, NONE]) == [0.0, 0.0]
     assert volumes([NONE, ONE + 2.0, NONE, ONE + 2.0]) == pytest.approx([0.0, 1.0, 1.0, 1.0])
     assert volumes([np.array([[np.nan, 1.0], [np.inf, 0.0]]), ONE + 2.0]) == pytest.approx([0.0, 1.0])
-    met = Growth(np.array([0.2, 0.0]))
+    met = FrontVolume(np.array([0.2, 0.0]))
     assert met.add(np.array([[1e-17, 4.0]])) == pytest.approx(1.0)
     assert met.add(np.array([[1e-16, 2.0]])) > 1.4, "designs that meet a target differ by rounding"
 

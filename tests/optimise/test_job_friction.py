@@ -154,7 +154,7 @@ def test_designs_that_lock_are_infeasible_even_without_the_floor() -> None:
     drives = turns & (margin > 0.0)
     assert drives.sum() > 20
     assert np.all(np.isfinite(objectives[drives & (violation <= 0.0)]))
-    goals, _ = evaluator.exact(u[locks])
+    goals, _ = evaluator.exact_rows(u[locks])
     assert np.all(goals.values.max(axis=1) == np.inf)
     assert np.all(goals.gradients == 0.0)
 

@@ -13,7 +13,7 @@ from slidercrank.model.errors import AssemblyError, JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.loaded_stroke import expected_warnings
+from slidercrank.optimise.search.loaded_stroke import stroke_warnings
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {
@@ -249,7 +249,7 @@ def test_quantities_of_a_swing_are_refused_without_one() -> None:
 
 def test_a_load_along_the_line_is_no_reason_for_warnings() -> None:
     for load in ({"force": "300 N", "direction": "inward"}, {"force": "300 N", "opposes": "outward stroke"}):
-        assert expected_warnings(parse_job(changed(load=[load]))) == []
+        assert stroke_warnings(parse_job(changed(load=[load]))) == []
 
 
 def random_designs(problem: Problem, count: int) -> np.ndarray[Any, np.dtype[np.float64]]:

@@ -12,7 +12,7 @@ from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.search.judging import screen_quantities
 from slidercrank.optimise.search.sampling import distant_rows
-from slidercrank.optimise.search.violation import greatest_of_starts
+from slidercrank.optimise.search.violation import greatest_violations
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem
 
@@ -32,11 +32,11 @@ def test_the_best_starts_are_those_of_all_points(held: dict[str, Bounds]) -> Non
     ):
         evaluator = Evaluator(problem({"peak_torque": "minimise"}, held, offset=(-0.15, 0.15)), branch)
         u = np.random.default_rng(3).random((4000, evaluator.dimension))
-        u = u[evaluator.valid(u)]
-        whole = evaluator.exact(u, goals=False)[1].values.max(axis=1, initial=0.0)
-        assert (evaluator.light_violation(u) <= whole + 1e-12).all()
+        u = u[evaluator.can_evaluate(u)]
+        whole = evaluator.exact_rows(u, goals=False)[1].values.max(axis=1, initial=0.0)
+        assert (evaluator.violation_without_cycle(u) <= whole + 1e-12).all()
         judged = evaluator.evaluations
-        found = greatest_of_starts(evaluator, u, COUNT)
+        found = greatest_violations(evaluator, u, COUNT)
         judged = evaluator.evaluations - judged
         one = np.zeros(len(u), np.int64)
         np.testing.assert_array_equal(distant_rows(found, u, one, COUNT), distant_rows(whole, u, one, COUNT))

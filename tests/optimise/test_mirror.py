@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.problem.problem import Problem, Variant
-from slidercrank.optimise.search.candidates import FrontCandidates, Polished, ragged
+from slidercrank.optimise.search.candidates import FrontCandidates, Polished, object_array
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.mirror import drop_mirrored_branches
 from slidercrank.optimise.solve import solve
@@ -108,10 +108,10 @@ def finished(values: list[list[float]], *, residual: list[float] | None = None) 
     given = np.array(values)
     n, m = given.shape
     found = FrontCandidates.without_designs(np.ones(m))
-    nothing = ragged((np.zeros(0), np.zeros((0, 3))) for _ in range(n))
+    nothing = object_array((np.zeros(0), np.zeros((0, 3))) for _ in range(n))
     still = np.zeros(n) if residual is None else np.array(residual)
     part = Polished(
-        np.full((n, 3), 0.5), given, np.zeros(n), still, nothing, ragged(np.zeros((0, 3)) for _ in range(n))
+        np.full((n, 3), 0.5), given, np.zeros(n), still, nothing, object_array(np.zeros((0, 3)) for _ in range(n))
     )
     found.add(0, part)
     return found

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.optimise.search.pieces import Rows
-from slidercrank.optimise.search.polish import ITERATIONS, convex, polish
+from slidercrank.optimise.search.polish import ITERATIONS, make_convex, polish
 from slidercrank.optimise.search.polish_programme import FIRM, ROUNDING
 
 Array = NDArray[np.float64]
@@ -34,11 +34,11 @@ class Analytic:
         self.limits = list(enumerate(limits or []))
         self.inside = inside
 
-    def valid(self, u: Array) -> NDArray[np.bool_]:
+    def can_evaluate(self, u: Array) -> NDArray[np.bool_]:
         return np.asarray(self.inside(*u.T))
 
-    def exact(self, u: Array) -> tuple[Rows, Rows]:
-        assert self.valid(u).all()
+    def exact_rows(self, u: Array) -> tuple[Rows, Rows]:
+        assert self.can_evaluate(u).all()
         return self._rows(self.goals, u), self._rows(self.limits, u)
 
     @staticmethod
@@ -161,7 +161,7 @@ def test_only_the_chosen_objective_is_improved() -> None:
 
 def test_no_objective_gets_worse_from_a_feasible_start() -> None:
     """By more than a thousandth of what the others gain: so much more does the merit weigh a loss."""
-    _, limits = ROUGH.exact(STARTS)
+    _, limits = ROUGH.exact_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) <= 0.0]
     assert len(start) >= 10
     before = polish(ROUGH, start, np.ones(3), iterations=0)
@@ -175,13 +175,13 @@ def test_no_objective_gets_worse_from_a_feasible_start() -> None:
 
 @pytest.mark.parametrize("iterations", [1, 2, 3, 5, 8])
 def test_a_feasible_design_is_feasible_whenever_the_polish_ends(iterations: int) -> None:
-    _, limits = ROUGH.exact(STARTS)
+    _, limits = ROUGH.exact_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) <= 0.0]
     assert polish(ROUGH, start, np.ones(3), iterations=iterations).violation.max() <= 1e-12
 
 
 def test_an_infeasible_start_is_moved_onto_curved_constraints() -> None:
-    _, limits = ROUGH.exact(STARTS)
+    _, limits = ROUGH.exact_rows(STARTS)
     start = STARTS[limits.values.max(axis=1) > 1e-3]
     assert len(start) >= 10
     assert (polish(ROUGH, start, np.ones(3)).violation <= 1e-12).all()
@@ -229,11 +229,11 @@ def test_a_direction_that_nothing_depends_on_stiffens_no_other() -> None:
         root = random.standard_normal((4, 4))
         hessian, normals = np.zeros((5, 5)), np.zeros((2, 5))
         hessian[:4, :4], normals[:, :4] = root @ root.T + 0.1 * np.eye(4), random.standard_normal((2, 4))
-        np.testing.assert_allclose(convex(hessian, normals)[:4, :4], hessian[:4, :4], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(make_convex(hessian, normals)[:4, :4], hessian[:4, :4], rtol=1e-9, atol=1e-9)
         # What bends down across the rows is mended there alone, with the flat direction beside it.
         along = np.linalg.svd(normals)[2][2:]
         held = normals.T @ np.diag(random.uniform(-30.0, -10.0, 2)) @ normals
-        mended = convex(hessian + held, normals)
+        mended = make_convex(hessian + held, normals)
         assert np.linalg.eigvalsh(mended)[0] > 0.0
         np.testing.assert_allclose(along @ mended @ along.T, along @ hessian @ along.T, rtol=1e-3, atol=1e-3)
 

@@ -16,7 +16,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Variant
 from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
-from slidercrank.optimise.search.loaded_stroke import expected_warnings, front_warnings
+from slidercrank.optimise.search.loaded_stroke import front_stroke_warnings, stroke_warnings
 from slidercrank.optimise.search.sampling import first_samples
 from slidercrank.optimise.solve import solve
 
@@ -217,14 +217,14 @@ def _front(**changes: Any) -> ParetoFront:
 
 def test_a_fast_stroke_that_is_loaded_is_warned_of_before_and_after_the_search() -> None:
     one_side = {"variables": {"offset": ["10 mm", "200 mm"]}}
-    (before,), (after,) = expected_warnings(parse_job(job(**one_side))), front_warnings(_front(**one_side))
+    (before,), (after,) = stroke_warnings(parse_job(job(**one_side))), front_stroke_warnings(_front(**one_side))
     assert before.startswith(
         "in every sampled design the loaded stroke (the outward one, against the load) is the faster one"
     )
     assert after.startswith("in 8 of 8 designs the loaded stroke (the outward one, against the load) is the faster one")
     for sentence in (before, after):
         assert 'require slow_stroke = "outward" among the constraints, with the opposite sign of the offset' in sentence
-    (before,) = expected_warnings(parse_job(job()))
+    (before,) = stroke_warnings(parse_job(job()))
     assert before.startswith("in some sampled designs")
     assert "opposite sign" not in before
 
@@ -242,7 +242,7 @@ def test_a_fast_stroke_that_is_loaded_is_warned_of_before_and_after_the_search()
     ],
 )
 def test_nothing_is_warned_of_where_the_slow_stroke_is_the_loaded_one_or_meant(changes: dict[str, Any]) -> None:
-    assert expected_warnings(parse_job(job(**changes))) == []
+    assert stroke_warnings(parse_job(job(**changes))) == []
 
 
 @pytest.mark.parametrize(
@@ -258,15 +258,15 @@ def test_a_slow_stroke_that_leaves_the_lesser_part_of_the_offsets_is_warned_of(
     changes: dict[str, Any], ends: str, remedy: bool
 ) -> None:
     problem = parse_job(job(**changes))
-    warnings = expected_warnings(problem)
+    warnings = stroke_warnings(problem)
     assert len(warnings) == remedy
     if not remedy:
         return
     assert f"leaves only offsets from {ends} of the range" in warnings[0]
     assert "let it turn clockwise" in warnings[0]
     other = deepcopy(changes) | {"mechanism": {"speed": "-120 rpm"}}
-    assert expected_warnings(parse_job(job(**other))) == []
+    assert stroke_warnings(parse_job(job(**other))) == []
     front = solve(problem)
-    assert front_warnings(front) == (warnings if len(front) else [])
+    assert front_stroke_warnings(front) == (warnings if len(front) else [])
     sizes = [float(end) * 1e-3 for end in ends.removesuffix(" mm").split(" to ")]
     assert ((front.dimensions[:, 2] >= sizes[0]) & (front.dimensions[:, 2] <= sizes[1])).all()

@@ -14,7 +14,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
-from slidercrank.optimise.search.loaded_stroke import expected_warnings, front_warnings
+from slidercrank.optimise.search.loaded_stroke import front_stroke_warnings, stroke_warnings
 from slidercrank.optimise.solve import solve
 from tests.optimise.test_slow_stroke import job as steady_job
 
@@ -211,9 +211,9 @@ def test_an_infeasible_job_says_that_the_slow_stroke_stands_in_the_way() -> None
 def test_a_fast_stroke_that_is_loaded_is_warned_of_by_the_times() -> None:
     """The load opposes the outward stroke; this profile makes it the slow one throughout, its opposite the fast one."""
     small = {"variables": {"offset": ["-30 mm", "30 mm"]}}
-    assert expected_warnings(parse_job(job(**small, mechanism={"speed_profile": {"sines": [0.8]}}))) == []
+    assert stroke_warnings(parse_job(job(**small, mechanism={"speed_profile": {"sines": [0.8]}}))) == []
     problem = parse_job(job(**small, mechanism={"speed_profile": {"sines": [-0.8]}}))
-    (before,), (after,) = expected_warnings(problem), front_warnings(solve(problem))
+    (before,), (after,) = stroke_warnings(problem), front_stroke_warnings(solve(problem))
     assert before.startswith(
         "in every sampled design the loaded stroke (the outward one, against the load) is the faster one"
     )

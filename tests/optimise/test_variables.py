@@ -195,7 +195,7 @@ def test_sheets_count_signs_times_variants() -> None:
     designs, _, _ = evaluator.screen(u)
     assert designs.shape == (50, 4)
     assert np.all(designs[:, 1] == 0.3)
-    goals, limits = evaluator.exact(u[evaluator.valid(u)])
+    goals, limits = evaluator.exact_rows(u[evaluator.can_evaluate(u)])
     assert goals.gradients.shape[2] == limits.gradients.shape[2] == 3
 
 

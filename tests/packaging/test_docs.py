@@ -17,7 +17,7 @@ from docs.site import hooks
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job, with_files
-from slidercrank.optimise.search.loaded_stroke import expected_warnings
+from slidercrank.optimise.search.loaded_stroke import stroke_warnings
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.preview import AllowedModel, PreviewModel
 from slidercrank.service.cli import app
@@ -283,7 +283,7 @@ def test_the_parts_of_a_preview_are_those_that_the_page_lists(pages: dict[Path, 
 def test_the_first_job_of_the_page_presses_slowly(pages: dict[Path, str], root: Path) -> None:
     whole, *_ = _tables(pages[root / "docs" / "jobs.md"])
     problem = parse_job({**whole, "optimiser": {"designs": 10, "samples": 500}})
-    assert expected_warnings(problem) == []
+    assert stroke_warnings(problem) == []
     front = solve(problem)
     assert set(front.designs["loaded_stroke"]) == {"outward"}
     assert set(front.designs["slow_stroke"]) == {"outward"}
@@ -292,4 +292,4 @@ def test_the_first_job_of_the_page_presses_slowly(pages: dict[Path, str], root: 
 
 @pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press", "servo_press"])
 def test_no_shipped_job_loads_its_fast_stroke(job: str, root: Path) -> None:
-    assert expected_warnings(load_job(root / "runs" / f"{job}.toml")) == []
+    assert stroke_warnings(load_job(root / "runs" / f"{job}.toml")) == []

@@ -18,9 +18,9 @@ from ...front.neighbours import neighbours
 from ...problem.problem import Problem
 from ...problem.violation import FEASIBLE
 from ...search.assemble import SELECTING, assemble, span_of
-from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stacked
+from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stack_rows
 from ...search.evaluation import Evaluator
-from ...search.recorded_polish import polished, projected
+from ...search.recorded_polish import polish_recorded, project_recorded
 from ...search.sampling import first_samples, generator, sample_near
 from ...search.search import (
     FIRST,
@@ -68,8 +68,8 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
     candidates, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
     several = len(problem.objectives) > 1
     starts = []
-    for group in archive.groups():
-        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading(0, _STARTS)
+    for group in archive.feasible_and_infeasible():
+        rows = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading_rows(0, _STARTS)
         starts += group[rows].by_branch(evaluators)
         if several:
             for index, ends in _polish_extremes(evaluators, group, candidates.span):
@@ -80,11 +80,11 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 run.begin_round("polishing")
-                candidates.add(index, polished(evaluators[index], u[begin : begin + BATCH], candidates.span))
+                candidates.add(index, polish_recorded(evaluators[index], u[begin : begin + BATCH], candidates.span))
                 run.report_round("polishing", free, archive)
         if attempt == ROUNDS - 1 or not len(candidates) or not free:
             break
-        starts = challengers(problem, free, archive, candidates, attempt, run.stage_reporter(SELECTING))
+        starts = points_to_polish_next(problem, free, archive, candidates, attempt, run.stage_reporter(SELECTING))
         if not starts:
             break
     return assemble(problem, evaluators, candidates, run) if len(candidates) else None
@@ -97,7 +97,7 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
     """
     candidates = _start_candidates(problem, archive, run)
     several = len(problem.objectives) > 1
-    for group in archive.groups():
+    for group in archive.feasible_and_infeasible():
         rows = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
         add_projected(candidates, group[rows], evaluators)
     return assemble(problem, evaluators, candidates, run) if len(candidates) else None
@@ -115,8 +115,8 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
 def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: list[Evaluator]) -> None:
     """Add candidates unchanged, except those that violate constraints, which are moved onto them."""
     for index, u in chosen.by_branch(evaluators):
-        valid = u[evaluators[index].valid(u)]
-        candidates.add(index, projected(evaluators[index], valid, candidates.span))
+        valid = u[evaluators[index].can_evaluate(u)]
+        candidates.add(index, project_recorded(evaluators[index], valid, candidates.span))
 
 
 def _candidate_count(problem: Problem) -> int:
@@ -146,19 +146,19 @@ def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column in range(len(span)):
-        for index, u in group[group.leading(column, _EXTREMES)].by_branch(evaluators):
-            polished_batch = polished(evaluators[index], u, span, chosen=(column,))
+        for index, u in group[group.leading_rows(column, _EXTREMES)].by_branch(evaluators):
+            polished_batch = polish_recorded(evaluators[index], u, span, chosen=(column,))
             parts.setdefault(index, []).append((column, polished_batch[_distinct_points(polished_batch.u)]))
             yield index, None
     for index, batches in parts.items():
         first, *rest = (polished_batch for _, polished_batch in batches)
         alone = first.join(*rest)
         best_in = np.concatenate([np.full(len(polished_batch), column) for column, polished_batch in batches])
-        firm = polished(evaluators[index], alone.u, span, best_in=best_in)
+        firm = polish_recorded(evaluators[index], alone.u, span, best_in=best_in)
         best_values = np.arange(len(alone)), best_in
         # No difference counts if both are infinite because there is no least value.
         lost = firm.values[best_values] > alone.values[best_values] + SAME
-        unrestricted = polished(evaluators[index], alone.u, span)
+        unrestricted = polish_recorded(evaluators[index], alone.u, span)
         yield index, firm.join(alone[lost | (firm.violation > FEASIBLE)], unrestricted)
 
 
@@ -168,7 +168,7 @@ def _distinct_points(u: Array) -> IntArray:
     return np.flatnonzero((is_distinct | np.triu(np.ones_like(is_distinct))).all(axis=1))
 
 
-def challengers(
+def points_to_polish_next(
     problem: Problem,
     evaluators: list[Evaluator],
     archive: Archive,
@@ -186,7 +186,7 @@ def challengers(
     _screen_fresh_points(problem, evaluators, archive, best, attempt)
     report(0, 1)
     screened = archive.values / best.span
-    better, uncovered = _compare_with_front(screened, front)
+    better, uncovered = _masks_of_dominating_and_undominated(screened, front)
     report(0, 1)
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(better & archive.is_feasible)[:_FILLING]
@@ -196,7 +196,7 @@ def challengers(
         rows = np.flatnonzero(uncovered & ~better)
         rows = _best_contributors(screened, rows[:: 1 + len(rows) // _FILLING], front, wanting, report)
         starts += archive[rows].by_branch(evaluators)
-        starts += _gap_middles(evaluators, best, wanting)
+        starts += _midpoints_of_gaps(evaluators, best, wanting)
     return starts
 
 
@@ -212,14 +212,14 @@ def _screen_fresh_points(
     def points() -> Iterator[tuple[int, Evaluator, Array]]:
         for index, evaluator in enumerate(evaluators):
             yield index, evaluator, first_samples(everywhere, evaluator.dimension, seed, 200 + k * attempt + index)
-            parents = stacked(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
+            parents = stack_rows(np.zeros((0, evaluator.dimension)), best.u)[:, : evaluator.dimension]
             near = sample_near(parents, best.values, nearby, _WIDTH, random)
             yield index, evaluator, np.concatenate([near, parents[best.branch != index]])
 
     archive.screen_all(points())
 
 
-def _compare_with_front(screened: Array, front: Array) -> tuple[Mask, Mask]:
+def _masks_of_dominating_and_undominated(screened: Array, front: Array) -> tuple[Mask, Mask]:
     """Return which screened designs dominate a design of the front, and which are not dominated by any."""
     undominated = np.zeros(len(front) + len(screened), dtype=bool)
     undominated[nondominated(np.concatenate([front, screened]))] = True
@@ -237,7 +237,7 @@ def _best_contributors(screened: Array, rows: IntArray, front: Array, count: int
     return rows[picked[picked >= len(front)] - len(front)]
 
 
-def _gap_middles(evaluators: list[Evaluator], best: FrontCandidates, count: int) -> list[tuple[int, Array]]:
+def _midpoints_of_gaps(evaluators: list[Evaluator], best: FrontCandidates, count: int) -> list[tuple[int, Array]]:
     """Return the midpoints between neighbours on the front, farthest apart first."""
     scaled = best.values / best.span
     n, m = scaled.shape

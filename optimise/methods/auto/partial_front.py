@@ -74,7 +74,10 @@ def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> 
 def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates) -> None:
     """Add designs of an archive, moved onto the constraints."""
     # Designs that need no move come first.
-    first, *rest = (group[_evenly_spread_rows(group.values, problem.settings.designs)] for group in archive.groups())
+    first, *rest = (
+        group[_evenly_spread_rows(group.values, problem.settings.designs)]
+        for group in archive.feasible_and_infeasible()
+    )
     chosen = first.join(*rest)
     end = time.perf_counter() + _PROJECTING
     # Each batch is spread over the whole front.

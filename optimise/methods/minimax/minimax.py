@@ -46,7 +46,7 @@ _LAST = 4096  # samples for the starts if none is feasible
 def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the local optima at which the descents ended."""
     screened = explore(_limit_samples(problem), evaluators, run)
-    scale, begin = starts(problem, evaluators, screened)
+    scale, begin = descent_starts(problem, evaluators, screened)
     run.rounds = len(run.round_reports) + len(begin)
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     archive = Archive.empty(1)
@@ -81,7 +81,9 @@ def _limit_samples(problem: Problem) -> Problem:
     return replace(problem, settings=replace(problem.settings, samples=samples))
 
 
-def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> tuple[float, list[tuple[int, Array]]]:
+def descent_starts(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive
+) -> tuple[float, list[tuple[int, Array]]]:
     """Return the objective's scale, and branch and point of each start.
 
     They are the best distinct designs of an archive, or the least violating points if it is empty.
@@ -98,7 +100,7 @@ def starts(problem: Problem, evaluators: list[Evaluator], archive: Archive) -> t
 
 def _highest_piece(evaluator: Evaluator, u: Array) -> float:
     """Return the greatest piece at a point; a recorded step."""
-    heights = evaluator.step("top", (u,), lambda: (evaluator.exact(u[None])[0].values.max(axis=1),))
+    heights = evaluator.step("top", (u,), lambda: (evaluator.exact_rows(u[None])[0].values.max(axis=1),))
     return float(heights[0][0])
 
 

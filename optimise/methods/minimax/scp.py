@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....model.arrays import Array
-from ...search.pieces import Rows, alone, bent, difference
+from ...search.pieces import Rows, rows_of_designs, values_corrected_for_curvature, weighted_gradient_change
 from ...search.polish import Evaluates
 from .subproblem import Step, Subproblem
 
@@ -65,7 +65,7 @@ class Descent:
         radius, weight = _RADIUS, _WEIGHT
         root = np.zeros((len(start), len(start)))
         for iteration in range(_ITERATIONS):
-            step, weight = self._programme(point, root, radius, weight)
+            step, weight = self._step_and_penalty(point, root, radius, weight)
             if step is None:
                 break
             point.step, point.residual = step, residual_of(point, step)
@@ -73,13 +73,13 @@ class Descent:
             converged = point.residual <= CONVERGED and point.violation <= _MET
             if converged or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
                 break
-            root = self._root(point, step)
-            step, weight = self._programme(point, root, radius, weight)
+            root = self._hessian_root(point, step)
+            step, weight = self._step_and_penalty(point, root, radius, weight)
             if step is None:
                 break
             gain, trial = self._try(point, step, root, weight)
             if gain < _POOR:
-                again = self._corrected(point, trial, step, root, radius, weight)
+                again = self._try_second_order_correction(point, trial, step, root, radius, weight)
                 if again is not None and again[0] > gain:
                     gain, trial = again
             size = float(np.abs(step.move).max())
@@ -92,9 +92,9 @@ class Descent:
         return point
 
     def _point_at(self, u: Array) -> Point:
-        goals, limits = self.evaluator.exact(u[None])
+        goals, limits = self.evaluator.exact_rows(u[None])
         scaled = replace(goals, values=goals.values / self.scale, gradients=goals.gradients / self.scale)
-        return Point(u, alone(scaled, 0), alone(limits, 0))
+        return Point(u, rows_of_designs(scaled, 0), rows_of_designs(limits, 0))
 
     def _solve(
         self, point: Point, goals: Array, limits: Array, root: Array, radius: float, weight: float
@@ -112,7 +112,7 @@ class Descent:
             weight,
         )
 
-    def _programme(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
+    def _step_and_penalty(self, point: Point, root: Array, radius: float, weight: float) -> tuple[Step | None, float]:
         """Return the step, and the penalty that its multipliers require: an exact penalty exceeds their sum."""
         while True:
             step = self._solve(point, point.goals.values, point.limits.values, root, radius, weight)
@@ -127,7 +127,7 @@ class Descent:
         """Return actual over predicted decrease, and the design after a step; None if it cannot rotate fully."""
         predicted = weight * (point.violation - step.slack) - step.top - 0.5 * float(np.sum((root @ step.move) ** 2))
         u = np.clip(point.u + step.move, 0.0, 1.0)
-        if not self.evaluator.valid(u[None])[0]:
+        if not self.evaluator.can_evaluate(u[None])[0]:
             return -1.0, None
         trial = self._point_at(u)
         actual = point.merit(weight) - trial.merit(weight)
@@ -136,14 +136,14 @@ class Descent:
             return (1.0 if abs(actual) <= noise else -1.0), trial
         return (actual + noise) / predicted, trial
 
-    def _corrected(
+    def _try_second_order_correction(
         self, point: Point, trial: Point | None, step: Step, root: Array, radius: float, weight: float
     ) -> tuple[float, Point | None] | None:
         """Return the same for the step corrected for the curvature of the rows along it."""
         if trial is None:
             return None
         goals, limits = (
-            bent(present, after, step.move)
+            values_corrected_for_curvature(present, after, step.move)
             for present, after in ((point.goals, trial.goals), (point.limits, trial.limits))
         )
         corrected = self._solve(point, goals, limits, root, radius, weight)
@@ -153,17 +153,19 @@ class Descent:
         # to.
         return self._try(point, replace(step, move=corrected.move), root, weight)
 
-    def _root(self, point: Point, step: Step) -> Array:
+    def _hessian_root(self, point: Point, step: Step) -> Array:
         """Return R with R'R the Lagrangian's Hessian, convexified along the active rows."""
         k = len(point.u)
         moves = np.where(point.u < 0.5, _DIFFERENCE, -_DIFFERENCE)
         moved = point.u + np.diag(moves)
-        valid = self.evaluator.valid(moved)
+        valid = self.evaluator.can_evaluate(moved)
         if not valid.all():
             return np.zeros((k, k))
-        goals, limits = self.evaluator.exact(moved)
+        goals, limits = self.evaluator.exact_rows(moved)
         goals = replace(goals, gradients=goals.gradients / self.scale)
-        hessian = difference(point.goals, goals, step.goals) + difference(point.limits, limits, step.limits)
+        hessian = weighted_gradient_change(point.goals, goals, step.goals) + weighted_gradient_change(
+            point.limits, limits, step.limits
+        )
         return _convex_root(
             0.5 * (hessian / moves[:, None] + (hessian / moves[:, None]).T), _active_normals(point, step)
         )

@@ -18,7 +18,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, balance
 from slidercrank.optimise.sizing.input_words import Measure
-from slidercrank.optimise.sizing.shaking_rows import rows, with_masses
+from slidercrank.optimise.sizing.shaking_rows import shaking_rows, with_masses
 from tests.model.cases import linkage_of, random_designs, random_machine
 
 Array = NDArray[np.float64]
@@ -52,7 +52,7 @@ def test_shaking_is_affine_in_counterweight_and_rod_balance() -> None:
         mass, at = random.uniform(0.1, 3.0), random.uniform(-0.1, 0.1, 2)
         own = random.uniform(0.0, 1e-2)
         x = np.array([*random.uniform(-0.2, 0.2, 2), mass, *(mass * at), mass * at @ at + own])
-        force, moment = (table @ np.array([1.0, *x]) for table in rows(machine, linkage, TURN[:9]))
+        force, moment = (table @ np.array([1.0, *x]) for table in shaking_rows(machine, linkage, TURN[:9]))
         radius = random.uniform(0.01, 0.1)
         expected = shaking_curves(with_masses(machine, linkage, x, radius), linkage, TURN[:9])
         size = np.abs(force).max()
@@ -142,7 +142,7 @@ def by_scipy(machine: Mechanism, linkage: Linkage, found: Balance, arm: float | 
     count, moment = (2, 0.1) if space is None else (6, 0.1)
     reach = 1.0 if space is None else space.radius
     unit = np.array([moment, moment, 1.0, reach, reach, reach**2])[:count]
-    force, turning = rows(machine, linkage, np.concatenate([TURN[::4], near]))
+    force, turning = shaking_rows(machine, linkage, np.concatenate([TURN[::4], near]))
     size = np.abs(force[..., 0]).max()
     f, g = force[..., : count + 1] / size, turning[..., : count + 1] / (size * (arm or 1.0))
     f[..., 1:] *= unit

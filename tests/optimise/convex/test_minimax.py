@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.methods.minimax.minimax import starts
+from slidercrank.optimise.methods.minimax.minimax import descent_starts
 from slidercrank.optimise.methods.minimax.scp import Descent, Point, residual_of
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.violation import FEASIBLE
@@ -27,7 +27,7 @@ STROKE: dict[str, Bounds] = {"stroke": (0.08, 0.09), "transmission_angle": (degr
 def best_end(wanted: Problem) -> tuple[Evaluator, Point, float]:
     """Return the best feasible end of the descents, its evaluator, and the scale of the objective."""
     evaluators = [Evaluator(wanted, branch) for branch in elimination_branches(wanted)]
-    scale, begin = starts(wanted, evaluators, explore(wanted, evaluators))
+    scale, begin = descent_starts(wanted, evaluators, explore(wanted, evaluators))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     ends = [(evaluators[index], descents[index].run(u)) for index, u in begin]
     evaluator, end = min((item for item in ends if item[1].violation <= FEASIBLE), key=lambda item: item[1].top)
@@ -146,7 +146,7 @@ def test_a_start_that_is_no_optimum_has_a_residual() -> None:
     """The residual is no formality: one step away from the optimum the multipliers leave what the gradient is."""
     descent = Descent(Analytic([[squared(0.5, 0.5)]]), 1.0)
     point = descent._point_at(np.array([0.6, 0.5]))
-    step, _ = descent._programme(point, np.zeros((2, 2)), 0.01, 10.0)
+    step, _ = descent._step_and_penalty(point, np.zeros((2, 2)), 0.01, 10.0)
     assert step is not None
     assert residual_of(point, step) >= 0.1
 

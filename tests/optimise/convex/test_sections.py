@@ -23,8 +23,8 @@ from slidercrank.model.machine.strength import Material
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.problem.section_limits import SectionLimits
-from slidercrank.optimise.sizing.limit_states import joint_terms, rod_loads
-from slidercrank.optimise.sizing.section_loads import joint_loads, whip_of
+from slidercrank.optimise.sizing.limit_states import joint_load_terms, rod_loads
+from slidercrank.optimise.sizing.section_loads import greatest_rod_accelerations, joint_loads
 from slidercrank.optimise.sizing.sections import Sections, size_sections
 
 STEEL = Material(
@@ -67,7 +67,7 @@ def random_task(seed: int) -> tuple[Mechanism, Linkage, Material, SectionLimits]
     return mechanism, Linkage(crank, rod, offset, mechanism.branch), material, limits
 
 
-known_whip = cache(whip_of)  # no section counts in it
+known_whip = cache(greatest_rod_accelerations)  # no section counts in it
 sized = cache(size_sections)
 
 
@@ -244,7 +244,9 @@ def test_the_bound_of_the_rods_moment_holds_and_is_close() -> None:
         shear = cumulative_trapezoid(load, x, initial=0) + left * (x >= 0.0) + right * (x >= length)
         worst = max(worst, float(np.abs(cumulative_trapezoid(shear, x, initial=0)).max()))
     joints = dict.fromkeys(("rod", "rod compression", "rod fatigue", "crank pin", "slider pin"), 0.0)
-    bound = rod_loads(bar.width, bar.depth, length, joints, whip_of(mechanism, LINKAGE), STEEL, LIMITS).moment
+    bound = rod_loads(
+        bar.width, bar.depth, length, joints, greatest_rod_accelerations(mechanism, LINKAGE), STEEL, LIMITS
+    ).moment
     assert worst <= bound <= 1.1 * worst
 
 
@@ -339,9 +341,11 @@ def test_eyes_of_a_few_micrometres_carry_what_they_must(seed: int) -> None:
     )
     found = size_sections(machine, linkage, material, limits)
     joints = joint_loads(replace(machine, crank=found.crank, rod=found.rod), linkage)
-    terms = joint_terms(joints, material, limits)
+    terms = joint_load_terms(joints, material, limits)
     width, depth = found.rod.width, found.rod.depth
-    own = rod_loads(width, depth, float(linkage.rod), terms, whip_of(machine, linkage), material, limits)
+    own = rod_loads(
+        width, depth, float(linkage.rod), terms, greatest_rod_accelerations(machine, linkage), material, limits
+    )
     for pin, diameter in (("crank pin", limits.crank_pin), ("slider pin", limits.slider_pin)):
         raised = limits.eye_concentration / ((width - diameter) * depth)
         for name, used in (

@@ -133,7 +133,7 @@ def test_no_quantity_of_a_design_depends_on_the_designs_beside_it() -> None:
 def test_the_polish_of_a_design_does_not_depend_on_the_designs_beside_it(name: str) -> None:
     evaluator = Evaluator(shipped(name), elimination_branches(shipped(name))[0])
     start = np.random.default_rng(1).random((200, evaluator.dimension))
-    start = start[evaluator.valid(start)][:12]
+    start = start[evaluator.can_evaluate(start)][:12]
     scale = np.ones(len(shipped(name).objectives))
     whole = polish(evaluator, start, scale, iterations=10)
     parts = [polish(evaluator, part, scale, iterations=10) for part in (start[:1], start[1:8], start[8:])]

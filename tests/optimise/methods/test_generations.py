@@ -172,9 +172,9 @@ def test_nothing_free_is_one_design() -> None:
 
 def test_reference_directions_are_about_as_many_as_designs() -> None:
     # Das and Dennis: (p + m - 1 over m - 1) directions; 13 divisions of 3 axes give 105, 12 give 91.
-    assert evolutionary.divisions(100, 3) == 12
-    assert evolutionary.divisions(100, 4) == 6
-    assert evolutionary.divisions(100, 2) == 99
+    assert evolutionary.axis_divisions(100, 3) == 12
+    assert evolutionary.axis_divisions(100, 4) == 6
+    assert evolutionary.axis_divisions(100, 2) == 99
 
 
 def test_a_population_of_one_cannot_breed() -> None:

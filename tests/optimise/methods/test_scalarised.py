@@ -12,7 +12,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume, scaling
 from slidercrank.optimise.methods import scalarised
 from slidercrank.optimise.methods.scalar_objective import Form, Programme
-from slidercrank.optimise.methods.scalarised import grid, simplex
+from slidercrank.optimise.methods.scalarised import grid, simplex_weights
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
@@ -93,7 +93,7 @@ def test_cancelling_keeps_what_was_found(method: str) -> None:
 
 
 def test_points_of_the_simplex_are_all_sums_of_equal_shares() -> None:
-    points = simplex(3, 20)
+    points = simplex_weights(3, 20)
     assert len(points) == comb(5 + 2, 2)  # the first lattice with 20 points or more has five parts
     assert len({tuple(row) for row in np.round(points * 5).tolist()}) == 21
     assert points.sum(axis=1) == pytest.approx(1.0)
@@ -119,10 +119,10 @@ def test_slopes_of_a_programme_are_the_differences_of_its_rows(seed: int) -> Non
     evaluator = Evaluator(given, elimination_branches(given)[0])
     random = np.random.default_rng(seed)
     u = random.random((50, evaluator.dimension))
-    u = u[evaluator.valid(u)][0]
+    u = u[evaluator.can_evaluate(u)][0]
     programme = Programme(evaluator, Form.single(2, 0, rho=0.1), np.array([0.0, 0.0]), np.array([100.0, 1.0]))
-    z = programme.begin(u)
-    slopes = programme.slopes(z)
+    z = programme.start_vector(u)
+    slopes = programme.inequality_slopes(z)
     for column in range(len(z)):
         step = 1e-6 * np.eye(len(z))[column]
         found = (programme.inequalities(z + step) - programme.inequalities(z - step)) / 2e-6
@@ -133,8 +133,8 @@ def test_a_programme_begins_where_its_rows_hold_but_for_the_problem_s_own_constr
     given = problem({"peak_torque": "minimise", "footprint": "minimise"}, designs=10)
     evaluator = Evaluator(given, elimination_branches(given)[0])
     u = np.full((1, evaluator.dimension), 0.4)
-    assert evaluator.valid(u).all()
+    assert evaluator.can_evaluate(u).all()
     programme = Programme(evaluator, Form.single(2, 1), np.zeros(2), np.array([100.0, 0.1]))
-    z = programme.begin(u[0])
+    z = programme.start_vector(u[0])
     assert programme.inequalities(z).max() <= max(1e-12, programme.violation(u[0]))
     assert z[-1] == pytest.approx(programme.objectives(u[0])[1])

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.methods.local import by_slsqp, samples
+from slidercrank.optimise.methods.local import by_slsqp, starting_samples
 from slidercrank.optimise.methods.scalar_objective import Form, Programme
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -100,9 +100,9 @@ def test_any_start_descends_to_the_optimum_on_an_equality() -> None:
     """Not the best of many starts by luck: every one of a dozen ends where the default does."""
     given = EQUALITY
     evaluators = [Evaluator(given, branch) for branch in elimination_branches(given)]
-    begun = samples(given, evaluators)
+    begun = starting_samples(given, evaluators)
     best = best_on_the_equality()
-    for row in begun.leading(0, 12):
+    for row in begun.leading_rows(0, 12):
         programme = Programme(evaluators[0], Form.single(1, 0), np.zeros(1), np.ones(1))
         found = by_slsqp(programme, begun.u[row])
         assert found is not None

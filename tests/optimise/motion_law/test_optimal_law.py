@@ -155,7 +155,7 @@ def test_no_random_law_is_better_than_the_bound() -> None:
     turn = LawTurn(FEEDER, LINKAGE)
     found = {name: optimal_law(FEEDER, LINKAGE, LawRequest(objective=name, **wide)) for name in TORQUES}
     reachable = Reachable(turn, limits)
-    low, high = limits.energies(turn.angle, turn.terms.inertia, turn.terms.travel)
+    low, high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
     steady = turn.end_terms.load[0] + 0.5 * FEEDER.speed**2 * turn.end_terms.inertia_slope[0]
     tried = 0
     for _ in range(200):
