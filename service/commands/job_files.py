@@ -67,6 +67,16 @@ def schema() -> None:
     print_output(json_text(job_schema()))
 
 
+TERMS = {
+    "slow_stroke": "this column names the stroke that takes longer, which [constraints] may require",
+    "loaded_stroke": "this column names the stroke in which the loads do more work against the motion",
+    "residual": "this column measures how far a design is from the optimality conditions",
+    "knee": "the knee is the design nearest to the ideal point",
+    "yield": "the yield is the fraction of machines within a limit, from `analyse --show tolerances --limit`",
+}
+"""Words in results that are not quantities, each with its meaning."""
+
+
 def quantities(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="NAME", help="Quantities to explain. [default: list all]")
@@ -87,6 +97,8 @@ def quantities(
 
             near = closest(name, facts)
             remedy = f"did you mean {near}?" if near else "list all with `slidercrank quantities`"
+            if name in TERMS:
+                remedy = f"{TERMS[name]}; see docs/glossary.md"
             raise InputError(f"no quantity is called {name!r}; {remedy}")
     chosen = [facts[name] for name in dict.fromkeys(names or facts)]
     print_record(json, {"quantities": chosen}, lambda screen: (_explain if names else _list)(screen, chosen))

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
 import slidercrank as sc
 from slidercrank.objectives.registry import FACTS
+from slidercrank.objectives.tables.turn_columns import OF_A_TURN
+from slidercrank.optimise.problem.table_columns import RESIDUAL
+from slidercrank.service.commands.job_files import TERMS
 from tests.service.conftest import Command
 
 
@@ -39,3 +43,16 @@ def test_an_unknown_quantity_is_refused_with_the_nearest_name(command: Command) 
     done = command("quantities", "peaktorque")
     assert done.exit_code == 2
     assert done.stderr == "slidercrank: no quantity is called 'peaktorque'; did you mean peak_torque?\n"
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_a_word_of_the_results_is_explained_and_leads_to_the_glossary(
+    name: str, command: Command, pytestconfig: pytest.Config
+) -> None:
+    done = command("quantities", name)
+    assert done.exit_code == 2
+    assert done.stderr == f"slidercrank: no quantity is called '{name}'; {TERMS[name]}; see docs/glossary.md\n"
+    glossary = (pytestconfig.rootpath / "docs/glossary.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| ([^|]+) \|", glossary, re.MULTILINE)
+    assert name.replace("_", " ") in {term.strip() for row in rows for term in row.split(",")}
+    assert ("this column" in TERMS[name]) == (name in {*OF_A_TURN, RESIDUAL})
