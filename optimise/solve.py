@@ -22,8 +22,8 @@ from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, search_with
 from .methods.auto.partial_front import partial_front
 from .methods.registry import method_of, require_gradients, require_supported_equalities, require_supported_settings
-from .problem.always_zero import require_ranking
-from .problem.impossible import require_possible
+from .problem.always_zero import require_nonzero_quantities
+from .problem.impossible import require_possible_problem
 from .problem.problem import Problem, require_problem
 from .search.assemble import empty_front
 from .search.checkpoints import Cancelled, Checkpoints, Record, require_records_of
@@ -65,8 +65,8 @@ def solve(
         raise InputError(f"progress must be True, for a bar, or a function; got {progress!r}")
     require_supported_settings(problem)
     require_gradients(problem)
-    require_ranking(problem)
-    require_possible(problem)
+    require_nonzero_quantities(problem)
+    require_possible_problem(problem)
     checkpoints = Checkpoints(cancelled=cancelled, keep=keep, past=resume, identity=partial(identity_of, problem))
     with ExitStack() as stack:
         if progress is True:

@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Array
 from ..front.front import ParetoFront
 from ..problem.problem import Problem
-from ..problem.robust import nominal
+from ..problem.robust import nominal_problem
 from ..problem.violation import FEASIBLE
 from ..solve import solve
 
@@ -38,7 +38,7 @@ class RobustCost:
 def robust_cost(front: ParetoFront) -> RobustCost | None:
     """Return the price of a front's robustness; None if the nominal problem has no front. Solves that problem."""
     problem = front.problem
-    plain = solve(nominal(problem))
+    plain = solve(nominal_problem(problem))
     if not len(plain) or not len(front):
         return None
     keeps = 0

@@ -18,10 +18,10 @@ from ..problem.robust import asks_robust
 from ..problem.violation import (
     FEASIBLE,
     all_minimised,
-    clearly_turning,
     constraints_of,
-    costly,
     greatest_violation,
+    needs_cycle,
+    rotates_beyond_rounding,
 )
 
 _BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations to judge between two progress reports
@@ -165,9 +165,9 @@ def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimension
 
 def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
     """Return the designs (n, 3 + v) that meet every requirement, with their objectives."""
-    turning = designs[clearly_turning(designs)]
+    turning = designs[rotates_beyond_rounding(designs)]
     constraints = constraints_of(part)
-    slow = [item for item in constraints if costly(part.quantity(item.quantity))]
+    slow = [item for item in constraints if needs_cycle(part.quantity(item.quantity))]
     worst = greatest_violation(part, turning, [item for item in constraints if item not in slow])
     rows = np.flatnonzero(worst <= FEASIBLE)
     if slow and not dimensions_only:

@@ -7,7 +7,7 @@ from ...objectives.count_text import counted
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..front.front import ParetoFront
 from ..problem.problem import Problem
-from ..problem.violation import constraints_of, violated_by
+from ..problem.violation import constraints_of, relative_violation
 from .combinations import Judged
 
 
@@ -71,7 +71,7 @@ def failure_message(problem: Problem, judged: Judged) -> str:
     for item in constraints_of(judged.part):
         quantity = judged.part.quantity(item.quantity)
         value = judged.part.evaluate(judged.nearest[None], [item.quantity])[:, 0]
-        value_of_nearest, short = float(value[0]), float(violated_by(item, value)[0])
+        value_of_nearest, short = float(value[0]), float(relative_violation(item, value)[0])
         bound = item.upper if item.upper is not None and value_of_nearest > item.upper else item.lower
         if short > worst and bound is not None:
             worst = short

@@ -28,7 +28,7 @@ from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
 from ..problem.questions import question_to, subject_of
 from ..problem.requirements import Objective
-from ..problem.table_columns import least_field
+from ..problem.table_columns import sufficient_option_field
 from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
 from .constant_numbers import column_ranges
 from .discrete_search import DiscreteSearch
@@ -334,7 +334,7 @@ class ParetoFront:
         labels = self.problem.variants[self.variants[row]].labels if self.variants else ()
         stay = []
         for name, label in zip(self.problem.choices, labels, strict=True):
-            least = self.columns[key][row] if (key := least_field(name)) in self.columns else label
+            least = self.columns[key][row] if (key := sufficient_option_field(name)) in self.columns else label
             also = (
                 f"; the smallest one that suffices for the given design is {least}" if least not in ("", label) else ""
             )

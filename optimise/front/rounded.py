@@ -16,7 +16,7 @@ from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.table_columns import slack_field
-from ..problem.violation import FEASIBLE, violated_by
+from ..problem.violation import FEASIBLE, relative_violation
 from .rounding_search import REACHES
 from .slack import slack_of
 
@@ -118,7 +118,8 @@ class Rounded:
     def violations(self) -> Array:
         """Relative violation (n, c) of every constraint; zero or less if it is met."""
         columns = [
-            violated_by(constraint, self.constraint_values[:, j]) for j, constraint in enumerate(self.constraints)
+            relative_violation(constraint, self.constraint_values[:, j])
+            for j, constraint in enumerate(self.constraints)
         ]
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 

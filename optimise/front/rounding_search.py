@@ -21,11 +21,11 @@ from ..problem.robust import asks_robust
 from ..problem.violation import (
     FEASIBLE,
     all_minimised,
-    clearly_turning,
     constraints_of,
-    costly,
     greatest_violation,
     minimised,
+    needs_cycle,
+    rotates_beyond_rounding,
 )
 from .dominance import nondominated
 
@@ -75,7 +75,7 @@ class RoundingSearch:
         self.part, self.design, self.span, self.steps, self.ranges = part, design, span, steps, part.ranges
         self.allowed = allowed
         self.constraints = constraints_of(part)
-        self.quick = [item for item in self.constraints if not costly(part.quantity(item.quantity))]
+        self.quick = [item for item in self.constraints if not needs_cycle(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
         self.most = _MOST_ROBUST if asks_robust(part) else _MOST
         self.design_objectives = all_minimised(part, self.values(design[None]))[0]
@@ -194,7 +194,7 @@ class RoundingSearch:
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
             return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
-        return np.asarray(designs[clearly_turning(designs)])
+        return np.asarray(designs[rotates_beyond_rounding(designs)])
 
     def _steps_away(self, designs: Array) -> Array:
         """Return the greatest distance (n,) in any number from the given design, in steps."""
@@ -249,7 +249,7 @@ class RoundingSearch:
         """Return the greatest loss (n,) over the objectives with closed forms."""
         losses = np.full(len(designs), -np.inf)
         for place, objective in enumerate(self.part.objectives):
-            if not costly(self.part.quantity(objective.quantity)):
+            if not needs_cycle(self.part.quantity(objective.quantity)):
                 now = minimised(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
                 losses = np.fmax(losses, (now - self.design_objectives[place]) / self.span[place])
         return losses

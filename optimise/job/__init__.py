@@ -21,20 +21,20 @@ from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_names import path_from_text, path_text
 from ...objectives.units import printable_name
 from ..problem.problem import Problem
-from .catalogue import catalogues, with_catalogues, with_options
-from .custom_quantities import declared, function_modules
-from .drive import torque_warnings
-from .file import LARGEST, read, require_plain
-from .load_file import load_files, with_loads
+from .catalogue import catalogue_files, with_catalogues, with_options
+from .custom_quantities import declared_quantities, function_modules
+from .drive import motor_torque_warnings
+from .file import LARGEST, read, require_plain_data
+from .load_file import names_of_load_files, with_loads
 from .messages import LONGEST, MOST, explain
 from .model import Job, job_with
 from .named_files import Files
-from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_noting
+from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_and_note_plain_numbers
 from .problem_of_job import problem_of
 from .problem_order import first_problems
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
-from .target_motion import points_file, with_points
+from .target_motion import target_motion_file, with_target_motion
 from .toml_errors import with_lines
 from .varying import with_values
 
@@ -63,7 +63,7 @@ def load_job(
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file must be given by its path; got {type(path).__name__}; for tables use problem")
     data = read_job(path)
-    with _naming_file(path):
+    with _prefix_errors_with_file(path):
         problem = parse_job(
             data,
             values,
@@ -71,11 +71,11 @@ def load_job(
             allow_user_code=allow_user_code,
             require_feasible=require_feasible,
         )
-    warn_of(problem)
+    warn_about(problem)
     return problem
 
 
-def warn_of(problem: Problem) -> None:
+def warn_about(problem: Problem) -> None:
     """Issue a Python warning for each warning of a problem, attributed to the caller's caller.
 
     Also warn about loads that drive it, or that are stated for more than the whole stroke, about loaded strokes that
@@ -95,7 +95,7 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
 
     Raises JobError for an unreadable file.
     """
-    with _naming_file(path):
+    with _prefix_errors_with_file(path):
         file = path_from_text(path)
         return with_files(read(file), file.parent)
 
@@ -106,7 +106,7 @@ def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     files: the folder that contains them, or their contents by name, as text or as bytes.
     """
     try:
-        return with_catalogues(with_speeds(with_loads(with_points(data, files), files), files), files)
+        return with_catalogues(with_speeds(with_loads(with_target_motion(data, files), files), files), files)
     except JobError:
         raise
     except InputError as error:
@@ -114,7 +114,7 @@ def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def _naming_file(path: str | PathLike[str]) -> Iterator[None]:
+def _prefix_errors_with_file(path: str | PathLike[str]) -> Iterator[None]:
     try:
         yield
     except JobError as error:
@@ -130,7 +130,11 @@ def needed_files(path: str | PathLike[str]) -> list[Path]:
     """Return the files beside a job file that it needs: tables, and modules with its custom functions."""
     file = path_from_text(path)
     data, folder = read(file), file.parent
-    files = [name for name in (points_file(data), speeds_file(data), *load_files(data), *catalogues(data)) if name]
+    files = [
+        name
+        for name in (target_motion_file(data), speeds_file(data), *names_of_load_files(data), *catalogue_files(data))
+        if name
+    ]
     return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *function_modules(data, folder)]
 
 
@@ -147,22 +151,22 @@ def parse_job(
     folder: a folder with the modules of its custom functions, besides the working directory. Other arguments are those
     of `load_job`.
     """
-    require_plain(data)
+    require_plain_data(data)
     data, _ = with_options(data)
-    custom = declared(data, allowed=allow_user_code)
+    custom = declared_quantities(data, allowed=allow_user_code)
     job = job_with(custom)
     doubts: list[PlainNumbers] = []
     try:
-        stated, doubts = read_noting(job, data, values)
+        stated, doubts = read_and_note_plain_numbers(job, data, values)
         stated = with_values(stated, values, "values") if values else stated
         problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
         doubts += plain_bounds(problem, data)
-        sentences = [] if stated.choice else torque_warnings(problem.mechanism, data)
+        sentences = [] if stated.choice else motor_torque_warnings(problem.mechanism, data)
         warned = tuple(dict.fromkeys([*(item.warning for item in doubts if item.warning), *sentences]))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
         doubts = plain_values(job, data)
-        sentences = [_with_doubts(sentence, doubts) for sentence in explain(error, schema_of(job), data)]
+        sentences = [_with_unit_warnings(sentence, doubts) for sentence in explain(error, schema_of(job), data)]
         count = f"{len(sentences)} problems" if len(sentences) < LONGEST else "very many problems"
         heading = [count] if len(sentences) > 1 else []
         overflow = ["... and more"] if len(sentences) > MOST else []
@@ -170,14 +174,14 @@ def parse_job(
     except InputError as error:  # a number meant in another unit is a likely cause
         if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
             doubts += plain_bounds(error.problem, data)
-        text = _with_doubts(str(error), doubts, everywhere=isinstance(error, InfeasibleError))
+        text = _with_unit_warnings(str(error), doubts, everywhere=isinstance(error, InfeasibleError))
         if not isinstance(error, JobError):
             raise JobError(text) from None
         error.args = (text,)
         raise
 
 
-def _with_doubts(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: bool = False) -> str:
+def _with_unit_warnings(sentence: str, doubts: Iterable[PlainNumbers], *, everywhere: bool = False) -> str:
     """Return an error message with the plain-number warnings that may be its cause, after its key.
 
     everywhere: whether warnings at other keys may also be causes.

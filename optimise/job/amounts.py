@@ -24,7 +24,7 @@ _MOST = 1e15
 _TOO = {"max": "more than the {} allowed", "min": "less than the {} required", "equals": "not the {} required"}
 
 
-class _Read(Physical):
+class _AmountMarker(Physical):
     """Marks an amount: a number with any unit, or a plain number."""
 
     def read(self, value: object) -> Any:
@@ -45,7 +45,7 @@ def _amounts_by_name(amounts: dict[str, Any]) -> dict[str, Any]:
     return amounts
 
 
-Amounts = Annotated[dict[str, Annotated[Any, _Read(RATIO)]], AfterValidator(_amounts_by_name)]
+Amounts = Annotated[dict[str, Annotated[Any, _AmountMarker(RATIO)]], AfterValidator(_amounts_by_name)]
 """Amounts of an option by name."""
 
 

@@ -16,13 +16,13 @@ from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
 from .catalogue_columns import Column, columns_of
-from .catalogue_screening import screened
+from .catalogue_screening import screen_rows
 from .messages import key_of
 from .named_files import Files, read_named_text
-from .paths import unknown_path, with_number
+from .paths import unknown_path_message, with_number
 from .raw_tables import table_in, tables_in
 from .table_file import TableFile, read_table
-from .table_layout import of_numbers
+from .table_layout import are_numbers
 
 MOST_ROWS = 50_000
 MOST_OPTIONS = 200
@@ -56,7 +56,7 @@ class Catalogue:
     understood: str = field(default="", compare=False)
 
 
-def catalogues(data: Mapping[str, Any]) -> list[str]:
+def catalogue_files(data: Mapping[str, Any]) -> list[str]:
     """Return the files that a job's choices name."""
     return [part["file"] for part in tables_in(data, "choice") if _names_file(part)]
 
@@ -68,7 +68,7 @@ def _names_file(part: Any) -> bool:
 def with_catalogues(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with the text of its catalogues beside the names of their files. Raises `InputError`."""
     job = dict(data)
-    if catalogues(data):
+    if catalogue_files(data):
         job["choice"] = [
             {**part, "table": read_named_text(files, key_of(["choice", place, "file"]), part["file"])}
             if _names_file(part)
@@ -130,14 +130,14 @@ def _read_catalogue(
     columns = columns_of(table.heads, file_name, custom_names)
     if tables is not None:
         _require_given(columns, file_name, tables)
-    _require_names(table)
-    filled_columns = [column for column in map(partial(_with_cells, table), columns) if column is not None]
+    _require_distinct_row_names(table)
+    filled_columns = [column for column in map(partial(_checked_column, table), columns) if column is not None]
     places = [column.place for column in filled_columns if column.kind is not None or not column.is_amount]
     blank = [column.place for column in filled_columns if column.word is not None or column.is_amount]
     digits = dict(zip(places, table.digits(places, missing=blank), strict=True))
     cells_by_column = (digits.get(place) or table.texts(place) for place in range(len(table.heads)))
     cells = [list(row) for row in zip(*cells_by_column, strict=True)]
-    screening = screened(filled_columns, cells, tables or {}, file_name)
+    screening = screen_rows(filled_columns, cells, tables or {}, file_name)
     if len(screening.searched) > MOST_OPTIONS:
         raise JobError(
             f"{file_name} must have at most {MOST_OPTIONS} non-dominated rows; got {len(screening.searched)} of "
@@ -149,7 +149,7 @@ def _read_catalogue(
             _option_of_row(filled_columns, cells[row], searched=row in screening.searched) for row in screening.order
         ],
         rows=len(table),
-        understood=table.understood([0, *(column.place for column in filled_columns)]),
+        understood=table.summary_text([0, *(column.place for column in filled_columns)]),
         name=name,
         lost={cells[row][0]: cells[better][0] for row, better in screening.lost.items()},
         excluded={cells[row][0]: why for row, why in screening.excluded.items()},
@@ -161,7 +161,7 @@ def _read_catalogue(
     )
 
 
-def _require_names(table: TableFile) -> None:
+def _require_distinct_row_names(table: TableFile) -> None:
     """Reject rows without a name, duplicate names, and too many rows."""
     if len(table) > MOST_ROWS:
         raise JobError(f"{table.name} must have at most {MOST_ROWS} rows; got more; keep those that you would buy")
@@ -180,13 +180,13 @@ def _require_names(table: TableFile) -> None:
         labels[label] = number
 
 
-def _with_cells(table: TableFile, column: Column) -> Column | None:
+def _checked_column(table: TableFile, column: Column) -> Column | None:
     """Return a column, one that is stored as numbers or text; None if it is empty. Texts are checked."""
     cells = table.texts(column.place)
     filled = [cell for cell in cells if cell]
     if not column.is_amount or column.unit or not filled:
         return None if column.is_amount and not column.unit else column
-    if of_numbers(filled) and not any(map(_ARTICLE.fullmatch, filled)):
+    if are_numbers(filled) and not any(map(_ARTICLE.fullmatch, filled)):
         return column
     for number, cell in zip(table.rows, cells, strict=True):
         if cell.startswith("=") or len(cell) > _LONGEST_NOTE or not (cell.isprintable() or not cell):
@@ -212,7 +212,9 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
             try:
                 with_number(tables, column.name, 0.0)
             except LookupError:
-                raise JobError(f"{name}, column {quote(column.header)}: {unknown_path(column.name, tables)}") from None
+                raise JobError(
+                    f"{name}, column {quote(column.header)}: {unknown_path_message(column.name, tables)}"
+                ) from None
 
 
 def _option_of_row(columns: Sequence[Column], row: Sequence[str], *, searched: bool) -> dict[str, Any]:

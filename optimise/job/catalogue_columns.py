@@ -60,7 +60,7 @@ class Column:
         return f"{cell} {self.unit}" if self.unit else float(cell)
 
     @property
-    def monotone(self) -> bool:
+    def looser_limit_allows_more(self) -> bool:
         """Whether a looser limit can only allow more designs."""
         quantity = QUANTITIES.get(self.name)
         return self.word == "min" or (self.word == "max" and (quantity is None or quantity.floor is None))
@@ -221,9 +221,8 @@ def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kin
 def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:
     """Reject a unit that does not fit the limited quantity. head: heading of the column, with the unit."""
     if kind.unit and not unit:
-        raise JobError(
-            f"{column_name}: the heading has no unit; write, for example, {quote(f'{head} ({_unit(kind.example)})')}"
-        )
+        heading = quote(f"{head} ({_unit_in_example(kind.example)})")
+        raise JobError(f"{column_name}: the heading has no unit; write, for example, {heading}")
     try:
         to_si(f"1 {unit}" if kind.unit else 1.0, kind)
         if not kind.unit and unit:
@@ -231,9 +230,9 @@ def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:
     except InputError:
         raise JobError(
             f"{column_name}: must have a unit of {kind.name}; got {quote(unit)}; "
-            + (f"write it like ({_unit(kind.example)})" if kind.unit else "leave it out")
+            + (f"write it like ({_unit_in_example(kind.example)})" if kind.unit else "leave it out")
         ) from None
 
 
-def _unit(example: str) -> str:
+def _unit_in_example(example: str) -> str:
     return example.partition(" ")[2]

@@ -61,7 +61,11 @@ def _requirements_on_amounts(tables: Mapping[str, Any], columns: Sequence[Column
         ways = {0} if column.name in words else set()
         ways |= set() if wish is None else {_WAYS.get(wish, 0) if isinstance(wish, str) else 0}
         ways |= {_WAYS.get(word, 0) for word in stated_bounds}
-        bound = None if wish is not None or len(stated_bounds) != 1 else _si(next(iter(stated_bounds.values())), column)
+        bound = (
+            None
+            if wish is not None or len(stated_bounds) != 1
+            else _value_in_si(next(iter(stated_bounds.values())), column)
+        )
         if ways:
             requests[column.name] = _Request(ways.pop(), bound) if len(ways) == 1 else _Request(0)
     return requests
@@ -70,7 +74,7 @@ def _requirements_on_amounts(tables: Mapping[str, Any], columns: Sequence[Column
 _WAYS = {"minimise": 1, "minimize": 1, "max": 1, "maximise": -1, "maximize": -1, "min": -1}
 
 
-def _si(value: Any, column: Column) -> float | None:
+def _value_in_si(value: Any, column: Column) -> float | None:
     try:
         return None if column.kind is None else to_si(value, column.kind)
     except InputError:  # a formula, or invalid
@@ -95,7 +99,7 @@ class Screened:
     requested: frozenset[str]
 
 
-def screened(
+def screen_rows(
     columns: Sequence[Column], rows: Sequence[list[str]], tables: Mapping[str, Any], file_name: str
 ) -> Screened:
     """Return which rows to search, and which may be the smallest sufficient option.
@@ -121,9 +125,9 @@ def screened(
             exclusions |= _excluded_rows(table_in(constraints, column.name), column, values, rows)
             floor = -math.inf if request.bound is None else request.way * request.bound
             (costs if request.way else fixed).append(np.maximum(request.way * values, floor) if request.way else values)
-        elif column.word is not None and column.monotone:
+        elif column.word is not None and column.looser_limit_allows_more:
             side = -1.0 if column.word == "max" else 1.0
-            floor = _limit_cost(table_in(constraints, column.name), column, side)
+            floor = _cost_of_job_limit(table_in(constraints, column.name), column, side)
             costs.append(np.maximum(np.where(blank, -math.inf, side * values), floor))
         else:
             fixed += [np.where(blank, 0.0, values), blank.astype(np.float64)]
@@ -135,7 +139,7 @@ def screened(
     order = _order_rows(columns, rows)
     rank = np.empty(len(rows))
     rank[order] = np.arange(len(rows))
-    groups, tight = _row_groups(fixed, len(rows)), _side_by_side(costs, len(rows))
+    groups, tight = _row_groups(fixed, len(rows)), _stack_columns(costs, len(rows))
     least = np.column_stack([tight, rank])
     searched, named, lost = list[int](), list[int](), dict[int, int]()
     for group in range(int(groups.max()) + 1):
@@ -165,7 +169,7 @@ def _excluded_rows(
     """
     reasons: dict[int, str] = {}
     for word, bound in bounds.items():
-        limit = _si(bound, column)
+        limit = _value_in_si(bound, column)
         if limit is None:
             continue
         rounding = FEASIBLE * abs(limit)
@@ -177,12 +181,12 @@ def _excluded_rows(
     return reasons
 
 
-def _limit_cost(bounds: Mapping[str, Any], column: Column, side: float) -> float:
+def _cost_of_job_limit(bounds: Mapping[str, Any], column: Column, side: float) -> float:
     """Return the cost of the job's own limit on a column's quantity, below which rows are equal.
 
     side: 1 for a minimum, -1 for a maximum.
     """
-    limits = [_si(bounds[word], column) for word in (column.word, "equals") if word and word in bounds]
+    limits = [_value_in_si(bounds[word], column) for word in (column.word, "equals") if word and word in bounds]
     return max((side * bound for bound in limits if bound is not None), default=-math.inf)
 
 
@@ -201,7 +205,7 @@ def _order_rows(columns: Sequence[Column], rows: Sequence[list[str]]) -> IntArra
     return np.asarray(np.lexsort(table[::-1]) if table else np.arange(len(rows)), np.int64)
 
 
-def _side_by_side(columns: Sequence[Array], count: int) -> Array:
+def _stack_columns(columns: Sequence[Array], count: int) -> Array:
     return np.stack(columns, axis=1) if columns else np.zeros((count, 0))
 
 
@@ -209,7 +213,7 @@ def _row_groups(columns: Sequence[Array], count: int) -> IntArray:
     """Return a number for each row that is the same for rows with equal values in some columns."""
     if not columns:
         return np.zeros(count, np.int64)
-    return np.asarray(np.unique(_side_by_side(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
+    return np.asarray(np.unique(_stack_columns(columns, count), axis=0, return_inverse=True)[1].ravel(), np.int64)
 
 
 def _undominated_rows(costs: Array) -> IntArray:

@@ -24,7 +24,7 @@ from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import quote
 from ..feasibility.swinging import require_swinging
-from ..problem.always_zero import require_ranking
+from ..problem.always_zero import require_nonzero_quantities
 from ..problem.impossible import require_longer_slow_stroke
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
@@ -32,7 +32,7 @@ from ..problem.restatement import restate
 from ..search.elimination import offset_signs, require_offset_for_slow_stroke
 from .linear_contradictions import require_compatible
 from .messages import key_of
-from .options import require_options
+from .options import require_possible_option
 from .possible_values import Box, require_reachable
 
 
@@ -44,18 +44,18 @@ def require_consistent(problem: Problem) -> None:
     for key, quantity, word, value in _bounds_and_targets(problem):
         _require_possible(problem, key, quantity, word, value)
     for objective in problem.objectives:
-        _require_free(problem, objective.quantity)
+        _require_varying_objective(problem, objective.quantity)
     _require_one_density(problem)
-    require_ranking(problem)
+    require_nonzero_quantities(problem)
     require_eyes_wider_than_pins(problem)
     if problem.motion is not None:
         require_swinging(problem)
         return
-    _require_delivery(problem)
+    _require_compressor_delivery(problem)
     require_reachable(problem)
-    _require_reachable_restated(problem)
+    _require_reachable_formulas(problem)
     require_slow_stroke(problem)
-    require_options(problem)
+    require_possible_option(problem)
     require_compatible(problem)
 
 
@@ -91,14 +91,14 @@ def require_eyes_wider_than_pins(problem: Problem) -> None:
     refused = []
     for part in problem.parts():
         links = {link for item in stresses for link in item.bars(part.mechanism)}
-        reasons = [reason for link in sorted(links) for reason in _too_thick(part.mechanism, link)]
+        reasons = [reason for link in sorted(links) for reason in _oversized_pin_messages(part.mechanism, link)]
         if not reasons:
             return
         refused.append(reasons[0])
     raise InfeasibleError(refused[0])
 
 
-def _too_thick(mechanism: Mechanism, link: str) -> list[str]:
+def _oversized_pin_messages(mechanism: Mechanism, link: str) -> list[str]:
     """Return why a link's eyes have no net section, whatever the values of the extra variables."""
     width = max(_number_range(mechanism, f"{link}.width"))
     return [
@@ -121,7 +121,7 @@ def _number_range(mechanism: Mechanism, path: str) -> tuple[float, ...]:
     return (value,)
 
 
-def _require_delivery(problem: Problem) -> None:
+def _require_compressor_delivery(problem: Problem) -> None:
     """Reject compressors whose clearance is too large for any stroke within the ranges, in every variant."""
     reasons = [_why_nothing_delivered(part) for part in problem.parts()]
     if reasons and all(reasons):
@@ -156,7 +156,7 @@ def _why_nothing_delivered(part: Problem) -> str:
     return ""
 
 
-def _require_reachable_restated(problem: Problem) -> None:
+def _require_reachable_formulas(problem: Problem) -> None:
     """Raise `InfeasibleError` if formulas require values of known quantities beyond those within the ranges."""
     restated = {item.quantity: restate(problem, item) for item in problem.constraints}
     keys = [key_of(["constraints", name]) for name, item in restated.items() if item.quantity != name]
@@ -200,7 +200,7 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
         raise JobError(f"{key}: {name} is never negative; {value_text}; give its size")
 
 
-def _require_free(problem: Problem, name: str) -> None:
+def _require_varying_objective(problem: Problem, name: str) -> None:
     """Reject an objective that is the same for every design."""
     equality = next(
         (c for c in problem.constraints if c.equality and name in (c.quantity, restate(problem, c).quantity)), None
@@ -213,7 +213,7 @@ def _require_free(problem: Problem, name: str) -> None:
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
         # Along a speed profile, a ratio of times is also the same for every design, though not 1.
-        values = {_in_line_value(part, name) for part in problem.parts()}
+        values = {_value_without_offset(part, name) for part in problem.parts()}
         if len(values) > 1:
             return
         value = values.pop()
@@ -223,7 +223,7 @@ def _require_free(problem: Problem, name: str) -> None:
         )
 
 
-def _in_line_value(part: Problem, name: str) -> str:
+def _value_without_offset(part: Problem, name: str) -> str:
     """Return the value, as text, of a quantity that is the same for every design without offset."""
     design = np.array([[1.0, 3.0, 0.0, *(item.lower for item in part.mechanism.varying)]])
     value = float(part.quantity(name).evaluate(part.mechanism, design).values[0])

@@ -12,7 +12,7 @@ from ...model.machine.speed_profile import SpeedTable
 from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
 from ...objectives.units import quote
 from .speed_profile import SpeedProfilePart
-from .values import AngularAcceleration, Part, Within, optional
+from .values import AngularAcceleration, Part, PhysicalWithin, optional
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
@@ -26,8 +26,10 @@ _FASTEST, _SLOWEST = 2e-5, TIME.limit
 """Limits on the time per turn, s, for all three keys."""
 _HINT = "others are beyond any machine; check the unit"
 _ROUNDING = 1e-12  # relative error of a speed in rpm
-_CYCLE_TIME = Within(TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, greatest=_SLOWEST)
-_STROKES = Within(
+_CYCLE_TIME = PhysicalWithin(
+    TIME, "positive", rule="a time from 20 us to 1e9 s", hint=_HINT, least=_FASTEST, greatest=_SLOWEST
+)
+_STROKES = PhysicalWithin(
     STROKE_RATE,
     "positive",
     rule="a number from 6e-8 to 3e6",
@@ -37,7 +39,7 @@ _STROKES = Within(
 )
 
 
-class _CrankSpeed(Within):
+class _CrankSpeedMarker(PhysicalWithin):
     """Marks a crank speed: in either direction, within the limits on the time per turn."""
 
     def read(self, value: object) -> float:
@@ -53,7 +55,7 @@ class _CrankSpeed(Within):
         return speed
 
 
-_SPEED = _CrankSpeed(
+_SPEED = _CrankSpeedMarker(
     ANGULAR_SPEED,
     rule="a speed from 6e-8 to 3e6 rpm, either way",
     hint=_HINT,
@@ -105,9 +107,9 @@ class CrankSpeedPart(Part):
         return (-rate if self.direction == "clockwise" else rate) / share
 
     @model_validator(mode="after")
-    def _of_the_mean(self) -> CrankSpeedPart:
+    def _require_stated_mean_speed(self) -> CrankSpeedPart:
         if self.speed_profile is not None and self.speed is not None:
-            self.speed_profile.require_mean(self.speed)
+            self.speed_profile.require_mean_speed(self.speed)
         return self
 
     @model_validator(mode="after")

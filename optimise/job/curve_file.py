@@ -56,14 +56,14 @@ class Curve:
     notes: tuple[str, ...]
 
     @property
-    def turn(self) -> float:
+    def full_turn(self) -> float:
         """A full turn of the crank in the unit of its angle."""
         return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * per_si(self.argument_head.unit))
 
     @property
-    def span(self) -> float:
+    def turn_count(self) -> float:
         """Number of turns from the first to the last point."""
-        return float(self.arguments[-1] - self.arguments[0]) / self.turn
+        return float(self.arguments[-1] - self.arguments[0]) / self.full_turn
 
     def texts(self) -> tuple[list[str], list[str]]:
         """Return arguments and values as a job has them."""
@@ -102,7 +102,7 @@ def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequ
     arguments, values = np.delete(arguments, again + 1), np.delete(values, again + 1)
     if len(arguments) < 2:
         raise InputError(f"{table.name} must have at least two points; got {len(arguments)}; add rows")
-    curve = Curve(table.name, x, y, arguments, values, (table.understood([x.place, y.place]),))
+    curve = Curve(table.name, x, y, arguments, values, (table.summary_text([x.place, y.place]),))
     return _in_rising_order(curve, table) if x.kind is not TIME else curve
 
 
@@ -181,9 +181,9 @@ def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
     if (steps < 0.0).sum() > (steps > 0.0).sum():
         at, values, notes = at[::-1], values[::-1], (*notes, "sorted upwards")
     if curve.argument_head.kind is ANGLE:
-        wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.turn)])
+        wraps = np.concatenate([[0], np.cumsum(np.diff(at) < -0.5 * curve.full_turn)])
         if wraps[-1]:
-            at, notes = at + curve.turn * wraps, (*notes, "angles continue beyond one turn")
+            at, notes = at + curve.full_turn * wraps, (*notes, "angles continue beyond one turn")
     wrong = np.flatnonzero(np.diff(at) < 0.0)
     if len(wrong):
         n = int(wrong[0])
@@ -194,7 +194,7 @@ def _in_rising_order(curve: Curve, table: TableFile) -> Curve:
     return replace(curve, arguments=at, values=values, notes=notes)
 
 
-def over_angle(curve: Curve, speed: float) -> Curve:
+def convert_time_to_angle(curve: Curve, speed: float) -> Curve:
     """Return a curve over time as a curve over crank angle at constant speed, rad/s; any other curve unchanged."""
     if curve.argument_head.kind is not TIME:
         return curve
@@ -210,39 +210,40 @@ def over_angle(curve: Curve, speed: float) -> Curve:
     return replace(curve, argument_head=head, arguments=360.0 * turns[order], values=curve.values[order], notes=notes)
 
 
-def of_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
+def first_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
     """Return a crank-angle curve's first cycle, and its number of turns: the given one, otherwise one or two.
 
     A record that ends close to whole turns ends with them. Raises `InputError` for a record between one turn and two.
     """
     near = (
-        min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.turn)
+        min(_CLOSE, 0.5 * float(curve.arguments[-1] - curve.arguments[-2]) / curve.full_turn)
         if len(curve.arguments) > 1
         else 0.0
     )
-    full_turns = round(curve.span)
-    if full_turns >= 1 and 0.0 < abs(curve.span - full_turns) <= near:
-        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (full_turns / curve.span)
-        at[-1] = curve.arguments[0] + full_turns * curve.turn
+    full_turns = round(curve.turn_count)
+    if full_turns >= 1 and 0.0 < abs(curve.turn_count - full_turns) <= near:
+        at = curve.arguments[0] + (curve.arguments - curve.arguments[0]) * (full_turns / curve.turn_count)
+        at[-1] = curve.arguments[0] + full_turns * curve.full_turn
         curve = replace(curve, arguments=at)
     if turns is None:
-        turns = 1 if curve.span <= 1.0 else 2
-        step = float(np.median(np.diff(curve.arguments))) / curve.turn
-        if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.span <= 2.0:
+        turns = 1 if curve.turn_count <= 1.0 else 2
+        step = float(np.median(np.diff(curve.arguments))) / curve.full_turn
+        if turns == 2 and not max(1.5, 2.0 - 2.0 * step) <= curve.turn_count <= 2.0:
             raise InputError(
-                f"{curve.name} must cover one or two turns unless the job gives the cycle; got {curve.span:.4g} turns; "
+                f"{curve.name} must cover one or two turns unless the job gives the cycle; got "
+                f"{curve.turn_count:.4g} turns; "
                 'give cycle = "360 deg" or "720 deg"; the first cycle in the file is used'
             )
         if turns == 2:
             curve = replace(curve, notes=(*curve.notes, "two turns, a cycle of 720 deg"))
-    if curve.span > turns:
-        in_cycle = curve.arguments < curve.arguments[0] + (turns - near) * curve.turn
-        notes = (*curve.notes, f"the first cycle of {curve.span / turns:.4g}")
+    if curve.turn_count > turns:
+        in_cycle = curve.arguments < curve.arguments[0] + (turns - near) * curve.full_turn
+        notes = (*curve.notes, f"the first cycle of {curve.turn_count / turns:.4g}")
         curve = replace(curve, arguments=curve.arguments[in_cycle], values=curve.values[in_cycle], notes=notes)
     return curve, turns
 
 
-def opened(curve: Curve) -> Curve:
+def drop_closing_point(curve: Curve) -> Curve:
     """Return a curve over one turn without a last point that repeats the first.
 
     Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two points at the same
@@ -254,8 +255,8 @@ def opened(curve: Curve) -> Curve:
         raise InputError(
             f"{curve.name}: {quote(curve.argument_head.text)} must increase; got {at} twice; leave out one of the two"
         )
-    curve, _ = of_cycle(curve, 1)
-    if curve.span < 1.0:
+    curve, _ = first_cycle(curve, 1)
+    if curve.turn_count < 1.0:
         return curve
     first, last = curve.values[0], curve.values[-1]
     if abs(last - first) > _CLOSE * np.ptp(curve.values):
@@ -267,7 +268,7 @@ def opened(curve: Curve) -> Curve:
     return replace(curve, arguments=curve.arguments[:-1], values=curve.values[:-1], notes=notes)
 
 
-def thinned(curve: Curve) -> Curve:
+def thin_curve(curve: Curve) -> Curve:
     """Return a curve of more than `MOST_POINTS` points without those that straight lines can replace; steps stay.
 
     No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1

@@ -122,13 +122,13 @@ _KINDS = Kinds(
 QuantityPart = Annotated[
     Annotated[FunctionPart, Tag("(function)")] | Annotated[FormulaPart, Tag("(formula)")],
     Discriminator(_KINDS.tag),
-    BeforeValidator(_KINDS.require_one),
+    BeforeValidator(_KINDS.require_one_kind),
 ]
 """A custom quantity of a job: a function, or a formula."""
 Parts = dict[str, FunctionPart | FormulaPart]
 
 
-def named(parts: Parts) -> Parts:
+def require_usable_names(parts: Parts) -> Parts:
     """Reject names that are already in use, or that cannot name a column."""
     for name, part in parts.items():
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
@@ -145,7 +145,7 @@ def functions_of(parts: Parts, folder: Path | None) -> Iterator[OwnQuantity]:
     """Yield a job's functions in the form that the problem uses. folder: where to look for their modules."""
     for name, part in parts.items():
         if isinstance(part, FunctionPart):
-            yield part.build(name, folders_of(folder))
+            yield part.build(name, import_folders(folder))
 
 
 def formulas_of(parts: Parts) -> dict[str, formulas.Stated]:
@@ -166,7 +166,7 @@ class Declared:
     formulas: tuple[str, ...] = ()
 
 
-def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
+def declared_quantities(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     """Return the quantities that a job declares or takes from packages; raise JobError for code that is not allowed.
 
     It ignores other mistakes in a declaration, because validation reports them.
@@ -190,9 +190,9 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             kind = kind_for("")
         is_taken = name in FACTS or name == SLOW_STROKE
         if not is_taken and name.isidentifier() and not name.startswith("_"):
-            tables[name] = _stated_quantity(name.replace("_", " "), kind)
+            tables[name] = _quantity_facts(name.replace("_", " "), kind)
     tables |= {
-        name: _stated_quantity(name.replace("_", " "), kind)
+        name: _quantity_facts(name.replace("_", " "), kind)
         for name, kind in kinds_of_amounts(amounts_in(data)).items()
         if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
     }
@@ -205,7 +205,7 @@ def declared(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     packages = quantity_entry_points() if unknown else {}
     installed_quantities = tuple(installed(name) for name in unknown if name in packages)
     for quantity in installed_quantities:
-        tables[quantity.name] = _stated_quantity(quantity.title, kind_for(quantity.unit.symbol))
+        tables[quantity.name] = _quantity_facts(quantity.title, kind_for(quantity.unit.symbol))
     return Declared(tables, installed_quantities, names)
 
 
@@ -219,7 +219,7 @@ def _formula_names(parts: object) -> tuple[str, ...]:
     )
 
 
-def _stated_quantity(title: str, kind: Kind) -> Stated:
+def _quantity_facts(title: str, kind: Kind) -> Stated:
     return Stated(title, kind, kind.example if kind.unit else float(kind.example))
 
 
@@ -232,7 +232,7 @@ def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
                 yield from words_of(bound)
 
 
-def folders_of(folder: Path | None) -> list[str]:
+def import_folders(folder: Path | None) -> list[str]:
     """Return the folders to search for a job's modules: that of the job file, then the working directory."""
     return [str(place.resolve()) for place in ((folder,) if folder else ()) + (Path(),)]
 

@@ -92,7 +92,7 @@ AnyMotor = Annotated[
     | Annotated[RatedMotor, Tag("(rated_torque)")]
     | Annotated[TableMotor, Tag("(speeds)")],
     Discriminator(_KINDS.tag),
-    BeforeValidator(_KINDS.require_one),
+    BeforeValidator(_KINDS.require_one_kind),
 ]
 
 
@@ -122,7 +122,7 @@ class DrivePart(Checked[model.Drive]):
     recovery: Recovery = optional("fraction of the braking energy that the supply takes back", 0.8, default=0.0)
 
 
-def torque_warnings(mechanism: Mechanism, tables: Mapping[str, Any]) -> list[str]:
+def motor_torque_warnings(mechanism: Mechanism, tables: Mapping[str, Any]) -> list[str]:
     """Return a warning if the motor's continuous torque exceeds its brief torque, as stated and for all designs.
 
     tables: those of the job, for the change that swaps the two.

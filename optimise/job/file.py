@@ -14,7 +14,7 @@ from typing import Any
 from ...model.errors import JobError
 from ...objectives.units import quote
 from .messages import DEEPEST, key_of
-from .toml_errors import in_words
+from .toml_errors import explain_toml_error
 
 LARGEST = 1_000_000
 """Bytes. A job with the maximum number of values takes half of it, at ten characters each."""
@@ -83,7 +83,7 @@ def _parse_tables(text: str, suffix: str) -> dict[str, Any]:
     try:
         data = json.loads(text, object_pairs_hook=_object_without_duplicates)
     except RecursionError:
-        raise _too_deep() from None
+        raise _too_deep_error() from None
     except JobError:
         raise
     except json.JSONDecodeError as error:
@@ -93,7 +93,7 @@ def _parse_tables(text: str, suffix: str) -> dict[str, Any]:
             f"{error.colno}; put names, texts and values with units in double quotes, and commas between entries"
         ) from None
     except ValueError:
-        raise _too_long() from None
+        raise _too_long_error() from None
     if not isinstance(data, dict):
         raise JobError(f"a job must be a JSON object; got {quote(data)}; put it in braces")
     return data
@@ -107,25 +107,25 @@ def toml_tables(text: str) -> dict[str, Any]:
     value has one or two of the counted signs.
     """
     if _DEEP_KEY.match(text):
-        raise _too_deep()
+        raise _too_deep_error()
     signs = _PASSED.sub("", text)
     if sum(signs.count(sign) for sign in "=,[{") > 2 * MOST + 100:
-        raise _too_many("more")
+        raise _too_many_values_error("more")
     try:
         return tomllib.loads(text)
     except RecursionError:
-        raise _too_deep() from None
+        raise _too_deep_error() from None
     except ValueError as error:
         if "set_int_max_str_digits" in str(error):  # advice for programmers
-            raise _too_long() from None
-        raise JobError(in_words(text, str(error))) from None
+            raise _too_long_error() from None
+        raise JobError(explain_toml_error(text, str(error))) from None
 
 
-def _too_deep() -> JobError:
+def _too_deep_error() -> JobError:
     return JobError(f"tables must be nested at most {DEEPEST} deep; got more; flatten the file")
 
 
-def _too_long() -> JobError:
+def _too_long_error() -> JobError:
     return JobError("a number must have a few digits only; got thousands; shorten it")
 
 
@@ -138,7 +138,7 @@ def _object_without_duplicates(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     return table
 
 
-def _too_many(count_text: str) -> JobError:
+def _too_many_values_error(count_text: str) -> JobError:
     return JobError(
         f"a job must have at most {MOST} values, lists and tables; got {count_text}; leave some out, such as points "
         "of long "
@@ -146,7 +146,7 @@ def _too_many(count_text: str) -> JobError:
     )
 
 
-def require_few(tables: object) -> None:
+def require_few_values(tables: object) -> None:
     """Raise JobError for data with more values, lists and tables than a job may have."""
     left, count = [tables], -1
     while left:
@@ -155,10 +155,10 @@ def require_few(tables: object) -> None:
         if isinstance(item, Mapping | list | tuple):
             left += item.values() if isinstance(item, Mapping) else item
     if count > MOST:
-        raise _too_many(f"{count}")
+        raise _too_many_values_error(f"{count}")
 
 
-def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
+def require_plain_data(value: object, at: tuple[object, ...] = ()) -> None:
     """Reject data with too many values or too many levels, keys that are not text, and nulls. Raises JobError.
 
     at: path of the data in the job.
@@ -166,7 +166,7 @@ def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
     if not at:
         if not isinstance(value, Mapping):
             raise JobError(f"a job must be a table of keys; got {quote(value)}")
-        require_few(value)
+        require_few_values(value)
     if len(at) > DEEPEST:
         raise JobError(f"tables must be nested at most {DEEPEST} deep; got more; flatten the job")
     if isinstance(value, Mapping):
@@ -175,7 +175,7 @@ def require_plain(value: object, at: tuple[object, ...] = ()) -> None:
                 raise JobError(f"a key must be text; got {quote(key)}")
             if item is None:
                 raise JobError(f"{key_of((*at, key))}: must have a value; got null; leave the key out instead")
-            require_plain(item, (*at, key))
+            require_plain_data(item, (*at, key))
     elif isinstance(value, list | tuple):
         for place, item in enumerate(value):
-            require_plain(item, (*at, place))
+            require_plain_data(item, (*at, place))

@@ -43,7 +43,7 @@ class Grid:
     rule: str
 
 
-def swap(lower: object, upper: object) -> str:
+def crossed_ends_remedy(lower: object, upper: object) -> str:
     """Return the remedy for a range whose ends cross.
 
     A plain number beside a value with a unit usually lacks its unit.
@@ -53,7 +53,7 @@ def swap(lower: object, upper: object) -> str:
     return f"give {plain[0]:g} its unit" if mixed else "swap the two"
 
 
-def says_values(value: object) -> bool:
+def states_values(value: object) -> bool:
     """Return whether a value in a job has a key of a table of values."""
     return isinstance(value, Mapping) and not KEYS.isdisjoint(value)
 
@@ -84,7 +84,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
     if lower > upper:
         raise InputError(
             f"must run from min to max; got {quote(table['min'])} to {quote(table['max'])}, an empty range; "
-            f"{swap(table['min'], table['max'])}"
+            f"{crossed_ends_remedy(table['min'], table['max'])}"
         )
     rounding = _ROUNDING * max(abs(lower), abs(upper))
     expand = _grid_of_multiples if words == ["step"] else _grid_of_preferred_numbers
@@ -119,7 +119,7 @@ def _grid_of_multiples(
     table: Mapping[str, Any], read: Callable[[object], float], lower: float, upper: float
 ) -> tuple[list[float], str]:
     try:
-        step = step_of(table["step"], read)
+        step = read_step(table["step"], read)
     except InputError as error:
         raise InputError(f"step {error}") from None
     if not step > 0.0:
@@ -135,7 +135,7 @@ def _grid_of_multiples(
     return [value for value in every if lower <= value <= upper], f"multiples of {written}"
 
 
-def step_of(value: object, read: Callable[[object], float]) -> float:
+def read_step(value: object, read: Callable[[object], float]) -> float:
     """Return a step, SI. A fraction of a unit is allowed: "1/32 in". Raises `InputError`."""
     fraction = _FRACTION.fullmatch(value) if isinstance(value, str) else None
     if fraction is not None and int(fraction[2]):

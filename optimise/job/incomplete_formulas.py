@@ -23,7 +23,7 @@ from .catalogue import with_options
 from .messages import key_of
 from .quantities import SLOW_STROKE, WORDS
 from .raw_tables import table_in
-from .variables import varying_in
+from .variables import stated_variables
 
 _MOST = 200
 """Maximum number of formulas to read, and of names to report."""
@@ -106,7 +106,9 @@ class _Kinds:
         self.amounts = kinds_of_amounts(amounts_in(tables))
         entries = islice(table_in(tables, "quantity").items(), _MOST)
         self.stated = {name: part for name, part in entries if isinstance(name, str) and isinstance(part, Mapping)}
-        self.varying = [(path, _kind_of(value)) for path, value in islice(varying_in(tables).items(), _MOST)]
+        self.varying = [
+            (path, _kind_of_first_value(value)) for path, value in islice(stated_variables(tables).items(), _MOST)
+        ]
         self._known: dict[str, Kind | None] = dict.fromkeys(DIMENSIONS, LENGTH)
         self._known |= dict(self.varying) | {name: fact.kind for name, fact in FACTS.items()} | self.amounts
         self.names = frozenset((*self._known, *self.stated))
@@ -142,12 +144,12 @@ class _Kinds:
             return None
 
 
-def _kind_of(value: object) -> Kind | None:
+def _kind_of_first_value(value: object) -> Kind | None:
     """Return the kind of the first value with a unit in a range, choices or a table of values."""
     if isinstance(value, Mapping):
-        return next((kind for item in value.values() if (kind := _kind_of(item))), None)
+        return next((kind for item in value.values() if (kind := _kind_of_first_value(item))), None)
     if isinstance(value, list | tuple):
-        return next((kind for item in value[:2] if (kind := _kind_of(item))), None)
+        return next((kind for item in value[:2] if (kind := _kind_of_first_value(item))), None)
     if not (isinstance(value, str) and is_value(value)):
         return None
     return kind_for(value.strip().lstrip("+-.0123456789eE").strip())

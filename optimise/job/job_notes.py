@@ -10,11 +10,11 @@ from ...objectives.count_text import counted
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from .catalogue import Catalogue, with_options
-from .custom_quantities import declared
-from .messages import key_of, toml
+from .custom_quantities import declared_quantities
+from .messages import key_of, toml_text
 from .model import Job, job_with
 from .named_files import SOURCE
-from .plain_numbers import read_noting
+from .plain_numbers import read_and_note_plain_numbers
 
 _MOST = 6  # plain numbers to report one by one
 _OF_GAS = "compression_exponent", "expansion_exponent"
@@ -28,16 +28,16 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     the intended one, the problem has a warning instead.
     """
     data, tables = with_options(data)
-    job, plain = read_noting(job_with(declared(data, allowed=True)), data)
+    job, plain = read_and_note_plain_numbers(job_with(declared_quantities(data, allowed=True)), data)
     plain_notes = [item.note for item in plain if not item.warning]
     notes = []
     if plain_notes:
         left_over = f", and {len(plain_notes) - _MOST} more" if len(plain_notes) > _MOST else ""
         notes.append(f"numbers without a unit are read in SI: {', '.join(plain_notes[:_MOST])}{left_over}")
-    notes += [note for table in tables for note in _of_catalogue(table)]
+    notes += [note for table in tables for note in _catalogue_notes(table)]
     notes += [
-        f"constraints.{name}: larger is better, but max = {toml(bounds['max'])} excludes larger values; for a minimum "
-        f"write {{ min = {toml(bounds['max'])} }}"
+        f"constraints.{name}: larger is better, but max = {toml_text(bounds['max'])} excludes larger values; for a "
+        f"minimum write {{ min = {toml_text(bounds['max'])} }}"
         for name, bounds in data.get("constraints", {}).items()
         if name in FACTS and FACTS[name].better == "high" and isinstance(bounds, Mapping) and set(bounds) == {"max"}
     ]
@@ -66,7 +66,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     return notes
 
 
-def _of_catalogue(table: Catalogue) -> Iterator[str]:
+def _catalogue_notes(table: Catalogue) -> Iterator[str]:
     """Yield notes on catalogue rows that are not searched and why, and on columns that may mean something else."""
     few = [f"{row} to {better}" for row, better in table.lost.items()]
     left = table.rows - len(table.lost) - len(table.excluded)
@@ -98,7 +98,7 @@ def _join_first(lines: Sequence[str]) -> str:
     return ", ".join(lines[:_MOST]) + (f" and {len(lines) - _MOST} more" if len(lines) > _MOST else "")
 
 
-def sources_of(data: Mapping[str, Any]) -> list[str]:
+def file_summaries(data: Mapping[str, Any]) -> list[str]:
     """Return a summary of each file of a valid job, after its table's key."""
     mechanism = data["mechanism"]
     places: list[tuple[list[object], Any]] = [

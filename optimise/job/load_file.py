@@ -11,14 +11,14 @@ from ...model.machine.loads.registry import kinds
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
 from . import values
-from .curve_file import curve_in, of_cycle, over_angle, thinned
+from .curve_file import convert_time_to_angle, curve_in, first_cycle, thin_curve
 from .messages import key_of
 from .named_files import SOURCE, Files, read_named_table, require_point_count
 from .raw_tables import tables_in
 from .stated_speed import stated_speed
 
 
-def load_files(data: Mapping[str, Any]) -> list[str]:
+def names_of_load_files(data: Mapping[str, Any]) -> list[str]:
     """Return the files that a job's loads name."""
     return [part["file"] for part in tables_in(data, "load") if isinstance(part.get("file"), str)]
 
@@ -26,14 +26,16 @@ def load_files(data: Mapping[str, Any]) -> list[str]:
 def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with each load's file replaced by its points. Raises `InputError`."""
     job = dict(data)
-    if load_files(data):
+    if names_of_load_files(data):
         job["load"] = [_fill_from_files(part, place, files, data) for place, part in enumerate(job["load"])]
     return job
 
 
 def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
-    tables = {(_kind_of_entry(at), _kind_of_entry(value_entry)): table for table, at, value_entry in tables_of_points()}
+    tables = {
+        (_kind_of_entry(at), _kind_of_entry(value_entry)): table for table, at, value_entry in load_tables_with_points()
+    }
     if not isinstance(file, str):
         return part
     name = key_of(["load", place, "file"])
@@ -68,17 +70,17 @@ def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any
             ANGLE_DATUM in load_table.entries and rest.get(ANGLE_DATUM.name, ANGLE_DATUM.default) == ANGLE_DATUM.default
         )
         speed = stated_speed(data, curve.name)
-        curve = over_angle(curve, speed if signed else abs(speed))
+        curve = convert_time_to_angle(curve, speed if signed else abs(speed))
     if curve.argument_head.kind is ANGLE:
-        curve, turns = of_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
+        curve, turns = first_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
         rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
-    curve = thinned(curve)
+    curve = thin_curve(curve)
     require_point_count(len(curve.arguments), curve.name, 2)
     places, sizes = curve.texts()
     return rest | {at: places, value_entry: sizes, SOURCE: curve.source(file)}
 
 
-def tables_of_points() -> list[tuple[Table, Entry, Entry]]:
+def load_tables_with_points() -> list[tuple[Table, Entry, Entry]]:
     """Return the tables of loads with points, each with its entries for the arguments and for the values."""
     every = [table for kind in kinds() for table in kind.tables]
     pairs = [(table, [entry for entry in table.entries if entry.several]) for table in every]

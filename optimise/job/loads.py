@@ -22,13 +22,13 @@ from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import kinds
 from ...objectives.units import quote
 from . import values
-from .load_file import tables_of_points
+from .load_file import load_tables_with_points
 from .named_files import MOST_POINTS, SOURCE, unread_file_error
 from .part_kinds import Kinds
 from .values import Checked, optional
 
 
-def increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return a table's points in SI; reject any that is not above the one before."""
     points: tuple[float, ...] = handler(typed)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
@@ -40,7 +40,7 @@ def increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float
     return points
 
 
-def stepping(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
+def require_nondecreasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return the points of a load's table in SI; raise an error if one decreases or repeats twice."""
     at: tuple[float, ...] = handler(typed)
     n = model.out_of_order(at)
@@ -66,7 +66,7 @@ def _part_of_table(table: model.Table) -> type[LoadPart]:
     """Return the job-file table that a kind of load declares."""
     fields: dict[str, Any] = {entry.name: (_entry_type(entry), _entry_field(entry)) for entry in table.entries}
     if any(entry.several for entry in table.entries):
-        fields[SOURCE] = (values.Source, values.source())
+        fields[SOURCE] = (values.Source, values.summary_entry())
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
     part.model_config["json_schema_extra"] = {
         "x-load": {"key": table.key, "title": table.title, "first": dict(table.initial), "motion": table.motion}
@@ -79,7 +79,7 @@ def _part_of_table(table: model.Table) -> type[LoadPart]:
 def _entry_type(entry: model.Entry) -> Any:
     item_type: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
     several: Any = tuple.__class_getitem__((item_type, ...)) if entry.several else item_type
-    return Annotated[several, WrapValidator(stepping)] if entry.increasing else several
+    return Annotated[several, WrapValidator(require_nondecreasing)] if entry.increasing else several
 
 
 def _entry_field(entry: model.Entry) -> Any:
@@ -89,10 +89,10 @@ def _entry_field(entry: model.Entry) -> Any:
     return optional(entry.description, entry.example, default=default, validate_default=words, **shape)
 
 
-def _file_part() -> type[LoadPart]:
+def _load_file_part() -> type[LoadPart]:
     """Return a load whose points are in a file, with the possible entries of all tables."""
     entries: dict[str, list[model.Entry]] = {}
-    for table, *_ in tables_of_points():
+    for table, *_ in load_tables_with_points():
         for entry in table.entries:
             if not entry.several:
                 entries.setdefault(entry.name, []).append(entry)
@@ -110,7 +110,7 @@ def _refuse_file(file: str, **_: object) -> model.Load:
     raise unread_file_error(file, "points")
 
 
-PARTS = {table.key: _part_of_table(table) for kind in kinds() for table in kind.tables} | {"file": _file_part()}
+PARTS = {table.key: _part_of_table(table) for kind in kinds() for table in kind.tables} | {"file": _load_file_part()}
 """Tables of loads by the key that identifies the kind, in the order of the tests."""
 
 
@@ -132,5 +132,5 @@ else:
     Load = Annotated[
         reduce(or_, (Annotated[part, Tag(f"({key})")] for key, part in PARTS.items())),
         Discriminator(_KINDS.tag),
-        BeforeValidator(_KINDS.require_one),
+        BeforeValidator(_KINDS.require_one_kind),
     ]

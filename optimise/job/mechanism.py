@@ -72,7 +72,7 @@ _SECTION = frozenset(SectionLink.model_fields)
 _MASS = frozenset(MassLink.model_fields)
 
 
-def _one_way(value: object) -> object:
+def _require_one_link_form(value: object) -> object:
     """Reject a link that is not a table, or has both a section and mass properties."""
     if isinstance(value, Part):
         return value
@@ -90,7 +90,7 @@ def _one_way(value: object) -> object:
     return value
 
 
-def _way_text(value: object) -> str:
+def _link_form(value: object) -> str:
     if isinstance(value, Part):
         return "(by section)" if isinstance(value, SectionLink) else "(by mass)"
     return "(by section)" if isinstance(value, Mapping) and _SECTION & set(value) else "(by mass)"
@@ -98,8 +98,8 @@ def _way_text(value: object) -> str:
 
 AnyLink = Annotated[
     Annotated[SectionLink, Tag("(by section)")] | Annotated[MassLink, Tag("(by mass)")],
-    Discriminator(_way_text),
-    BeforeValidator(_one_way),
+    Discriminator(_link_form),
+    BeforeValidator(_require_one_link_form),
 ]
 
 
@@ -213,7 +213,7 @@ class MechanismPart(CrankSpeedPart):
     )
 
     @model_validator(mode="after")
-    def _complete(self) -> MechanismPart:
+    def _require_gravity_with_direction(self) -> MechanismPart:
         if self.gravity_direction is not None and self.gravity is None:
             raise InputError(
                 'gravity_direction needs gravity; got only a direction; add gravity = "9.81 m/s^2" or leave out '
@@ -231,7 +231,7 @@ class MechanismPart(CrankSpeedPart):
         return axial, lateral
 
 
-def _split_ends(ends: tuple[float, float]) -> tuple[float, float]:
+def _require_ordered_ends(ends: tuple[float, float]) -> tuple[float, float]:
     if not 0.0 <= ends[0] < ends[1] <= 1.0:
         raise InputError(
             "must be [start, end] with 0 <= start < end <= 1, fractions of the stroke from the "
@@ -262,7 +262,7 @@ class TolerancesPart(Part):
         "radial clearances of the joints", {"crank_pin": "0.02 mm"}, default=ClearancesPart()
     )
     during: During = optional("the stroke in which the position error counts", "cycle", default="cycle")
-    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_split_ends)] = optional(
+    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_require_ordered_ends)] = optional(
         "part of the stroke in which the position error counts: fractions from the inner (0) to the outer dead centre "
         "(1)",
         [0.0, 0.25],

@@ -92,7 +92,7 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
         keys = [str(loc[-1]) for loc in unknown if loc[:-1] == table]
         keys.sort(key=list((tables or {}).get("constraints", keys) if table == ("constraints",) else keys).index)
         are_objectives = table == ("constraints",) and misplaced_objectives.issuperset(keys)
-        owners = ["[objectives]"] if are_objectives else _tables_with_keys(keys, schema)
+        owners = ["[objectives]"] if are_objectives else _tables_with_all_keys(keys, schema)
         owner = min(owners, key=lambda one: one.strip("[]") not in missing, default="")
         if len(keys) > 1 and owner and owner.strip("[]") not in table:
             unknown = {loc: sentence for loc, sentence in unknown.items() if loc[:-1] != table}
@@ -153,7 +153,7 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
             f"{place}: a {noun} with {kind} must not have this key; got {quote(value)}; it belongs to a {noun} with "
             f"{owners}; {possible}"
         ), ""
-    owner = place_of(str(key), schema)
+    owner = where_key_belongs(str(key), schema)
     near = None if owner else closest(str(key), allowed)
     subject, suggestion = f"key {quote(str(key))}", near
     if not table and isinstance(value, Mapping | list):
@@ -162,15 +162,15 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
     return f"{place}: unknown {subject}; {choice}", key_of([*path, near]) if near else ""
 
 
-def place_of(key: str, schema: Schema) -> str:
+def where_key_belongs(key: str, schema: Schema) -> str:
     """Say where a key belongs that its table lacks; "" if no table has it either."""
     if key in schema["properties"] and not headings([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
-    owners = _tables_with_keys([key], schema)
+    owners = _tables_with_all_keys([key], schema)
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
 
-def _tables_with_keys(keys: Sequence[str], schema: Schema) -> list[str]:
+def _tables_with_all_keys(keys: Sequence[str], schema: Schema) -> list[str]:
     """Return the headings of the tables that have all of the given keys."""
     names = schema["properties"]
     return [
@@ -229,7 +229,7 @@ def sentence_of(details: ErrorDetails, schema: Schema) -> str:
         return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
     if rule_of(details) == _TABLE and is_value and "equals" in _possible_keys(schema, path):
         fact = FACTS.get(str(path[-1]))
-        first, *alternatives = map(toml, suggested_bounds(value, fact.kind if fact else None))
+        first, *alternatives = map(toml_text, suggested_bounds(value, fact.kind if fact else None))
         write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
         return f"must be a table with equals, min or max; {value_text}{write}"
     return f"{rule_of(details)}; {value_text}{write}"
@@ -254,16 +254,16 @@ def example_of(schema: Schema, path: Sequence[Any]) -> str:
     for node in nodes_at(schema, path):
         if node.get("examples"):
             key = next((str(part) for part in reversed(keys_of(path)) if isinstance(part, str)), "")
-            return f"{key} = {toml(node['examples'][0])}"
+            return f"{key} = {toml_text(node['examples'][0])}"
     return ""
 
 
-def toml(value: object) -> str:
+def toml_text(value: object) -> str:
     """Return a value in TOML notation, on one line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key_of([key])} = {toml(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key_of([key])} = {toml_text(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(toml(item) for item in value) + "]"
+        return "[" + ", ".join(toml_text(item) for item in value) + "]"
     return quote(value)
 
 
@@ -292,7 +292,7 @@ def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
         inner_nodes = []
         for node in nodes:
             inner = node.get("items") if isinstance(part, int) else None
-            inner = inner or node.get("properties", {}).get(part) or _by_pattern(node, part)
+            inner = inner or node.get("properties", {}).get(part) or _schema_of_key_pattern(node, part)
             if inner is None and isinstance(node.get("additionalProperties"), dict):
                 inner = node["additionalProperties"]
             if inner:
@@ -301,7 +301,7 @@ def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
     return nodes
 
 
-def _by_pattern(node: Schema, part: object) -> Schema | None:
+def _schema_of_key_pattern(node: Schema, part: object) -> Schema | None:
     """Return the schema of keys that match a pattern, such as formulas."""
     patterns = node.get("patternProperties", {}).items() if isinstance(part, str) else ()
     return next((inner for pattern, inner in patterns if re.search(pattern, str(part))), None)

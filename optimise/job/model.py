@@ -17,19 +17,19 @@ from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
 from .costs import CostsPart
-from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, named, require_one_line
+from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
 from .drive import DrivePart
 from .joints import ClearancePart, FrictionPart
 from .lever import CylinderPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
-from .quantities import ConstraintsPart, ObjectivesPart, Stated, tables
+from .quantities import ConstraintsPart, ObjectivesPart, Stated, constraint_and_objective_tables
 from .robust import RobustPart
 from .sections import EXAMPLE as SECTIONS
 from .sections import SectionsPart
 from .target_motion import TargetMotionPart
-from .values import Built, Part, optional, required, retyped
+from .values import Built, Part, optional, required, with_types
 from .variables import ChoicePart, VariablesPart, choice_with
 
 EXAMPLE = {
@@ -145,7 +145,9 @@ class Job(Part):
         "target slider motion, from which motion_deviation and motion_deviation_rms are measured",
         {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
-    quantity: Annotated[dict[str, QuantityPart], Field(max_length=MOST_QUANTITIES), AfterValidator(named)] = optional(
+    quantity: Annotated[
+        dict[str, QuantityPart], Field(max_length=MOST_QUANTITIES), AfterValidator(require_usable_names)
+    ] = optional(
         "custom formulas and functions as quantities, by name",
         {"clearance": {"formula": "offset - crank"}},
         {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},
@@ -217,7 +219,7 @@ def job_with(declared: Declared) -> type[Job]:
 # A form requests the same job type repeatedly, and building one takes as long as reading ten jobs.
 @lru_cache(maxsize=16)
 def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
-    constraints, objectives = tables(dict(custom_facts), formulas)
+    constraints, objectives = constraint_and_objective_tables(dict(custom_facts), formulas)
     choice: Any = choice_with(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]
-    return retyped(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)
+    return with_types(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -59,7 +59,7 @@ def _swing_of_table(
                 'write kind = "swing", or leave them out'
             )
         return None
-    end_kind = _stated_ends(set(ends))
+    end_kind = _swing_end_kind(set(ends))
     start, span = ends[_STARTS[end_kind]], ends.get(_SPANS[end_kind])
     if end_kind == "crank" and crank_side != "left":
         raise InputError(
@@ -99,7 +99,7 @@ _ENDS: dict[Stated, str] = {"crank": "to", "slider": "slider_to"}
 _SPANS: dict[Stated, str] = {"crank": "swing", "slider": "slider_travel"}
 
 
-def _stated_ends(keys: set[str]) -> Stated:
+def _swing_end_kind(keys: set[str]) -> Stated:
     """Return the kind of a swing's ends.
 
     Raises `InputError` unless there are a start and an end, or a start and a span.
@@ -145,7 +145,7 @@ class _Motion(Checked[Swing | None]):
         return Start(angle=getattr(self, keys[0]), place=getattr(self, keys[1]))
 
     @property
-    def requested_margin(self) -> float | None:
+    def required_transmission_angle(self) -> float | None:
         """Minimum transmission angle of the swing that the table requires, rad."""
         return cast("float | None", getattr(self, "margin"))  # noqa: B009
 
@@ -217,7 +217,7 @@ def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Par
                 raise JobError(f"{table}.{quantity.name}: {reason}")
 
 
-def require_no_speed(varying: Iterable[str]) -> None:
+def require_constant_swing_speed(varying: Iterable[str]) -> None:
     """Raise JobError for a swing with a varying crank speed. varying: paths set by variables and options."""
     for path in (*(f"mechanism.{key}" for key in (*SPEED_KEYS, "direction")), "mechanism.acceleration"):
         if path in varying:
@@ -249,7 +249,7 @@ def require_speed(
         )
 
 
-def require_start(varying: Mapping[str, bool]) -> None:
+def require_only_start_varies(varying: Mapping[str, bool]) -> None:
     """Raise JobError if a number of [motion] other than the start varies.
 
     varying: paths, and whether they are chosen.
@@ -285,7 +285,7 @@ def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...])
             )
 
 
-def with_margin(
+def with_swing_margin(
     constraints: tuple[Constraint, ...], margin: float | None, swing: Swing | None
 ) -> tuple[Constraint, ...]:
     """Return constraints with a swing's margin. Raises JobError if both tables require one."""

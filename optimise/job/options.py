@@ -11,7 +11,7 @@ from .possible_values import SLACK, Box
 _MOST = 5  # combinations to report one by one
 
 
-def require_options(problem: Problem) -> None:
+def require_possible_option(problem: Problem) -> None:
     """Raise InfeasibleError if no combination of options can have a design."""
     impossible = impossible_options(problem)
     if problem.variants and len(impossible) == len(problem.variants):
@@ -22,7 +22,7 @@ def require_options(problem: Problem) -> None:
         )
 
 
-def idle_options(problem: Problem) -> list[str]:
+def impossible_option_notes(problem: Problem) -> list[str]:
     """Describe which combinations of options no design can have, and why."""
     impossible = [*problem.left_out, *impossible_options(problem)]
     left_over = f", and {len(impossible) - _MOST} more" if len(impossible) > _MOST else ""

@@ -26,7 +26,7 @@ class Kinds:
     remedy: str
     synonyms: Mapping[str, str] = field(default_factory=dict)
 
-    def require_one(self, value: object) -> object:
+    def require_one_kind(self, value: object) -> object:
         """Return the value; reject one that is not a table, or matches no kind or several kinds."""
         if isinstance(value, Part):
             return value

@@ -25,7 +25,7 @@ def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[st
     return tables
 
 
-def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
+def unknown_path_message(path: str, tables: Mapping[str, Any]) -> str:
     """Return the message for a path without a number, or for a crank speed under another key."""
     table, _, key = path.partition(".")
     entries = tables.get(table)
@@ -44,7 +44,7 @@ def unknown_path(path: str, tables: Mapping[str, Any]) -> str:
     if several:
         return several
     is_number_of_drive = table == "drive" and key in DRIVE
-    known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_plain(value)]
+    known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_settable_value(value)]
     near = None if is_number_of_drive else closest(path, known_paths)
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
@@ -67,7 +67,7 @@ def _not_one_value_message(path: str, tables: Mapping[str, Any]) -> str:
     return ""
 
 
-def stated(part: Any) -> dict[str, Any]:
+def stated_values(part: Any) -> dict[str, Any]:
     """Return the values that a part of a job states, by key; nested parts stay as read."""
     return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
 
@@ -95,19 +95,19 @@ def _replace_at(part: Any, steps: list[str], value: Any) -> Any:
         if place is None or not rest:
             raise LookupError(step)
     elif isinstance(part, Part | Mapping):
-        table, place = stated(part), step
+        table, place = stated_values(part), step
     else:
         raise LookupError(step)
     if rest:
         table[place] = _replace_at(table[place], rest, value)
-    elif _is_plain(table[place]):
+    elif _is_settable_value(table[place]):
         table[place] = value
     else:
         raise LookupError(step)
     return table
 
 
-def _is_plain(value: object) -> bool:
+def _is_settable_value(value: object) -> bool:
     return isinstance(value, int | float | str | StrokePart)
 
 

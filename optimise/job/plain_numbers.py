@@ -16,10 +16,10 @@ from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from ..problem.problem import Problem
 from ..problem.remark import Change, Remark
-from .messages import key_of, keys_of, toml
+from .messages import key_of, keys_of, toml_text
 from .paths import with_number
-from .values import PLAIN, Part, Table, plain_in, values_in
-from .variables import leaves_of, varying_in
+from .values import PLAIN, Part, Table, flatten_values, plain_numbers_in
+from .variables import leaves_of, stated_variables
 
 _LONGEST = 60  # maximum length of a value that a warning repeats
 
@@ -35,38 +35,38 @@ class PlainNumbers:
     @property
     def note(self) -> str:
         """The first of the numbers with its interpretation."""
-        number = plain_in(self.value)[0]
-        return f"{self.key} = {number:g} is {number:g} {self.kind.unit}{self._usual(number, ' = {}')}"
+        number = plain_numbers_in(self.value)[0]
+        return f"{self.key} = {number:g} is {number:g} {self.kind.unit}{self._in_usual_unit(number, ' = {}')}"
 
     @property
     def warning(self) -> str | None:
         """Warning for numbers of implausible size, or beside others with a unit; None for others."""
-        numbers = plain_in(self.value)
+        numbers = plain_numbers_in(self.value)
         doubtful = [number for number in numbers if not self.kind.is_plausible(number)]
-        mixed = any(isinstance(value, str) for value in values_in(self.value))
+        mixed = any(isinstance(value, str) for value in flatten_values(self.value))
         if not numbers or not (doubtful or mixed):
             return None
         number = (doubtful or numbers)[0]
-        text = toml(self.value)
+        text = toml_text(self.value)
         value_text = text if len(text) <= _LONGEST else quote(self.value)
         doubt = "mixes numbers with and without a unit" if mixed else "has no unit"
         doubt = f"{doubt} and is" if number == self.value else f"{doubt}: {number:g} is"
         read = f'"{number:g} {self.kind.unit}"'
-        sentence = f"{self.key} = {value_text} {doubt} read as {read[1:-1]}{self._usual(number, ' ({})')}"
+        sentence = f"{self.key} = {value_text} {doubt} read as {read[1:-1]}{self._in_usual_unit(number, ' ({})')}"
         usual = f"{number:g} {self.kind.metric.symbol}"
-        in_usual = self._list_in(self.kind.metric.symbol, doubtful)
+        in_usual = self._list_with_unit(self.kind.metric.symbol, doubtful)
         if self.kind.believed is not None and abs(number) < self.kind.believed[0]:
             return f"{sentence}; write it with its unit"
         if usual == read[1:-1]:
-            return Remark(f"{sentence}; write {read}", self._writing(number, read[1:-1]))
+            return Remark(f"{sentence}; write {read}", self._change_to_text(number, read[1:-1]))
         if in_usual is not None and len(text) <= _LONGEST:
-            symbol, in_si = self.kind.metric.symbol, self._list_in(self.kind.unit, doubtful)
-            sentence = f"{sentence}; if you mean {symbol}, write {toml(in_usual)}, otherwise {toml(in_si)}"
+            symbol, in_si = self.kind.metric.symbol, self._list_with_unit(self.kind.unit, doubtful)
+            sentence = f"{sentence}; if you mean {symbol}, write {toml_text(in_usual)}, otherwise {toml_text(in_si)}"
             return Remark(sentence, Change(self.key, in_usual, f"Read as {symbol}"))
         sentence = f'{sentence}; if you mean {usual}, write "{usual}", otherwise {read}'
-        return Remark(sentence, self._writing(number, usual))
+        return Remark(sentence, self._change_to_text(number, usual))
 
-    def _writing(self, number: float, text: str) -> Change | None:
+    def _change_to_text(self, number: float, text: str) -> Change | None:
         """Return the change that writes the number as text, if it is the value or one of its entries."""
         if self.value == number:
             return Change(self.key, text, f"Write {text}")
@@ -74,7 +74,7 @@ class PlainNumbers:
             return Change(self.key, [text if entry == number else entry for entry in self.value], f"Write {text}")
         return None
 
-    def _list_in(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
+    def _list_with_unit(self, unit: str, doubtful: list[float]) -> list[str | float] | None:
         """Return a list with a unit after each number except zero.
 
         None for other values, or if some numbers are plausible.
@@ -88,13 +88,13 @@ class PlainNumbers:
         """Return whether the value is at a key of the job, within it, or in a table that contains it."""
         return any(f"{inner}.".startswith(f"{outer}.") for inner, outer in ((self.key, key), (key, self.key)))
 
-    def _usual(self, number: float, form: str) -> str:
+    def _in_usual_unit(self, number: float, form: str) -> str:
         """Return the number in the usual unit, in the given phrase; "" if that is the SI unit."""
         usual = self.kind.metric
         return form.format(f"{usual.factor * number:.6g} {usual.symbol}") if usual.symbol != self.kind.unit else ""
 
 
-def read_noting(
+def read_and_note_plain_numbers(
     job: type[Table], data: Mapping[str, Any], values: Mapping[str, Any] | None = None
 ) -> tuple[Table, list[PlainNumbers]]:
     """Return the tables of a job as read, and its numbers without a unit except ratios and counts.
@@ -107,13 +107,13 @@ def read_noting(
     for path in values or ():
         placed.pop(path, None)
     stated = [(path, path, value) for path, value in (values or {}).items()]
-    varying = [item for item in (*stated, *_varying_values(data)) if plain_in(item[2])]
+    varying = [item for item in (*stated, *_varying_values(data)) if plain_numbers_in(item[2])]
     if not varying:
         return read, list(placed.values())
     tried: Mapping[str, Any] = data
     for _, path, value in varying:
         try:
-            tried = _with_number_at(tried, path, plain_in(value)[0])
+            tried = _with_number_at(tried, path, plain_numbers_in(value)[0])
         except LookupError:  # a word in the table, such as the name of a series
             continue
     kinds = {path: kind for path, _, _, kind in _tables_as_read(job, tried)[1]}
@@ -133,7 +133,7 @@ def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNum
             if name not in FACTS and isinstance(bounds, Mapping):
                 kind = problem.quantity(name).kind
                 for word, value in bounds.items():
-                    if plain_in(value) and kind.unit and not kind.amount:
+                    if plain_numbers_in(value) and kind.unit and not kind.amount:
                         yield PlainNumbers(key_of([table, name, word]), value, kind)
 
 
@@ -158,7 +158,7 @@ def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | 
 
 def _varying_values(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
     """Yield key, path and value for numbers that variables and options set elsewhere in the job."""
-    for path, value in varying_in(data).items():
+    for path, value in stated_variables(data).items():
         yield f"variables.{path}", path, value
     for part in data.get("choice", ()):
         for option in part.get("option", ()):

@@ -71,18 +71,18 @@ def require_reachable(problem: Problem) -> None:
         )
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     if ROD_TO_OFFSET.name in constraints:
-        box = _with_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
+        box = _narrow_by_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
     formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.of_dimensions)
     for of in (ROD_TO_CRANK, STROKE, *STROKE_RATIOS, TRANSMISSION_ANGLE, *formulas):
         if of.name in constraints:
             _require_within(of, constraints[of.name], box, problem)
     for of in STROKE_RATIOS:
-        wrong = beyond_both(problem, of, box.share)
+        wrong = ratio_and_angle_conflict(problem, of, box.share)
         if wrong:
             raise InfeasibleError(f"constraints.{of.name}: {wrong}")
 
 
-def _with_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
+def _narrow_by_rod_to_offset(box: Box, constraint: Constraint, problem: Problem) -> Box:
     """Return the box narrowed to k_min |offset| <= rod <= k_max |offset|; raise InfeasibleError if nothing remains."""
     if box.offset.upper == 0.0:
         raise InfeasibleError(
@@ -149,14 +149,14 @@ def _possible_values_text(problem: Problem, constraint: Constraint) -> tuple[str
         (nearest, _), active = _nearest_relaxation(problem, constraint, requirements), [*narrowing]
     if nearest is None:
         return f"{ranges} it is impossible", []
-    rules = [_in_words(problem, rule) for rule in active]
+    rules = [_rule_in_words(problem, rule) for rule in active]
     rules += [_OTHERS] if len(requirements) > 1 + len({rule.quantity for rule in active}) else []
     conditions = f" and with {' and '.join(rules)}," if rules else ""
     side = "at most" if nearest.reachable < nearest.requested else "at least"
     return f"{ranges}{conditions} {side} {nearest.with_unit} is possible", [rule.quantity for rule in active]
 
 
-def _in_words(problem: Problem, rule: Constraint) -> str:
+def _rule_in_words(problem: Problem, rule: Constraint) -> str:
     quantity = problem.quantity(rule.quantity)
     bounds = (f"{RELATIONS[word]} {_format_value(quantity, bound)}" for word, bound in rule.sides)
     return f"{rule.quantity} {' and '.join(bounds)}"
@@ -204,7 +204,7 @@ def _active_bounds(problem: Problem, rule: Constraint, design: Array) -> list[Co
     return [bound for bound in single if abs(value - bound.sides[0][1]) <= _ACTIVE * (abs(bound.sides[0][1]) or 1.0)]
 
 
-def beyond_both(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY) -> str | None:
+def ratio_and_angle_conflict(problem: Problem, ratio_quantity: Quantity, share: Range = _ANY) -> str | None:
     """Return why no linkage can meet both a ratio of `STROKE_RATIOS` and the transmission angle; None if one may.
 
     share: range of offset / rod.

@@ -17,27 +17,27 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swinging import swing_quantities
 from ..discrete.meetable import require_meetable
 from ..methods.registry import require_supported_settings
-from ..problem.impossible import no_option
+from ..problem.impossible import no_option_error
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
-from ..problem.violation import FEASIBLE, violated_by
+from ..problem.violation import FEASIBLE, relative_violation
 from .amounts import amounts_of, excluded_in_words
 from .contradictions import require_consistent
 from .custom_quantities import formulas_of, functions_of
 from .messages import key_of
 from .model import Job
 from .motion import (
-    require_no_speed,
+    require_constant_swing_speed,
     require_one_sided_starts,
+    require_only_start_varies,
     require_speed,
-    require_start,
     require_swing_motion,
-    with_margin,
+    with_swing_margin,
 )
 from .quantities import constraints_of, objectives_of, slow_stroke_of
-from .robust import robustly
+from .robust import make_robust
 from .target_motion import require_target
-from .varying import dimension_ranges, discrete_of, ends_of, is_choice, variants_of, varying_machine
+from .varying import dimension_ranges, discrete_variables, ends_of, is_choice, machine_with_variables, variants_of
 
 
 def problem_of(
@@ -62,8 +62,10 @@ def problem_of(
     formulas = Formulas(custom, machine, dimension_ranges(job), formulas_of(job.quantity), turning=motion is None)
     choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
-    constraints = with_margin(
-        _join_by_formula(constraints_of(job.constraints, formulas), formulas), job.motion.requested_margin, motion
+    constraints = with_swing_margin(
+        _join_by_formula(constraints_of(job.constraints, formulas), formulas),
+        job.motion.required_transmission_angle,
+        motion,
     )
     named_quantities = {item.quantity for item in objectives} | {item.quantity for item in constraints}
     missing = [of for of in amounts if of.name in named_quantities]
@@ -72,7 +74,7 @@ def problem_of(
     catalogue, _ = _possible_variants(catalogue, constraints, quantities, missing)
     if choices and not variants:
         if require_feasible:
-            raise no_option(left_out)
+            raise no_option_error(left_out)
         choices, catalogue = (), ()  # the quantities that judge a design do not depend on them
     limits = [*constraints, *(limit for variant in variants for limit in variant.limits)]
     named = {*named_quantities, *(item.quantity for item in limits)}
@@ -92,7 +94,7 @@ def problem_of(
         objectives=objectives,
         constraints=constraints,
         slow_stroke=slow_stroke_of(job.constraints),
-        discrete=discrete_of(job),
+        discrete=discrete_variables(job),
         motion=motion,
         costs=None if job.costs is None else job.costs.build(),
         sections=None if job.sections is None else job.sections.build(),
@@ -106,7 +108,7 @@ def problem_of(
             ),
         ),
     )
-    _require_shorter(problem)
+    _require_tolerances_below_lengths(problem)
     try:
         require_consistent(problem)
         require_meetable(problem)
@@ -115,7 +117,7 @@ def problem_of(
             error.problem = problem
             raise
     require_supported_settings(problem)
-    return robustly(problem, job.robust)
+    return make_robust(problem, job.robust)
 
 
 def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
@@ -124,16 +126,16 @@ def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
     require_target(job.target_motion, job.objectives, job.constraints)
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
     if motion is not None:
-        require_no_speed({*paths, *chosen})
+        require_constant_swing_speed({*paths, *chosen})
     chosen |= {path for path, stated_value in paths.items() if is_choice(stated_value)}
-    require_start({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})
+    require_only_start_varies({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})
     require_swing_motion(motion, job.objectives, job.constraints)
-    machine = varying_machine(job)
+    machine = machine_with_variables(job)
     require_one_sided_starts(motion, machine.varying)
     return machine
 
 
-def _require_shorter(problem: Problem) -> None:
+def _require_tolerances_below_lengths(problem: Problem) -> None:
     """Reject a tolerance that may be as long as its link, because its unit must be wrong."""
     for part in problem.variants or (problem,):
         for name, ends in (("crank", part.crank), ("rod", part.rod)):
@@ -199,7 +201,7 @@ def _contradiction_of(
     constraint_by_name = {item.quantity: item for item in constraints}
     for name, value in variant.amounts:
         constraint = constraint_by_name.get(name)
-        if constraint is not None and violated_by(constraint, np.array([value]))[0] > FEASIBLE:
+        if constraint is not None and relative_violation(constraint, np.array([value]))[0] > FEASIBLE:
             unit = quantities[name].unit
             word, bound = next(
                 (word, bound)

@@ -35,9 +35,9 @@ from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import closest, plus_minus_ends, printable_name, quote
 from ..problem.requirements import SENSES, Constraint, Objective, Word
-from .grids import swap
-from .messages import key_of, toml
-from .values import Part, Physical, of_spread, optional, required
+from .grids import crossed_ends_remedy
+from .messages import key_of, toml_text
+from .values import Part, Physical, optional, plus_minus_error, required
 
 
 class Bounds(Part):
@@ -45,13 +45,15 @@ class Bounds(Part):
 
     @model_validator(mode="wrap")
     @classmethod
-    def _possible(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+    def _require_possible_bounds(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
         if isinstance(data, Mapping) and set(data) == {"equals"} and (ends := plus_minus_ends(data["equals"])):
             try:
                 bounds = handler(dict(zip(("min", "max"), ends, strict=True)))
             except ValidationError as error:
                 refused = error.errors()[0].get("ctx", {}).get("error")
-                raise (of_spread(data["equals"], ends, refused) if isinstance(refused, InputError) else error) from None
+                raise (
+                    plus_minus_error(data["equals"], ends, refused) if isinstance(refused, InputError) else error
+                ) from None
         else:
             bounds = handler(data)
         lower, upper, equals = (getattr(bounds, name) for name in ("min", "max", "equals"))
@@ -74,7 +76,7 @@ class Bounds(Part):
 def _crossed_bounds_text(bounds: Mapping[Any, object]) -> str:
     return (
         f"min must not exceed max; got min {quote(bounds['min'])} and max {quote(bounds['max'])}; "
-        f"{swap(bounds['min'], bounds['max'])} or leave out one"
+        f"{crossed_ends_remedy(bounds['min'], bounds['max'])} or leave out one"
     )
 
 
@@ -87,7 +89,7 @@ _NAMED = "[A-Za-z_]{3}"
 
 
 @dataclass(frozen=True)
-class _Bound(Physical):
+class _BoundMarker(Physical):
     """Marks a bound: a physical value, or a formula, which stays text until its names are known."""
 
     names: frozenset[str] = frozenset()
@@ -106,7 +108,7 @@ class _Bound(Physical):
         }
 
 
-class _Raw(Physical):
+class _FormulaBoundMarker(Physical):
     """Marks a bound on a formula, which is parsed once the formula's kind is known."""
 
     def read(self, value: object) -> Any:
@@ -118,7 +120,7 @@ class _Raw(Physical):
         return {"anyOf": [{"type": "string"}, {"type": "number"}]}
 
 
-_RAW = Annotated[Any, _Raw(RATIO)]
+_RAW = Annotated[Any, _FormulaBoundMarker(RATIO)]
 
 
 class FormulaBounds(Bounds):
@@ -160,13 +162,13 @@ _PATTERN = rf"[^A-Za-z0-9_]|^({'|'.join(DIMENSIONS)})$"
 _IS_FORMULA = re.compile(_PATTERN)
 
 
-def _pattern_of(schema: dict[str, Any]) -> None:
+def _formulas_to_key_pattern(schema: dict[str, Any]) -> None:
     """Convert a table's formulas to a key pattern in its JSON Schema."""
     inner = schema["properties"].pop(_KEY)
     schema["patternProperties"] = {_PATTERN: inner["additionalProperties"]}
 
 
-def _undotted_key(path: str, value: object) -> tuple[str, object]:
+def _rejoin_dotted_key(path: str, value: object) -> tuple[str, object]:
     """Return the first path of a key that dots split into tables, and its value."""
     while isinstance(value, Mapping) and value and not {*WORDS, "target"} & set(value):
         key, value = next(iter(value.items()))
@@ -177,7 +179,7 @@ def _undotted_key(path: str, value: object) -> tuple[str, object]:
 class _Table(Part):
     """A table whose keys are quantities or formulas. named: formulas with a name in the job."""
 
-    model_config = ConfigDict(json_schema_extra=_pattern_of)
+    model_config = ConfigDict(json_schema_extra=_formulas_to_key_pattern)
     named: ClassVar[frozenset[str]] = frozenset()
 
     @model_validator(mode="before")
@@ -187,17 +189,17 @@ class _Table(Part):
         if not isinstance(data, Mapping):
             return data
         for key in (key for key in ROOTS if isinstance(data.get(key), Mapping)):
-            path, value = _undotted_key(key, data[key])
+            path, value = _rejoin_dotted_key(key, data[key])
             raise InputError(
                 f"a key with dots must be in quotes, like a formula; got "
-                f"{printable_name(path)} without; write it as {toml(path)} = {toml(value)}"
+                f"{printable_name(path)} without; write it as {toml_text(path)} = {toml_text(value)}"
             )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
         rest = {key: value for key, value in data.items() if key not in keys}
         return rest | {_KEY: {key: data[key] for key in keys}} if keys else data
 
     @model_serializer(mode="wrap")
-    def _together(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+    def _serialise_with_formulas(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Return the table as in a job file, with formulas among the other keys."""
         data: dict[str, Any] = handler(self)
         formulas: dict[str, Any] = data.pop("formulas", data.pop(_KEY, {}))
@@ -218,7 +220,9 @@ class Stated(NamedTuple):
     bound: Literal["min", "max"] = "min"
 
 
-def tables(custom_facts: Mapping[str, Stated], named: Iterable[str] = ()) -> tuple[type[Part], type[Part]]:
+def constraint_and_objective_tables(
+    custom_facts: Mapping[str, Stated], named: Iterable[str] = ()
+) -> tuple[type[Part], type[Part]]:
     """Return the tables [constraints] and [objectives], with one optional key per quantity.
 
     custom_facts: a job's quantities besides those that every job has. named: its formulas with a name.
@@ -254,7 +258,7 @@ def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, 
 
     names: names for formulas in bounds.
     """
-    value, bound = Annotated[float, Physical(kind)], Annotated[Any, _Bound(kind, names=names)]
+    value, bound = Annotated[float, Physical(kind)], Annotated[Any, _BoundMarker(kind, names=names)]
     name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
     help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
@@ -279,7 +283,7 @@ if TYPE_CHECKING:  # type checkers cannot follow fields that are created from th
     ConstraintsPart: TypeAlias = Part
     ObjectivesPart: TypeAlias = Part
 else:
-    ConstraintsPart, ObjectivesPart = tables({})
+    ConstraintsPart, ObjectivesPart = constraint_and_objective_tables({})
 
 
 def constraints_of(

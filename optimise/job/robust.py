@@ -48,7 +48,7 @@ class RobustPart(Checked[Robust]):
     )
 
 
-def robustly(problem: Problem, part: RobustPart | None) -> Problem:
+def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
     """Return the problem made robust if the job requests it. Raises JobError if that is impossible."""
     if part is None:
         return problem

@@ -12,11 +12,11 @@ from .values import (
     Density,
     Limited,
     Part,
+    PhysicalWithin,
     PositiveLength,
     PositiveRange,
     PositiveRatio,
     WearCoefficient,
-    Within,
     optional,
     required,
 )
@@ -47,7 +47,7 @@ _Safety = Annotated[PositiveRatio, Limited("at least 1", "below 1 the part fails
 _CORRECT = "correct the number or its unit"
 _Elasticity = Annotated[
     float,
-    Within(
+    PhysicalWithin(
         PRESSURE,
         "positive",
         rule="from 10 MPa to 2 TPa",
@@ -58,7 +58,7 @@ _Elasticity = Annotated[
 ]
 _Strength = Annotated[
     float,
-    Within(
+    PhysicalWithin(
         PRESSURE,
         "positive",
         rule="from 1 MPa to 20 GPa",
@@ -69,7 +69,7 @@ _Strength = Annotated[
 ]
 _Bearing = Annotated[
     float,
-    Within(
+    PhysicalWithin(
         PRESSURE,
         "positive",
         rule="from 10 kPa to 5 GPa",

@@ -13,10 +13,10 @@ from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import per_si
-from .curve_file import Curve, curve_in, opened
+from .curve_file import Curve, curve_in, drop_closing_point
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
-from .values import Angle, AngularSpeed, Checked, Number, Source, optional, source
+from .values import Angle, AngularSpeed, Checked, Number, Source, optional, summary_entry
 
 _TOLERANCE = 1e-3  # relative tolerance for a table's mean against the speed, and for the end of a turn against 360 deg
 
@@ -60,9 +60,9 @@ class SpeedProfilePart(Checked[Profile]):
         "angle 0 on",
         "speed.csv",
     )
-    source: Source = source()
+    source: Source = summary_entry()
 
-    def require_mean(self, speed: float) -> None:
+    def require_mean_speed(self, speed: float) -> None:
         """Raise `InputError` unless the points' mean is the given speed, rad/s."""
         built = self.build()
         if isinstance(built, SpeedTable) and abs(built.mean - speed) > _TOLERANCE * abs(speed):
@@ -86,14 +86,14 @@ def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     if file is None:
         return job
     curve = curve_in(read_named_table(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
-    curve = opened(_over_turn(curve) if curve.argument_head.kind is TIME else curve)
+    curve = drop_closing_point(_convert_time_to_turn_angle(curve) if curve.argument_head.kind is TIME else curve)
     require_point_count(len(curve.arguments), curve.name, 4)
     angles, speeds = curve.texts()
     profile = {"crank_angles": angles, "speeds": speeds, SOURCE: curve.source(file)}
     return {**job, "mechanism": {**job["mechanism"], "speed_profile": profile}}
 
 
-def _over_turn(curve: Curve) -> Curve:
+def _convert_time_to_turn_angle(curve: Curve) -> Curve:
     """Return a curve over time as a curve over crank angle, deg: the first turn, from crank angle 0."""
     from scipy.interpolate import CubicSpline
 

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from ...model.errors import InputError
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
 from .raw_tables import table_in, tables_in
-from .variables import set_by_options, varying_in
+from .variables import paths_set_by_options, stated_variables
 
 
 def stated_speed(data: Mapping[str, Any], name: str) -> float:
@@ -19,7 +19,7 @@ def stated_speed(data: Mapping[str, Any], name: str) -> float:
     name: file name for messages.
     """
     stated_mechanism = table_in(data, "mechanism")
-    varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(varying_in(data)) | set_by_options(data))
+    varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(stated_variables(data)) | paths_set_by_options(data))
     if "speed_profile" in stated_mechanism or stated_mechanism.get("acceleration") or varies:
         raise InputError(f"{name} is given over time, which needs a constant crank speed; give crank angles instead")
     stated = {key: stated_mechanism[key] for key in (*SPEED_KEYS, "direction") if key in stated_mechanism}

@@ -28,16 +28,16 @@ from .table_layout import (
     MISSING,
     SAMPLE,
     SEPARATORS,
-    commented,
+    are_numbers,
+    are_units,
     content_lines,
-    named_in,
-    of_numbers,
-    of_units,
+    names_in_comment,
+    names_in_line,
+    normalise_number_signs,
     separator_of,
     split,
     stated_separator,
     title_lines,
-    with_plain_signs,
     with_units,
 )
 
@@ -135,7 +135,7 @@ class TableFile:
     def __len__(self) -> int:
         return sum(len(portion.lines) for portion in self.portions)
 
-    def understood(self, places: Sequence[int]) -> str:
+    def summary_text(self, places: Sequence[int]) -> str:
         """Return a summary of the table: rows, first columns, first and last row, decimal sign."""
         left_over = f" and {counted(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
         places = places[:_NAMED]
@@ -151,7 +151,7 @@ class TableFile:
 
     def _number_in_words(self, cell: str) -> str:
         decimal, grouping = self.signs
-        digits = with_plain_signs(cell).replace(grouping, "").replace(decimal, ".")
+        digits = normalise_number_signs(cell).replace(grouping, "").replace(decimal, ".")
         return f"{float(digits) + 0.0:.6g}" if _NUMBER.fullmatch(digits) else cell or "empty"
 
     @property
@@ -170,7 +170,7 @@ class TableFile:
         """
         if not places:
             return []
-        parts = self._with_points(places)
+        parts = self._with_decimal_points(places)
         return [
             np.concatenate([self._floats(n, portion, cells[n], missing=n in missing) for portion, cells in parts])
             for n in places
@@ -181,7 +181,7 @@ class TableFile:
 
         Raises `InputError` for other cells.
         """
-        numbers, parts = self.numbers(places, missing=missing), self._with_points(places)
+        numbers, parts = self.numbers(places, missing=missing), self._with_decimal_points(places)
         columns = [[cell for _, cells_by_column in parts for cell in cells_by_column[n].split("\n")] for n in places]
         for place, column, cells in zip(places, numbers, columns, strict=True):
             for n in np.flatnonzero(np.isnan(column)):
@@ -190,12 +190,14 @@ class TableFile:
                     raise InputError(f"{cell_text}: must be a number or empty; got {quote(cells[n])}; correct it")
         return columns
 
-    def _with_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
+    def _with_decimal_points(self, places: Sequence[int]) -> list[tuple[_Portion, dict[int, str]]]:
         """Return the cells of columns with decimal points and without thousands separators."""
-        parts = [(portion, {n: with_plain_signs(portion.columns[n]) for n in places}) for portion in self.portions]
+        parts = [
+            (portion, {n: normalise_number_signs(portion.columns[n]) for n in places}) for portion in self.portions
+        ]
         signs = _Signs([text for _, cells in parts for text in cells.values()])
-        decimal, grouping = self.signs = self._decimal(signs)
-        example = signs.first_match(_ambiguous_form(decimal))
+        decimal, grouping = self.signs = self._decimal_and_grouping_signs(signs)
+        example = signs.first_match(_ambiguous_number_pattern(decimal))
         word = "comma" if decimal == "," else "point"
         note = f"decimal {word}"
         if example is not None and (number := f"{float(example.replace(decimal, '.')):g}") != example:
@@ -212,14 +214,20 @@ class TableFile:
                 cells[n] = text.replace(decimal, ".")
         return parts
 
-    def _decimal(self, signs: _Signs) -> tuple[str, str]:
+    def _decimal_and_grouping_signs(self, signs: _Signs) -> tuple[str, str]:
         """Return a file's decimal sign and its thousands separator."""
-        point, comma = signs.first_match(_certain_form(".", ",")), signs.first_match(_certain_form(",", "."))
+        point, comma = (
+            signs.first_match(_certain_number_pattern(".", ",")),
+            signs.first_match(_certain_number_pattern(",", ".")),
+        )
         if point is not None and comma is not None:
             raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
-        comma, point = signs.first_match(_ambiguous_form(",")), signs.first_match(_ambiguous_form("."))
+        comma, point = (
+            signs.first_match(_ambiguous_number_pattern(",")),
+            signs.first_match(_ambiguous_number_pattern(".")),
+        )
         if comma is not None and (point is not None or self.separator == ","):
             second = f" and {point}" if point is not None else ""
             raise InputError(
@@ -272,14 +280,14 @@ class _Signs:
         return next((hit[0] for hit in map(cells.search, self._texts) if hit), None)
 
 
-def _ambiguous_form(sign: str) -> str:
+def _ambiguous_number_pattern(sign: str) -> str:
     """Return the form of a number whose only sign may be decimal or a thousands separator: 1.300, but not 0.300."""
     return rf"[+-]?[1-9]\d{{0,2}}\{sign}\d{{3}}"
 
 
-def _certain_form(decimal: str, grouping: str) -> str:
+def _certain_number_pattern(decimal: str, grouping: str) -> str:
     """Return the form of a number whose decimal sign is certain: 0.3, .3, 1.3000, 1,300.5, and 1,000,000."""
-    plain_number = rf"(?!{_ambiguous_form(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
+    plain_number = rf"(?!{_ambiguous_number_pattern(decimal)}$)[+-]?(?:\d+\{decimal}\d*|\{decimal}\d+){EXPONENT}"
     parted = rf"[+-]?\d{{1,3}}(?:\{grouping}\d{{3}})+\{decimal}\d*{EXPONENT}"
     return rf"{plain_number}|{parted}|[+-]?\d{{1,3}}(?:\{grouping}\d{{3}}){{2,}}"
 
@@ -309,7 +317,7 @@ def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
         raise InputError(f"{name} must begin with a line of column names; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
-    units = first[1] if first is not None and of_units(first[1]) else None
+    units = first[1] if first is not None and are_units(first[1]) else None
     if units is not None:
         first = next(lines, None)
     elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
@@ -319,14 +327,14 @@ def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
         )
     width = len(heads) if first is None else len(first[1])
     rows = lines if first is None else itertools.chain([first], lines)
-    if of_numbers(heads):
+    if are_numbers(heads):
         rows = itertools.chain([head], rows)
-        heads = commented(text, separator, len(heads)) or heads
+        heads = names_in_comment(text, separator, len(heads)) or heads
     elif len(heads) != width:
         line = next(line for line in content_lines(text) if line.strip())
-        heads = named_in(line, separator, width) or heads
+        heads = names_in_line(line, separator, width) or heads
     heads = with_units(heads, units or [])
-    if of_numbers(heads):
+    if are_numbers(heads):
         raise InputError(
             f"{name} must begin with a line of column names with units; got {', '.join(heads)[:60]!r}; add one "
             "such as crank_angle_deg,force_N"

@@ -25,7 +25,7 @@ _BLANKS = re.compile(r"(?<=\d)[ '\u2019\u00a0\u2007\u2009\u202f](?=\d{3}(?!\d))"
 """Signs that can only be thousands separators."""
 
 
-def with_plain_signs(text: str) -> str:
+def normalise_number_signs(text: str) -> str:
     """Return cells without blanks as thousands separators, and with plain minus signs."""
     return _BLANKS.sub("", text).replace("\u2212", "-")
 
@@ -69,10 +69,10 @@ def separator_of(text: str) -> str:
         width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
         if sign != " ":
             width = widths[0] if widths else 1
-        elif not all(of_numbers(row) for row in rows[1 + (len(rows) > 1 and of_units(rows[1])) :]):
+        elif not all(are_numbers(row) for row in rows[1 + (len(rows) > 1 and are_units(rows[1])) :]):
             continue
         alike = widths.count(width) / len(every) if width > 1 else 0.0
-        if alike and of_numbers(rows[0]) and commented(text, sign, width):
+        if alike and are_numbers(rows[0]) and names_in_comment(text, sign, width):
             alike += 1.0  # as many names as numbers
         if alike > best:
             best, separator = alike, sign
@@ -88,7 +88,7 @@ def title_lines(rows: Sequence[Sequence[str]]) -> int:
     """
     first = next((n for n, row in enumerate(rows) if all(map(_is_number, row))), len(rows))
     if first < len(rows):
-        names = max(first - 1 - (first > 0 and of_units(rows[first - 1])), 0)
+        names = max(first - 1 - (first > 0 and are_units(rows[first - 1])), 0)
         certain = len(rows[names]) == len(rows[first]) and all(_is_number(cell) for row in rows[first:] for cell in row)
     else:
         widths = [len(row) for row in rows]
@@ -105,7 +105,7 @@ def title_lines(rows: Sequence[Sequence[str]]) -> int:
 
 def _is_number(cell: str) -> bool:
     """Whether a cell is a number or a mark for a missing one."""
-    return cell.strip().casefold() in MISSING or of_numbers([cell])
+    return cell.strip().casefold() in MISSING or are_numbers([cell])
 
 
 def stated_separator(text: str) -> str:
@@ -115,7 +115,7 @@ def stated_separator(text: str) -> str:
     return "" if statement is None else statement[1].replace("\\t", "\t")
 
 
-def of_units(cells: Sequence[str]) -> bool:
+def are_units(cells: Sequence[str]) -> bool:
     """Whether a line has only units, at least two, as loggers write them below the names."""
     units = [_unit(cell) for cell in cells if _unit(cell)]
     return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
@@ -132,27 +132,27 @@ def with_units(heads: list[str], units: Sequence[str]) -> list[str]:
     return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
 
 
-def of_numbers(cells: Sequence[str]) -> bool:
+def are_numbers(cells: Sequence[str]) -> bool:
     """Whether all of the cells are numbers, with any decimal and thousands signs."""
-    return any(cells) and all(_LIKE_A_NUMBER.fullmatch(with_plain_signs(cell.strip())) for cell in cells if cell)
+    return any(cells) and all(_LIKE_A_NUMBER.fullmatch(normalise_number_signs(cell.strip())) for cell in cells if cell)
 
 
-def commented(text: str, separator: str, width: int) -> list[str] | None:
+def names_in_comment(text: str, separator: str, width: int) -> list[str] | None:
     """Return the column names in the last comment before the numbers that has as many; None without one."""
     names = None
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
         if comment:
-            named = named_in(line[comment.end() :], separator, width)
-            names = with_units(names, named) if names and named and of_units(named) else named or names
+            named = names_in_line(line[comment.end() :], separator, width)
+            names = with_units(names, named) if names and named and are_units(named) else named or names
         elif line.strip() and not _SAID.fullmatch(line):
             break
     return names
 
 
-def named_in(line: str, separator: str, width: int) -> list[str] | None:
+def names_in_line(line: str, separator: str, width: int) -> list[str] | None:
     """Return the names of `width` columns in a line; names may have several words. None without them."""
     ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
     if separator == " ":
         ways += [re.split(pattern, line.strip()) for pattern in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
-    return next((heads for heads in ways if len(heads) == width and not of_numbers(heads)), None)
+    return next((heads for heads in ways if len(heads) == width and not are_numbers(heads)), None)

@@ -14,7 +14,7 @@ from ...objectives.own.apply import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
-from . import parse_job, warn_of, with_files
+from . import parse_job, warn_about, with_files
 
 
 def problem(
@@ -58,7 +58,7 @@ def problem(
         folder=None if folder is None else Path(folder),
         require_feasible=require_feasible,
     )
-    warn_of(stated_problem)
+    warn_about(stated_problem)
     return (
         replace(stated_problem, own=tuple(_with_functions(item, functions) for item in stated_problem.own))
         if functions

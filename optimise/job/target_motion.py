@@ -11,12 +11,12 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
-from .curve_file import curve_in, opened, over_angle
-from .loads import increasing
+from .curve_file import convert_time_to_angle, curve_in, drop_closing_point
+from .loads import require_increasing
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
 from .stated_speed import stated_speed
-from .values import Angle, Checked, Length, Part, Source, optional, source
+from .values import Angle, Checked, Length, Part, Source, optional, summary_entry
 
 
 class TargetMotionPart(Checked[TargetMotion]):
@@ -24,7 +24,7 @@ class TargetMotionPart(Checked[TargetMotion]):
 
     makes = TargetMotion
 
-    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(increasing)] | None = optional(
+    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(require_increasing)] | None = optional(
         "crank angles of the points, increasing, spanning less than 360 deg",
         ["0 deg", "90 deg", "180 deg"],
         min_length=3,
@@ -39,7 +39,7 @@ class TargetMotionPart(Checked[TargetMotion]):
     file: Annotated[str, Field(max_length=200)] | None = optional(
         "instead of the two: a table beside the job file, of position_mm over crank_angle_deg or time_s", "motion.csv"
     )
-    source: Source = source()
+    source: Source = summary_entry()
     phase: Freedom = optional(
         "whether the crank may be mounted on its shaft at any angle; the best one is used", "free", default="fixed"
     )
@@ -69,19 +69,21 @@ def require_target(target: TargetMotionPart | None, objectives: Part, constraint
                 )
 
 
-def points_file(data: Mapping[str, Any]) -> str | None:
+def target_motion_file(data: Mapping[str, Any]) -> str | None:
     """Return the file that a job's target motion names; None if it names none."""
     file = table_in(data, "target_motion").get("file")
     return file if isinstance(file, str) else None
 
 
-def with_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+def with_target_motion(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with its target motion's file replaced by the points in it. Raises `InputError`."""
-    file, job = points_file(data), dict(data)
+    file, job = target_motion_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job
     curve = curve_in(read_named_table(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
-    curve = opened(over_angle(curve, stated_speed(data, curve.name)) if curve.argument_head.kind is TIME else curve)
+    curve = drop_closing_point(
+        convert_time_to_angle(curve, stated_speed(data, curve.name)) if curve.argument_head.kind is TIME else curve
+    )
     require_point_count(len(curve.arguments), curve.name, 3)
     angles, positions = curve.texts()
     rest = {key: value for key, value in job["target_motion"].items() if key != "file"}

@@ -107,7 +107,7 @@ _EDITS: tuple[Edit, ...] = (
     _edit_code(r"=\s*(?=[\w-]+\s*=)", "= { ", _BRACES),
     _edit_code(r"(?<=[^\s{])$", " }", _BRACES),
     _edit_code(rf"{{(\s*{_ITEM}(?:\s*,\s*{_ITEM})*\s*)}}", r"[\2]", _SQUARE),
-    lambda line: _with_brackets(line),
+    lambda line: _bracket_heading(line),
     _edit_code(r"\(([^()]*)\)", r"[\2]", _SQUARE),
     _edit_code(r"(?<==)\s*(?=[^\[{]*\]$)", " [", _SQUARE),
     _edit_code(r"(?<==)\s*([^\[{]*,.*?)\s*$", r" [\2]", _SQUARE),
@@ -135,7 +135,7 @@ _EDITS: tuple[Edit, ...] = (
 )
 
 
-def in_words(text: str, error: str) -> str:
+def explain_toml_error(text: str, error: str) -> str:
     """Return line, key, rule, value and remedy for a parser error in a text."""
     lines = text.replace("\r\n", "\n").split("\n")
     place = _PLACE.search(error)  # at the end of the text there is none
@@ -144,29 +144,29 @@ def in_words(text: str, error: str) -> str:
     begins = _begins_entry(lines[number - 1])
     start = next((n for n in range(number - 1, 0, -1) if _begins_entry(lines[n - 1])), number)
     code = _code_of(lines[number - 1])
-    if (twice := _TWICE.search(error)) and (begins or _with_brackets(code)[1] == code):
+    if (twice := _TWICE.search(error)) and (begins or _bracket_heading(code)[1] == code):
         return _repeated_key_message(lines[: number if begins else start], twice[1])
     opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
     if not place and len(opened) % 2:
         return _unclosed_message(lines[: opened[-1]], "the end of the file")
-    in_list = start < number and _unread_size(lines[start - 1 : number - 1]) < 0
+    in_list = start < number and _unread_length(lines[start - 1 : number - 1]) < 0
     if not place or (in_list and begins):
         first = start if in_list else number
-        if _unread_size(lines[first - 1 : number - begins * in_list]) < 0:
+        if _unread_length(lines[first - 1 : number - begins * in_list]) < 0:
             return _unclosed_message(lines[:first], f"line {number}" if place else "the end of the file")
     path = _path_of(lines[: start if in_list else number]) or _path_of([*lines[: number - 1], f"{code} ="])
     like = example_of(schema_of(Job), path)
     before = _LIST if in_list else ""
-    if like and _BARE.fullmatch(code) and _with_brackets(code)[1] == code:
+    if like and _BARE.fullmatch(code) and _bracket_heading(code)[1] == code:
         rules, edited = ["there must be = and a value after a key"], like
-    elif in_list and _unread_size([before + code]) <= 0:
+    elif in_list and _unread_length([before + code]) <= 0:
         number = max(n for n in range(start, number) if _code_of(lines[n - 1]).strip())
         code = _code_of(lines[number - 1])
         rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
         joined = [" ".join(map(_code_of, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
         few = not in_list and len(joined[-1]) <= _LONGEST
-        last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_size([one])), 0)
+        last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_length([one])), 0)
         if last:
             rule = "a text, or keys in braces, must be on one line"
             return f"{_line_prefix(number, path)}{rule}; got lines {number} to {last}; join them"
@@ -192,13 +192,13 @@ def with_lines(message: str, text: str) -> str:
     lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
     lines |= {key_of(path): number for number, path, _ in keys}
 
-    def numbered(match: re.Match[str]) -> str:
+    def with_line_number(match: re.Match[str]) -> str:
         key = match[2]
         while key and key not in lines:
             key = key_above(key)
         return f"{match[1]}line {lines[key]}, {match[2]}" if key else match[0]
 
-    message = re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", numbered, message)
+    message = re.sub(r"(?m)^( *)([^\s:;=][^:;=\n]*)(?=: )", with_line_number, message)
     heading, *problems = message.split("\n")
 
     def place(problem: str) -> float:
@@ -234,7 +234,7 @@ def _begins_entry(line: str) -> bool:
     return bool(_KEY.match(line[:_LONGEST]) or _HEADER.fullmatch(line[:_LONGEST]))
 
 
-def _unread_size(lines: Sequence[str]) -> int:
+def _unread_length(lines: Sequence[str]) -> int:
     """Return the unread length of lines, in characters other than quotes and spaces, plus 1.
 
     0 if it reads everything, -1 if the lines end within a list or text.
@@ -252,26 +252,26 @@ def _unread_size(lines: Sequence[str]) -> int:
 def _correct_line(line: str, path: Path) -> tuple[list[str], str]:
     """Return the rules that a line breaks, and the corrected line; no rules if no correction works."""
     rules: list[str] = []
-    unread = _unread_size([line]) if len(line) <= _LONGEST else 0
+    unread = _unread_length([line]) if len(line) <= _LONGEST else 0
     while unread > 0:
-        rule, values = _with_values(line, path)
+        rule, values = _correct_values(line, path)
         combined = [(f"{rule}; {_COMMA_RULE}", _COMMAS(values)[1])] if rule else []
         tried = [*(edit(line) for edit in _SIGNS), (rule, values), *combined, *(edit(line) for edit in _EDITS)]
         tried += _with_a_sign_more_or_less(line)
-        rule, line = min(tried, key=lambda one: max(_unread_size([one[1]]), 0))
-        unread, before = _unread_size([line]), unread
+        rule, line = min(tried, key=lambda one: max(_unread_length([one[1]]), 0))
+        unread, before = _unread_length([line]), unread
         if unread >= before:
             return [], line
         rules += [rule] if rule not in rules else []
     return rules, line
 
 
-def _with_values(line: str, path: Path) -> tuple[str, str]:
+def _correct_values(line: str, path: Path) -> tuple[str, str]:
     """Return a line whose values are numbers or quoted, and the rule for the first value that was neither."""
     rules = []
 
     def value(match: re.Match[str]) -> str:
-        if match[1] or not _unread_size([f"x = {match[3]}"]) or not _WRITTEN.match(match[3]):
+        if match[1] or not _unread_length([f"x = {match[3]}"]) or not _WRITTEN.match(match[3]):
             return match[0]
         inner = _INNER.search(line[: match.start(3)])
         in_braces = inner is not None and "{" in line[: inner.start()]
@@ -319,11 +319,11 @@ def _with_a_sign_more_or_less(line: str) -> Iterator[tuple[str, str]]:
             yield "text must have quotes on both sides", f'{line[:place]}"{line[place:]}'
     for sign in reversed(list(re.finditer("[]\"'[(){}]", line))):
         shortened = line[: sign.start()] + line[sign.end() :]
-        if not _unread_size([shortened]):
+        if not _unread_length([shortened]):
             yield f"one {sign[0]} too many", shortened
 
 
-def _with_brackets(line: str) -> tuple[str, str]:
+def _bracket_heading(line: str) -> tuple[str, str]:
     """Return a table's heading in its brackets."""
     rule = "a heading must be one name in matching brackets, its parts joined by dots"
     if (heading_match := _NAMES.fullmatch(line)) is None:
@@ -347,7 +347,7 @@ def _unclosed_message(lines: Sequence[str], end: str) -> str:
     else:
         rule, tried = "a list must end with ]", [f"{line}]"]
     write = next(
-        (f"write {_quote_line(candidate)}" for candidate in tried if not _unread_size([candidate])),
+        (f"write {_quote_line(candidate)}" for candidate in tried if not _unread_length([candidate])),
         f"add {three or ']'} where it ends",
     )
     return f"{_line_prefix(len(lines), _path_of(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"

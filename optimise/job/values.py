@@ -28,7 +28,7 @@ from ...model.machine.mechanism import Tolerance
 from ...objectives import kinds, units
 from ...objectives.kinds import Kind
 from ...objectives.units import Sign, plus_minus_ends, quote, to_si
-from .grids import Grid, grid_schema, read_grid, says_values, swap
+from .grids import Grid, crossed_ends_remedy, grid_schema, read_grid, states_values
 from .named_files import SOURCE
 
 SHORTEST = 1e-9
@@ -55,7 +55,7 @@ Source = Annotated[str, Field(max_length=2000)] | None
 """Type of the key for a file's summary."""
 
 
-def source() -> Any:
+def summary_entry() -> Any:
     """Return the entry for the summary of a file whose content a table holds; the problem ignores it."""
     return optional("what was read from the file that the values come from", "motion.csv: 360 rows")
 
@@ -85,12 +85,12 @@ class Checked(Built[Made], Generic[Made]):
     """A table with possibly incompatible values, so it is built when it is read."""
 
     @model_validator(mode="after")
-    def _possible(self) -> Self:
+    def _require_buildable(self) -> Self:
         self.build()
         return self
 
 
-def retyped(part: type[Table], **types: Any) -> type[Table]:
+def with_types(part: type[Table], **types: Any) -> type[Table]:
     """Return a table with other types for some of its entries."""
     fields: Any = {name: (new_type, part.model_fields[name]) for name, new_type in types.items()}
     return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
@@ -100,19 +100,19 @@ PLAIN = "plain_number"
 """Validation context that finds numbers without a unit; also the type of its errors, with places and kinds."""
 
 
-def values_in(value: object) -> list[object]:
+def flatten_values(value: object) -> list[object]:
     """Return the values in a list, or in a table of values and lists; a single value becomes a list."""
     items = list(value.values()) if isinstance(value, Mapping) else [value]
     return [entry for item in items for entry in (item if isinstance(item, list | tuple) else [item])]
 
 
-def plain_in(value: object) -> list[float]:
+def plain_numbers_in(value: object) -> list[float]:
     """Return the finite numbers without a unit in a value, a list, or a table of values. Zero needs no unit."""
-    numbers = (x for x in values_in(value) if isinstance(x, int | float) and not isinstance(x, bool) and x)
+    numbers = (x for x in flatten_values(value) if isinstance(x, int | float) and not isinstance(x, bool) and x)
     return [x for x in numbers if isinstance(x, int) or math.isfinite(x)]
 
 
-def of_spread(value: object, ends: Sequence[object], error: InputError) -> InputError:
+def plus_minus_error(value: object, ends: Sequence[object], error: InputError) -> InputError:
     """Return the error for a range with invalid ends; `error` itself for a value without ends."""
     if ends[0] == value:
         return error
@@ -123,7 +123,7 @@ def of_spread(value: object, ends: Sequence[object], error: InputError) -> Input
     )
 
 
-class _Read:
+class _ValueMarker:
     """Marks a value that `read` converts to SI. kind: kind of numbers without a unit."""
 
     kind: Kind
@@ -133,7 +133,7 @@ class _Read:
 
     def _validate(self, value: object, info: core_schema.ValidationInfo) -> object:
         """Read a value; in the validation context `PLAIN`, raise an error for one with numbers without a unit."""
-        plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_in(value)
+        plain = info.context == PLAIN and self.kind.unit and not self.kind.amount and plain_numbers_in(value)
         try:
             result_in_si = self.read(value)
         except InputError:
@@ -148,7 +148,7 @@ class _Read:
 
 
 @dataclass(frozen=True)
-class Physical(_Read):
+class Physical(_ValueMarker):
     """Marks a number as a physical value of a kind, read by `to_si`."""
 
     kind: Kind
@@ -159,7 +159,7 @@ class Physical(_Read):
         return to_si(value, self.kind, sign=self.sign)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return described(self.kind, self.sign)
+        return physical_value_schema(self.kind, self.sign)
 
 
 @dataclass(frozen=True)
@@ -193,7 +193,7 @@ class GasPressure(Physical):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Within(Physical):
+class PhysicalWithin(Physical):
     """Marks a physical value between limits, SI; a value beyond them has the wrong unit.
 
     rule, hint: for the error message.
@@ -254,7 +254,7 @@ class Limited:
         return {key: rule for key, rule in value_schema.items() if not (key in lower and lower & set(stated))} | stated
 
 
-def described(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
+def physical_value_schema(kind: Kind, sign: Sign = "any") -> dict[str, Any]:
     """Return the JSON Schema of a physical value: a number in SI, or a string with a unit."""
     number: dict[str, Any] = {"type": "number"}
     if sign == "any":
@@ -281,7 +281,7 @@ _ENDS = re.compile(r"\s*([\d.]*\d)\s*([a-zµ]*)\s*(?:-|–|—|,|;|\.{2,}|…|to
 
 
 @dataclass(frozen=True)
-class RangeOf(_Read):
+class RangeOf(_ValueMarker):
     """Marks a range of a length: [lower, upper], one value, { choices = [...] }, or a table of values."""
 
     sign: Sign = "any"
@@ -291,7 +291,7 @@ class RangeOf(_Read):
         """Return the lower and upper end, m, or the possible values; raises InputError."""
         if isinstance(value, Choices | Grid):
             return value
-        if isinstance(value, Mapping) and says_values(value):
+        if isinstance(value, Mapping) and states_values(value):
             return read_grid(value, self._length)
         if isinstance(value, Mapping) and set(value) == {"choices"}:
             return self._choices(value["choices"])
@@ -309,11 +309,11 @@ class RangeOf(_Read):
         try:
             lower, upper = (self._length(end) for end in ends)
         except InputError as error:
-            raise (error if isinstance(value, list | tuple) else of_spread(value, ends, error)) from None
+            raise (error if isinstance(value, list | tuple) else plus_minus_error(value, ends, error)) from None
         if lower > upper:
             raise InputError(
                 f"must run from its lower to its upper end; got {quote(ends[0])} to {quote(ends[1])}, an empty range; "
-                f"{swap(*ends)}"
+                f"{crossed_ends_remedy(*ends)}"
             )
         return lower, upper
 
@@ -332,7 +332,7 @@ class RangeOf(_Read):
         return Choices(tuple(lengths))
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        entryschemas = described(kinds.LENGTH, self.sign)["anyOf"]
+        entryschemas = physical_value_schema(kinds.LENGTH, self.sign)["anyOf"]
         if self.sign == "positive":
             number = {key: rule for key, rule in entryschemas[1].items() if key != "exclusiveMinimum"} | {
                 "minimum": SHORTEST
@@ -355,13 +355,13 @@ _FIT = replace(kinds.LENGTH, believed=(1e-8, 1e-2))
 """Tolerances and clearances, which are smaller than links."""
 
 
-class ToleranceOf(_Read):
+class ToleranceOf(_ValueMarker):
     """Marks a value as the tolerance of a length: "0.05 mm", or a fraction of the length, "0.1 %"."""
 
     kind = _FIT
 
     @staticmethod
-    def share(value: object) -> float | None:
+    def fraction_of_length(value: object) -> float | None:
         """Return the fraction that a string such as "0.1 %" states; None if it is not a percentage."""
         if not (isinstance(value, str) and value.rstrip().endswith("%")):
             return None
@@ -379,7 +379,7 @@ class ToleranceOf(_Read):
     @classmethod
     def read(cls, value: object) -> float | str:
         """Return the tolerance in m, or the percentage unchanged; raises InputError."""
-        if cls.share(value) is not None:
+        if cls.fraction_of_length(value) is not None:
             return str(value)
         return to_si(value, kinds.LENGTH, sign="zero or more")
 
@@ -387,16 +387,16 @@ class ToleranceOf(_Read):
     def build(cls, value: float | str) -> Tolerance:
         """Return the tolerance in the form that the model uses."""
         if isinstance(value, str):
-            return Tolerance(fraction=cls.share(value) or 0.0)
+            return Tolerance(fraction=cls.fraction_of_length(value) or 0.0)
         return Tolerance(absolute=value)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         share = {"type": "string", "pattern": r"^\s*[0-9.eE+-]+\s*%\s*$"}
-        either = [*described(kinds.LENGTH, "zero or more")["anyOf"], share]
+        either = [*physical_value_schema(kinds.LENGTH, "zero or more")["anyOf"], share]
         return {"anyOf": either, "examples": ["0.05 mm", "0.1 %"]}
 
 
-class PartOfStroke(_Read):
+class PartOfStroke(_ValueMarker):
     """Marks a value as a part of a stroke: "first 20 mm", "last 60 mm" or "whole stroke"."""
 
     kind = kinds.LENGTH

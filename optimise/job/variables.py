@@ -17,12 +17,12 @@ from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import printable_name, quote
 from .amounts import Amounts
-from .grids import says_values
+from .grids import states_values
 from .messages import DEEPEST
 from .named_files import LARGEST, unread_file_error
 from .quantities import ConstraintsPart
 from .raw_tables import options_in, table_in
-from .values import AnyRange, Part, PositiveRange, optional, required, retyped
+from .values import AnyRange, Part, PositiveRange, optional, required, with_types
 
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
@@ -57,7 +57,7 @@ class VariablesPart(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _nested(cls, data: Any) -> Any:
+    def _unquote_paths(cls, data: Any) -> Any:
         """Treat a path in quotes as one without: both are dotted keys to engineers; the former is one key to TOML."""
         if not isinstance(data, Mapping):
             return data
@@ -159,11 +159,11 @@ class ChoicePart(Part):
 
 def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     """Return the type of a choice whose options may also constrain custom quantities."""
-    option: Any = retyped(OptionPart, constraints=constraints)
-    return retyped(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
+    option: Any = with_types(OptionPart, constraints=constraints)
+    return with_types(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
 
 
-def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
+def stated_variables(tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return the numbers besides the dimensions that vary in an incomplete job: path and stated value."""
     varying: dict[str, Any] = {}
     for key, value in table_in(tables, "variables").items():
@@ -172,7 +172,7 @@ def varying_in(tables: Mapping[str, Any]) -> dict[str, Any]:
     return varying
 
 
-def set_by_options(tables: Mapping[str, Any]) -> set[str]:
+def paths_set_by_options(tables: Mapping[str, Any]) -> set[str]:
     """Return the paths of numbers that options of an incomplete job's choices set."""
     return {path for option in options_in(tables) for path in table_in(option, "values")}
 
@@ -200,7 +200,7 @@ def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
     for key, value in table.items():
         name = printable_name(str(key))  # no path has this name: it is for a message
         path = f"{root}.{name}" if root else name
-        if isinstance(value, Mapping) and set(value) != {"choices"} and value and not says_values(value):
+        if isinstance(value, Mapping) and set(value) != {"choices"} and value and not states_values(value):
             yield from leaves_of(value, path)
         else:
             yield path, value

@@ -31,10 +31,10 @@ from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
 from .amounts import values_of
 from .crank_speed import TIME_KEYS
-from .grids import Grid, read_grid, says_values, swap
+from .grids import Grid, crossed_ends_remedy, read_grid, states_values
 from .messages import explain
 from .model import Job
-from .paths import stated, unknown_path, with_number
+from .paths import stated_values, unknown_path_message, with_number
 from .quantities import constraints_of, slow_stroke_of
 from .schema import schema_of
 from .values import Choices, RangeOf, ToleranceOf
@@ -58,7 +58,7 @@ class _Option:
     rank: int = 0
 
 
-def varying_machine(job: Job, key: str = "variables") -> Mechanism:
+def machine_with_variables(job: Job, key: str = "variables") -> Mechanism:
     """Return the machine of a job with the extra variables from [variables]. Raises JobError, naming the path."""
     base = job.machine()
     varying = []
@@ -113,11 +113,11 @@ def variants_of(
                 if chosen[place] is like:
                     named = (*chosen[:place], option, *chosen[place + 1 :])
                     machine = searched[tuple(map(id, chosen))]
-                    catalogue[tuple(map(id, named))] = replace(machine, **_of_options(names, named))
+                    catalogue[tuple(map(id, named))] = replace(machine, **_variant_parts(names, named))
     return tuple(name for name in names if name not in DIMENSIONS), variants, tuple(catalogue.values())
 
 
-def discrete_of(job: Job) -> tuple[Discrete, ...]:
+def discrete_variables(job: Job) -> tuple[Discrete, ...]:
     """Return a job's variables with discrete values. Raises JobError, naming the path."""
     discrete = []
     for name in DIMENSIONS:
@@ -131,7 +131,7 @@ def discrete_of(job: Job) -> tuple[Discrete, ...]:
                     )
             discrete.append(Discrete(name=name, values=stated.values, rule=stated.rule))
     for path, stated in job.variables.paths.items():
-        if says_values(stated):
+        if states_values(stated):
             grid = _read_grid(job, f"variables.{path}", path, stated)
             discrete.append(Discrete(name=path, values=grid.values, rule=grid.rule))
     return tuple(discrete)
@@ -229,15 +229,15 @@ def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...])
             with_values(job, {path: value for path, value in option.values.items() if path in values}, name_of_part)
         raise
     return Variant(
-        mechanism=varying_machine(other),
+        mechanism=machine_with_variables(other),
         crank=ends_of(ranges["crank"]),
         rod=ends_of(ranges["rod"]),
         offset=ends_of(ranges["offset"]),
-        **_of_options(names, chosen),
+        **_variant_parts(names, chosen),
     )
 
 
-def _of_options(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]:
+def _variant_parts(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, Any]:
     """Return limits, amounts and notes for a combination of options."""
     labelled = [option for name, option in zip(names, chosen, strict=True) if name not in DIMENSIONS]
     return {
@@ -281,7 +281,7 @@ def _read_length_range(name: str, value: Any, key: str) -> tuple[float, float] |
 
 def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
     """Return the extra variable for a path."""
-    if says_values(given):
+    if states_values(given):
         grid = _read_grid(job, key, path, given)
         if len(grid.values) < 2:
             raise JobError(
@@ -295,12 +295,12 @@ def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
             "what does not vary is given in its own place alone"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
-    _require_range_of_speed(path, key, jobs)
+    _require_fixed_time_keys(path, key, jobs)
     lower, upper = (_number_at(other, path, key) for other in jobs)
     if not lower < upper:
         raise JobError(
             f"{key}: must run from its lower to its upper end; got {quote(given[0])} to {quote(given[1])}; "
-            f"{swap(*given)}"
+            f"{crossed_ends_remedy(*given)}"
         )
     sets = []
     for place, low, high in _differing_numbers(jobs[0].machine(), jobs[1].machine(), ""):
@@ -315,13 +315,13 @@ def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
     try:
         if not sets:
             raise InputError("has no effect on any quantity of a design; leave it out")
-        _require_smooth(path, [place for place, _ in sets])
+        _require_differentiable(path, [place for place, _ in sets])
         return Varying(name=path, sets=tuple(sets), lower=lower, upper=upper)
     except InputError as error:
         raise JobError(f"{key}: {error}") from None
 
 
-def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
+def _require_fixed_time_keys(path: str, key: str, jobs: list[Job]) -> None:
     """Raise `JobError` if a time that states the crank speed varies. jobs: the jobs at the ends of its range."""
     stated = path.removeprefix("mechanism.")
     if path.startswith("mechanism.") and stated in TIME_KEYS:
@@ -332,7 +332,7 @@ def _require_range_of_speed(path: str, key: str, jobs: list[Job]) -> None:
         )
 
 
-def _require_smooth(path: str, places: list[str]) -> None:
+def _require_differentiable(path: str, places: list[str]) -> None:
     """Reject a path to a number of the machine with respect to which there are no derivatives."""
     try:
         for place in places:
@@ -348,12 +348,12 @@ def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
 
     key: source of the values, for messages. Raises JobError.
     """
-    data: dict[str, Any] = stated(job)
+    data: dict[str, Any] = stated_values(job)
     for path, value in values.items():
         try:
             data = with_number(data, path, value)
         except LookupError:
-            raise JobError(f"{key}: {unknown_path(path, job.model_dump(exclude_unset=True))}") from None
+            raise JobError(f"{key}: {unknown_path_message(path, job.model_dump(exclude_unset=True))}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
@@ -369,7 +369,7 @@ def _number_at(job: Job, path: str, key: str) -> float:
     part: Any = job
     for step in path.split("."):
         part = part[int(step) - 1] if isinstance(part, tuple) else getattr(part, step)
-    share = ToleranceOf.share(part)
+    share = ToleranceOf.fraction_of_length(part)
     number = part if share is None else share
     if isinstance(number, bool) or not isinstance(number, int | float):
         raise JobError(f"{key}: must name a number; got {quote(part)}; make it a choice instead")

@@ -118,7 +118,7 @@ class _Front:
     problem: Problem
     evaluators: list[Evaluator]
     run: Run
-    starting_samples: Candidates
+    samples: Candidates
     archive: Archive
     ideal: Array
     span: Array

@@ -7,7 +7,7 @@ from .problem import Problem
 from .remark import Change, Remark
 
 
-def require_ranking(problem: Problem) -> None:
+def require_nonzero_quantities(problem: Problem) -> None:
     """Raise an error for a quantity that is zero for every design, robust or not, in all variants.
 
     `InputError` for an objective, `InfeasibleError` for a constraint that zero violates.
@@ -29,7 +29,7 @@ def require_ranking(problem: Problem) -> None:
                 )
 
 
-def idle_rules(problem: Problem) -> list[str]:
+def idle_constraint_warnings(problem: Problem) -> list[str]:
     """Return a warning for each constraint on a quantity that is zero, and so meets it, for every design."""
     machines = [part.mechanism for part in problem.parts()]
     reasons = {

@@ -82,7 +82,7 @@ NAMES = (*DIMENSIONS, "crank_angle")
 """Sources whose tolerance can be chosen, in the order of `model.tolerance.sources.SOURCES`."""
 
 
-def costs_before(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
+def costs_of_tolerances(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return the cost of each tolerance of a mechanism, by name; None if a tolerance with a cost is zero."""
     limits_by_name = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
     if not all(limits_by_name[name] > 0.0 for name in costs.by_name):

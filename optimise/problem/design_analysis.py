@@ -80,7 +80,7 @@ class Analysis(Mapping[str, float]):
         require_in_motion([name], self.quantities, self.swing)
         (known,) = resolve_quantities([name], self.mechanism, self.quantities, turning=self.swing is None)
         if isinstance(known, FormulaQuantity) and known.name not in self.quantity_values:
-            return self._of_formula(known)
+            return self._formula_value(known)
         if known.name not in self.quantity_values:
             raise InputError(
                 f"{name} needs a rotating crank; this crank swings; ask for a quantity of a swing, such as "
@@ -88,7 +88,7 @@ class Analysis(Mapping[str, float]):
             )
         return self.quantity_values[known.name]
 
-    def _of_formula(self, formula: FormulaQuantity) -> float:
+    def _formula_value(self, formula: FormulaQuantity) -> float:
         sizes = [float(getattr(self.linkage, name)) for name in DIMENSIONS]
         parts = {part.name: Values(np.array([self[part.name]]), None) for part in formula.parts}
         return float(formula.combined(parts, self.mechanism, np.array([sizes]), gradients=False).values[0])
@@ -235,7 +235,7 @@ class Analysis(Mapping[str, float]):
         return f"beyond the allowable value: {', '.join(titles)}" if titles else ""
 
 
-def one_design(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
+def machine_and_design_row(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
     """Return a design's machine and numbers (3 + k,); raise `InputError` for anything that is not a design."""
     require_machine(mechanism)
     names = numbers_of(mechanism)
@@ -268,12 +268,12 @@ def analyse(
     >>> round(analysis["peak_torque"], 6)
     1.05063
     """
-    machine, sizes = one_design(mechanism, design)
+    machine, sizes = machine_and_design_row(mechanism, design)
     warn_of_lengths(mechanism, sizes)
-    return analysed(mechanism, machine, sizes, own=own, title=title, swing=swing)
+    return analyse_machine(mechanism, machine, sizes, own=own, title=title, swing=swing)
 
 
-def analysed(
+def analyse_machine(
     mechanism: Mechanism,
     machine: Mechanism,
     sizes: Array,

@@ -41,7 +41,7 @@ class Discrete:
         return np.array([value for value in self.values if ends.lower - tolerance <= value <= ends.upper + tolerance])
 
 
-def require_known(discrete: Sequence[Discrete], names: Sequence[str]) -> None:
+def require_distinct_numbers(discrete: Sequence[Discrete], names: Sequence[str]) -> None:
     """Raise `InputError` unless each is for a different number of the design."""
     given = [item.name for item in discrete]
     for name in given:

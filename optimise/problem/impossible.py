@@ -8,15 +8,15 @@ from ...objectives.time_ratio import TIME_RATIO
 from .problem import Problem
 
 
-def require_possible(problem: Problem) -> None:
+def require_possible_problem(problem: Problem) -> None:
     """Raise `InfeasibleError` if no option of a choice is left, or if a slow stroke is required to be faster."""
     if problem.left_out and not problem.variants:
-        raise no_option(problem.left_out)
+        raise no_option_error(problem.left_out)
     if all(part.slow_stroke is not None for part in problem.parts()):
         require_longer_slow_stroke(problem)
 
 
-def no_option(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
+def no_option_error(left_out: tuple[tuple[str, str], ...]) -> InfeasibleError:
     """Return the error for choices whose options are all excluded. left_out: labels and reasons."""
     label, why = left_out[0]
     return InfeasibleError(
@@ -38,10 +38,10 @@ def require_longer_slow_stroke(problem: Problem) -> None:
             "or leave out slow_stroke"
         )
     for part in problem.parts():
-        _require_quotients_of_slow_stroke(part)
+        _require_consistent_stroke_ratios(part)
 
 
-def _require_quotients_of_slow_stroke(part: Problem) -> None:
+def _require_consistent_stroke_ratios(part: Problem) -> None:
     """Raise `InfeasibleError` for a bound on a ratio of stroke times that requires the other stroke to be slow."""
     for stroke, quantity in STROKE_TIME_RATIOS.items():
         is_slow = stroke == part.slow_stroke

@@ -34,12 +34,18 @@ from ...objectives.tables.swinging import (
     why_not,
 )
 from .costs import Costs
-from .design_analysis import Analysis, analysed, one_design
-from .discrete import Discrete, require_known
+from .design_analysis import Analysis, analyse_machine, machine_and_design_row
+from .discrete import Discrete, require_distinct_numbers
 from .questions import question_to
 from .requirements import Constraint, Objective, Range, Word, merged
 from .section_limits import SectionLimits
-from .table_columns import choice_field, least_amount_field, least_field, note_field, require_free_columns
+from .table_columns import (
+    choice_field,
+    note_field,
+    require_free_columns,
+    sufficient_amount_field,
+    sufficient_option_field,
+)
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary
@@ -97,7 +103,7 @@ class Variant:
 
     def __post_init__(self) -> None:
         keep_tuples(self, "labels", "limits", "amounts", "notes", "ranks")
-        _require_stroke(self.slow_stroke)
+        _require_slow_stroke_word(self.slow_stroke)
 
     def note(self, choice: str, head: str) -> str:
         """Return a text of the chosen option; empty if it has none."""
@@ -160,17 +166,17 @@ class Problem:
         keep_tuples(self, "catalogue", "discrete", "warnings")
         require_kinds(self, _KINDS, _CHANGE)
         require_kinds(self, _EACH, _CHANGE, item_by_item=True)
-        require_known(self.discrete, [*self.ranges])
+        require_distinct_numbers(self.discrete, [*self.ranges])
         for own in self.variants or (self,):
             require_same_driver(own.mechanism, self.motion)
         if self.motion is not None:
-            self._take(self.motion)
+            self._add_swing_quantities(self.motion)
         else:
             for own in self.variants or (self,):
                 require_no_winding(own.mechanism)
-        self._take_formulas()
+        self._add_formulas()
         require_free_columns(self.own, self.mechanism.varying, self.choice_fields)
-        _require_stroke(self.slow_stroke)
+        _require_slow_stroke_word(self.slow_stroke)
         for item in self.mechanism.varying:
             if item.name in DIMENSIONS:
                 raise InputError(f"a variable besides the dimensions must have a unique name; got {item.name!r}")
@@ -205,7 +211,7 @@ class Problem:
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
             raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
 
-    def _take(self, swing: Swing) -> None:
+    def _add_swing_quantities(self, swing: Swing) -> None:
         """Add the quantities of a swing. Raises `InputError` for anything that a swing cannot have."""
         known = {of.name for of in self.own}
         more = tuple(of for of in swing_quantities(swing) if of.name not in known)
@@ -223,7 +229,7 @@ class Problem:
                 raise InputError(f"{table}.{name}: {reason}")
             require_of_swing(f"{table}.{name}", self.quantity(name), of_lever=swing.driver == "cylinder")
 
-    def _take_formulas(self) -> None:
+    def _add_formulas(self) -> None:
         """Add the formulas that objectives and constraints name."""
         requested_names = [item.quantity for item in self.objectives]
         for name in (*requested_names, *(item.quantity for item in self.every_constraint)):
@@ -250,7 +256,9 @@ class Problem:
             picture = ""
         rows = [(name, self.ranges[name]) for name in DIMENSIONS]
         ranges = "".join(f"<li>{name}: {1e3 * r.lower:g} to {1e3 * r.upper:g} mm</li>" for name, r in rows)
-        requirements = "".join(f"<li>{escape(_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints)
+        requirements = "".join(
+            f"<li>{escape(_constraint_in_words(self.quantity(c.quantity), c))}</li>" for c in self.constraints
+        )
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{requirements}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
@@ -281,10 +289,10 @@ class Problem:
         that do not rotate fully are NaN. See `tables.evaluate`. Raises `InputError` for a problem with choices: use its
         `parts`.
         """
-        self._require_chosen()
+        self._require_no_choices()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
         given = given_designs(designs, numbers_of(self.mechanism))
-        warn_of_lengths(self, given, self._greatest)
+        warn_of_lengths(self, given, self._greatest_dimensions)
         return evaluated(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
@@ -293,10 +301,10 @@ class Problem:
         Raises `AssemblyError` for a design that does not rotate fully, or not as far as a swing requires; `InputError`
         for a problem with choices.
         """
-        self._require_chosen()
-        machine, sizes = one_design(self.mechanism, design)
-        warn_of_lengths(self, sizes, self._greatest)
-        return analysed(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
+        self._require_no_choices()
+        machine, sizes = machine_and_design_row(self.mechanism, design)
+        warn_of_lengths(self, sizes, self._greatest_dimensions)
+        return analyse_machine(self.mechanism, machine, sizes, own=self.own, title=self.name, swing=self.motion)
 
     def ask(self, question: str, /, design: ArrayLike | None = None, **inputs: object) -> dict[str, Any]:
         """Answer a question about a design (3 + k,), with the keys of the JSON: `problem.ask("press", design=...)`.
@@ -310,11 +318,11 @@ class Problem:
         `touch_distance="12 mm"`. Keys and values are those of `analyse --show press --json`. Raises `InputError` for an
         unknown question or input, for anything that the design lacks, and as `analyse` does.
         """
-        self._require_chosen()
+        self._require_no_choices()
         if design is None:
             return dict(question_to("job", question).answer_of(self, None, inputs))
-        machine, sizes = one_design(self.mechanism, design)
-        warn_of_lengths(self, sizes, self._greatest)
+        machine, sizes = machine_and_design_row(self.mechanism, design)
+        warn_of_lengths(self, sizes, self._greatest_dimensions)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
         return dict(question_to("design", question).answer(machine, linkage, self, inputs))
 
@@ -345,7 +353,7 @@ class Problem:
         from ...model.swing.summary import summarise
         from ...model.swing.swing_request import SwingRequest, resolve_swing
 
-        self._require_chosen()
+        self._require_no_choices()
         requested_names = SwingRequest(
             start=start,
             end=end,
@@ -357,11 +365,11 @@ class Problem:
             duration=duration,
             actuator_tolerance=actuator_tolerance,
         )
-        machine, sizes = one_design(self.mechanism, design)
+        machine, sizes = machine_and_design_row(self.mechanism, design)
         machine, swing = resolve_swing(machine, self.motion, requested_names, {"side": "crank_side"})
         return summarise(machine, Linkage(sizes[0], sizes[1], sizes[2], machine.branch), swing)
 
-    def _require_chosen(self) -> None:
+    def _require_no_choices(self) -> None:
         if self.variants:
             raise InputError(
                 f"a design of a problem with choices ({', '.join(self.choices)}) belongs to one option; got the "
@@ -369,7 +377,7 @@ class Problem:
             )
 
     @property
-    def _greatest(self) -> list[float]:
+    def _greatest_dimensions(self) -> list[float]:
         """Greatest magnitudes of crank, rod and offset within the ranges, m."""
         return [max(abs(ends.lower), abs(ends.upper)) for ends in (self.crank, self.rod, self.offset)]
 
@@ -395,9 +403,9 @@ class Problem:
                 for name in self.choices
                 for head in self.heads(name)
             ),
-            *((least_field(name), "the smallest sufficient option") for name in least),
+            *((sufficient_option_field(name), "the smallest sufficient option") for name in least),
             *((note_field(f"least {name}", head), _WITH_LEAST) for name in least for head in self.heads(name)),
-            *((least_amount_field(name, of), _WITH_LEAST) for name in least for of in self.amounts(name)),
+            *((sufficient_amount_field(name, of), _WITH_LEAST) for name in least for of in self.amounts(name)),
         ]
 
     def heads(self, choice: str) -> list[str]:
@@ -473,7 +481,7 @@ class Problem:
         return tuple(self.part(index) for index in range(max(1, len(self.variants))))
 
 
-def _in_words(of: Quantity, constraint: Constraint) -> str:
+def _constraint_in_words(of: Quantity, constraint: Constraint) -> str:
     unit = of.unit
     ends = [f"{_IN_WORDS[word]}{unit.factor * bound:.6g} {unit.symbol}".rstrip() for word, bound in constraint.sides]
     return f"{of.title}: {', '.join(ends)}"
@@ -494,6 +502,6 @@ def require_problem(problem: object, what: str) -> None:
         raise InputError(f"{what} needs a problem; got {type(problem).__name__}; make one with problem or load_job")
 
 
-def _require_stroke(stroke: object) -> None:
+def _require_slow_stroke_word(stroke: object) -> None:
     if stroke is not None:
         require_word("slow_stroke", stroke, SlowStroke)

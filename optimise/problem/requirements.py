@@ -44,7 +44,8 @@ class Range:
     def __post_init__(self) -> None:
         if not (_is_finite(self.lower) and _is_finite(self.upper) and self.lower <= self.upper):
             raise InputError(
-                f"a range needs lower <= upper, both finite; got {_format(self.lower)} to {_format(self.upper)}"
+                f"a range needs lower <= upper, both finite; got {_number_text(self.lower)} to "
+                f"{_number_text(self.upper)}"
             )
 
     @property
@@ -70,7 +71,9 @@ class Constraint:
             raise InputError(f"the constraint on {self.quantity} needs a lower bound, an upper bound or a value")
         for bound in (self.lower, self.upper):
             if bound is not None and not _is_finite(bound):
-                raise InputError(f"the constraint on {self.quantity} must be a finite number, SI; got {_format(bound)}")
+                raise InputError(
+                    f"the constraint on {self.quantity} must be a finite number, SI; got {_number_text(bound)}"
+                )
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
                 f"the constraint on {self.quantity} is empty: min {self.lower:g} exceeds max {self.upper:g}"
@@ -111,7 +114,9 @@ class Objective:
         if (self.sense == "target") != (self.target is not None):
             raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
         if self.target is not None and not _is_finite(self.target):
-            raise InputError(f"the target of {self.quantity} must be a finite number, SI; got {_format(self.target)}")
+            raise InputError(
+                f"the target of {self.quantity} must be a finite number, SI; got {_number_text(self.target)}"
+            )
         _warn_of_units(self.quantity, {"target": self.target})
 
 
@@ -164,5 +169,5 @@ def _is_finite(value: object) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
 
 
-def _format(value: object) -> str:
+def _number_text(value: object) -> str:
     return f"{value:g}" if isinstance(value, Real) else repr(value)

@@ -91,7 +91,7 @@ def asks_robust(problem: Problem) -> bool:
     return any(isinstance(problem.quantity(name), RobustQuantity) for name in names)
 
 
-def nominal(problem: Problem) -> Problem:
+def nominal_problem(problem: Problem) -> Problem:
     """Return the nominal problem of a robust one."""
     inner = {quantity.name: quantity.inner.name for quantity in robust_quantities(problem)}
     return replace(
@@ -99,9 +99,13 @@ def nominal(problem: Problem) -> Problem:
         objectives=tuple(
             replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in problem.objectives
         ),
-        constraints=_on_nominal(problem.constraints, inner),
-        variants=tuple(replace(variant, limits=_on_nominal(variant.limits, inner)) for variant in problem.variants),
-        catalogue=tuple(replace(variant, limits=_on_nominal(variant.limits, inner)) for variant in problem.catalogue),
+        constraints=_nominal_constraints(problem.constraints, inner),
+        variants=tuple(
+            replace(variant, limits=_nominal_constraints(variant.limits, inner)) for variant in problem.variants
+        ),
+        catalogue=tuple(
+            replace(variant, limits=_nominal_constraints(variant.limits, inner)) for variant in problem.catalogue
+        ),
         own=tuple(quantity for quantity in problem.own if not isinstance(quantity, RobustQuantity)),
     )
 
@@ -167,6 +171,6 @@ def _robust_constraints(
             yield Constraint(quantity=names[name, "high"], upper=upper)
 
 
-def _on_nominal(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
+def _nominal_constraints(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
     """Return constraints on the nominal quantities, with their two sides joined again."""
     return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

@@ -24,14 +24,14 @@ def choice_field(name: str) -> str:
     return f"{_CHOICE}{re.sub('[^a-z0-9]+', '_', name.lower()).strip('_')}"
 
 
-def least_field(name: str) -> str:
+def sufficient_option_field(name: str) -> str:
     """Return the key of the column with a catalogue's least sufficient option."""
     return choice_field(f"least {name}")
 
 
-def least_amount_field(choice: str, quantity: Quantity) -> str:
+def sufficient_amount_field(choice: str, quantity: Quantity) -> str:
     """Return the key of the column with an amount, such as the price, of the least sufficient option."""
-    return f"{least_field(choice).removeprefix(_CHOICE)}_{quantity.field}"
+    return f"{sufficient_option_field(choice).removeprefix(_CHOICE)}_{quantity.field}"
 
 
 def note_field(choice: str, head: str) -> str:

@@ -122,7 +122,7 @@ def sides(constraint: Constraint) -> list[Side]:
     return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
 
 
-def violated_by(constraint: Constraint, values: Array, *, allowed: float = 0.0) -> Array:
+def relative_violation(constraint: Constraint, values: Array, *, allowed: float = 0.0) -> Array:
     """Return the relative violation (n,), zero or less where the constraint holds; infinite without a value.
 
     allowed: allowed excess over a bound, SI.
@@ -145,11 +145,11 @@ def greatest_violation(
         held = problem.evaluate(designs, [item.quantity for item in constraints])
         for column, item in enumerate(constraints):
             beyond = (allowed or {}).get(item.quantity, 0.0)
-            worst = np.maximum(worst, violated_by(item, held[:, column], allowed=beyond))
+            worst = np.maximum(worst, relative_violation(item, held[:, column], allowed=beyond))
     return worst
 
 
-def clearly_turning(designs: Array) -> Mask:
+def rotates_beyond_rounding(designs: Array) -> Mask:
     """Return which designs (n, 3 + v) rotate fully by more than rounding.
 
     Round numbers can lock exactly: rod 110 mm, crank 70 mm, offset 40 mm.
@@ -163,6 +163,6 @@ def excess(values: Array, side: float, bound: float, scale: float) -> Array:
     return (values - bound if side > 0.0 else bound - values) / scale
 
 
-def costly(quantity: Quantity) -> bool:
+def needs_cycle(quantity: Quantity) -> bool:
     """Return whether a quantity has no closed form, so that a cycle must be computed."""
     return not quantity.of_dimensions

@@ -9,8 +9,8 @@ from ...model.errors import InputError
 from ...objectives.quantity import Quantity
 from ..front.front import Columns
 from ..problem.problem import Problem, Variant
-from ..problem.table_columns import least_amount_field, least_field, note_field
-from ..problem.violation import FEASIBLE, constraints_of, violated_by
+from ..problem.table_columns import note_field, sufficient_amount_field, sufficient_option_field
+from ..problem.violation import FEASIBLE, constraints_of, relative_violation
 
 _SAME = 1e-9  # relative tolerance for a dimension that an option sets
 
@@ -38,7 +38,7 @@ def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array)
                 left = left & ~served
                 if not left.any():
                     break
-        columns[least_field(name)] = np.array(
+        columns[sufficient_option_field(name)] = np.array(
             [variant_found.labels[place] if variant_found else "" for variant_found in least_variants]
         )
         for amount in problem.amounts(name):
@@ -46,7 +46,7 @@ def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array)
                 dict(variant_found.amounts).get(amount.name, np.nan) if variant_found else np.nan
                 for variant_found in least_variants
             ]
-            columns[least_amount_field(name, amount)] = amount.unit.factor * np.array(values)
+            columns[sufficient_amount_field(name, amount)] = amount.unit.factor * np.array(values)
         for head in problem.heads(name):
             columns[note_field(f"least {name}", head)] = np.array(
                 [variant_found.note(name, head) if variant_found else "" for variant_found in least_variants]
@@ -91,5 +91,5 @@ class _Serving:
             key = id(option.mechanism), id(quantity)
             if key not in self._known:
                 self._known[key] = quantity, quantity.evaluate(part.mechanism, designs).values
-            served &= violated_by(constraint, self._known[key][1]) <= FEASIBLE
+            served &= relative_violation(constraint, self._known[key][1]) <= FEASIBLE
         return served

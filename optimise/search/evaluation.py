@@ -16,7 +16,16 @@ from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
 from ..problem.restatement import restate
-from ..problem.violation import FEASIBLE, Side, constraints_of, costly, excess, minimised, sides, violated_by
+from ..problem.violation import (
+    FEASIBLE,
+    Side,
+    constraints_of,
+    excess,
+    minimised,
+    needs_cycle,
+    relative_violation,
+    sides,
+)
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import EliminationBranch
 from .judging import evaluate_pieces, join_batches, screen_quantities
@@ -58,7 +67,7 @@ class Evaluator:
             if c.quantity not in branch.eliminated
         ]
         self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in branch.eliminated)
-        self.constraints = tuple(sorted(remaining, key=lambda c: costly(problem.quantity(c.quantity))))
+        self.constraints = tuple(sorted(remaining, key=lambda c: needs_cycle(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in branch.steps))
         constant = [problem.quantity(objective.quantity).constant for objective in problem.objectives]
         self.constant = () if all(constant) else tuple(np.flatnonzero(constant).tolist())
@@ -110,14 +119,14 @@ class Evaluator:
         self.evaluations += len(dimensions)
         # Designs already out of reach need no cycle.
         for slow in (False, True):
-            constraints = [c for c in self.constraints if costly(self.quantity(c.quantity)) == slow]
+            constraints = [c for c in self.constraints if needs_cycle(self.quantity(c.quantity)) == slow]
             rows = np.flatnonzero(violation <= band + FEASIBLE if slow else np.isfinite(violation))
             if constraints and len(rows):
                 values_by_quantity = self._screened_values(
                     [constraint.quantity for constraint in constraints], dimensions[rows]
                 )
                 for constraint, values in zip(constraints, values_by_quantity, strict=True):
-                    violation[rows] = np.maximum(violation[rows], violated_by(constraint, values))
+                    violation[rows] = np.maximum(violation[rows], relative_violation(constraint, values))
         rows = np.flatnonzero(violation <= band + FEASIBLE)
         objectives = np.zeros((len(rows), len(self.problem.objectives)))
         if len(rows):
@@ -154,7 +163,7 @@ class Evaluator:
         rows = np.flatnonzero(turns)
         for constraint in self.eliminated if len(rows) else ():
             values = self.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
-            spurious = violated_by(constraint, values) > FEASIBLE
+            spurious = relative_violation(constraint, values) > FEASIBLE
             violation[rows[spurious]] = np.inf
         return violation
 
@@ -170,9 +179,9 @@ class Evaluator:
         violation = self._geometry_violation(dimensions)
         for constraint in self.constraints:
             quantity = self.quantity(constraint.quantity)
-            if not costly(quantity):
+            if not needs_cycle(quantity):
                 values = quantity.evaluate(self.mechanism, dimensions).values
-                violation = np.maximum(violation, violated_by(constraint, values))
+                violation = np.maximum(violation, relative_violation(constraint, values))
         return violation
 
     def exact_rows(self, u: Array, *, goals: bool = True) -> tuple[Rows, Rows]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InfeasibleError, InputError, NotFound
 from ...optimise.job import parse_job, read_job, with_files
-from ...optimise.job.file import require_plain, toml_tables
+from ...optimise.job.file import require_plain_data, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
 from ..jobs.submission import LONGEST_CALL, LONGEST_WAIT, bounded, parse_allowed, require_allowed
@@ -136,7 +136,7 @@ def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
             )
         job = jobs[job.strip()]
     tables = toml_tables(job) if isinstance(job, str) else job
-    require_plain(tables)
+    require_plain_data(tables)
     return with_files(tables, files)
 
 

@@ -14,7 +14,7 @@ from ...model.errors import InputError, NotFound, RunError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ...objectives.units import closest
-from ...optimise.job.messages import nodes_at, toml
+from ...optimise.job.messages import nodes_at, toml_text
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
@@ -285,9 +285,9 @@ def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:
             yield f"- {table['description']} Needs: {', '.join(table['required']) or 'nothing'}"
         for name, facts in table["keys"].items():
             words = f", one of {', '.join(map(str, facts['enum']))}" if "enum" in facts else ""
-            example = f"; such as {name} = {toml(facts['examples'][0])}" if "examples" in facts else ""
+            example = f"; such as {name} = {toml_text(facts['examples'][0])}" if "examples" in facts else ""
             yield f"  {name}: {facts.get('description', '')}{words}{example}"
     if "enum" in key:
         yield f"  one of {', '.join(map(str, key['enum']))}"
     if not key["tables"] and key.get("examples"):
-        yield f"  such as {toml(key['examples'][0])}"
+        yield f"  such as {toml_text(key['examples'][0])}"

@@ -55,9 +55,9 @@ def check(
 
 def _in_words(sentence: str, path: str, value: Any, label: str) -> str:
     """Return a change that resolves a warning, as a line of a job file."""
-    from ...optimise.job.messages import toml
+    from ...optimise.job.messages import toml_text
 
-    return label if value is None else f"{label}: {path} = {toml(value)}"
+    return label if value is None else f"{label}: {path} = {toml_text(value)}"
 
 
 def schema() -> None:

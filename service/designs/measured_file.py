@@ -35,7 +35,7 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
     columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
     nothing = np.full(len(table), np.nan)
     measured = measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _any_unit)
-    return replace(measured, understood=table.understood(places))
+    return replace(measured, understood=table.summary_text(places))
 
 
 def _any_unit(text: str, kind: Kind) -> float | None:

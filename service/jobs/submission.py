@@ -39,9 +39,9 @@ def parse_allowed(
     meet. Raises `JobError`.
     """
     from ...optimise.job import parse_job
-    from ...optimise.job.file import require_plain
+    from ...optimise.job.file import require_plain_data
 
-    require_plain(tables)
+    require_plain_data(tables)
     require_allowed(tables, allowed)
     return parse_job(tables, values, require_feasible=require_feasible)
 

@@ -14,11 +14,11 @@ from ...objectives.count_text import counted
 from ...optimise.feasibility.relaxation import Relaxation, relaxation_of_missed_bound
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
-from ...optimise.job.file import require_few
+from ...optimise.job.file import require_few_values
 from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
-from ...optimise.job.messages import place_of
+from ...optimise.job.messages import where_key_belongs
 from ...optimise.job.plain_numbers import plain_values
-from ...optimise.job.possible_values import STROKE_RATIOS, beyond_both
+from ...optimise.job.possible_values import STROKE_RATIOS, ratio_and_angle_conflict
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.remark import Change, Remark
@@ -72,7 +72,7 @@ class Look:
 def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
     """Return the findings about a job. read: function that returns its problem, or raises its mistakes."""
     try:
-        require_few(tables)
+        require_few_values(tables)
     except InputError as error:
         return Look(_mistakes_in(error), None, None, None, [], [])
     look = _find_problems(tables, read)
@@ -91,7 +91,7 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
     wrong_by_key = {
         formula.key: formula.wrong
         for formula in formulas
-        if formula.wrong is not None and not place_of(formula.key.split(".")[-1], schema)
+        if formula.wrong is not None and not where_key_belongs(formula.key.split(".")[-1], schema)
     }
     return [
         *(mistake for mistake in wrong if mistake.path not in wrong_by_key),
@@ -106,7 +106,9 @@ def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]]
     except InputError:
         stated = None
     full_problem, wrong, rest = None, list[Wrong](), tables
-    checked_ratios = [] if stated is None else [(ratio.name, beyond_both(stated, ratio)) for ratio in STROKE_RATIOS]
+    checked_ratios = (
+        [] if stated is None else [(ratio.name, ratio_and_angle_conflict(stated, ratio)) for ratio in STROKE_RATIOS]
+    )
     sentences_by_name = {name: sentence for name, sentence in checked_ratios if sentence is not None}
     if sentences_by_name:  # reported only here; the rest of the job is checked without it
         wrong += [

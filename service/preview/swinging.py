@@ -18,7 +18,7 @@ from ...model.swing.ends import ends_of
 from ...model.swing.swing import STARTS, Swing
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swinging import swing_quantities
-from ...optimise.job.motion import MotionPart, with_margin
+from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
@@ -62,7 +62,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
         swing, ranges = part.build(), ranges_of(tables)
-        margin = with_margin((), part.requested_margin, swing)
+        margin = with_swing_margin((), part.required_transmission_angle, swing)
     except (InputError, ValidationError):
         return None
     if swing is None or ranges is None or table_in(tables, "mechanism").get("inversion") is not None:

@@ -140,7 +140,7 @@ def stored_objectives(problem: Problem) -> list[StoredObjective]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
-    from ...optimise.problem.always_zero import idle_rules
+    from ...optimise.problem.always_zero import idle_constraint_warnings
     from ...optimise.search.driving_loads import front_driving_load_warnings
     from ...optimise.search.loaded_stroke import front_stroke_warnings
 
@@ -164,7 +164,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
             *front.problem.warnings,
             *front_driving_load_warnings(front),
             *front_stroke_warnings(front),
-            *idle_rules(front.problem),
+            *idle_constraint_warnings(front.problem),
         ),
         violated=_violated_columns(front),
         discrete=discrete_record(front),

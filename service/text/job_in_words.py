@@ -20,8 +20,8 @@ from ...objectives.count_text import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.varying_column import columns_of_numbers, varying_column
-from ...optimise.job.options import idle_options, impossible_options
-from ...optimise.problem.always_zero import idle_rules
+from ...optimise.job.options import impossible_option_notes, impossible_options
+from ...optimise.problem.always_zero import idle_constraint_warnings
 from ...optimise.problem.costs import Cost
 from ...optimise.problem.discrete import Discrete
 from ...optimise.problem.problem import Problem
@@ -51,8 +51,8 @@ def summarise(problem: Problem) -> dict[str, Any]:
         *driving_load_warnings(problem),
         *loads_over_whole_strokes(problem),
         *stroke_warnings(problem),
-        *idle_rules(problem),
-        *idle_options(problem),
+        *idle_constraint_warnings(problem),
+        *impossible_option_notes(problem),
     ]
     return {
         "name": problem.name,
@@ -84,9 +84,9 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
 def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
     """Return `summarise` of a problem, with the content of files, and notes on the tables that state it."""
-    from ...optimise.job.job_notes import notes_of, sources_of
+    from ...optimise.job.job_notes import file_summaries, notes_of
 
-    return summarise(problem) | {"files": sources_of(tables), "notes": notes_of(tables)}
+    return summarise(problem) | {"files": file_summaries(tables), "notes": notes_of(tables)}
 
 
 def freedom_in_words(problem: Problem) -> str:

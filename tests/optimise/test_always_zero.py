@@ -19,7 +19,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.always_zero import require_ranking
+from slidercrank.optimise.problem.always_zero import require_nonzero_quantities
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.optimise.solve import solve
@@ -79,9 +79,9 @@ def test_a_choice_of_machines_of_which_one_works_is_an_objective() -> None:
         objective = Objective(quantity="mean_torque", sense="minimise")
         return replace(problem, choices=("load",), variants=variants, objectives=(objective,))
 
-    require_ranking(chosen(problem.mechanism, worked))
+    require_nonzero_quantities(chosen(problem.mechanism, worked))
     with pytest.raises(InputError, match="needs work over a turn"):
-        require_ranking(chosen(problem.mechanism, problem.mechanism))
+        require_nonzero_quantities(chosen(problem.mechanism, problem.mechanism))
 
 
 def test_an_offset_that_is_rounding_is_none() -> None:

@@ -13,7 +13,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
 from slidercrank.optimise.job.job_notes import notes_of
-from slidercrank.optimise.job.options import idle_options
+from slidercrank.optimise.job.options import impossible_option_notes
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import distance
 
@@ -223,7 +223,7 @@ def test_rows_that_the_constraints_exclude_are_left_out_and_told(tmp_path: Path)
             ranges + '[constraints]\nstroke = { equals = "80 mm" }\n[optimiser]\ndesigns = 5\nsamples = 256\n'
         )
         fronts.append(solve(load_job(job)))
-    told, none = (idle_options(front.problem) for front in fronts)
+    told, none = (impossible_option_notes(front.problem) for front in fronts)
     assert told[0].endswith("short: stroke equals 80 mm and max 70 mm, which exclude each other")
     assert none == []
     np.testing.assert_array_equal(fronts[0].values, fronts[1].values)

@@ -18,7 +18,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
 from slidercrank.optimise.job.job_notes import notes_of
-from slidercrank.optimise.job.options import idle_options
+from slidercrank.optimise.job.options import impossible_option_notes
 from tests.optimise.catalogues import front_of
 
 SIX = """name,peak_torque max (N m),price (EUR),maker
@@ -172,7 +172,7 @@ def test_rows_beyond_the_jobs_own_limit_on_an_amount_are_left_out_in_a_note_and_
         assert all(f"{name} (price " in note for name in dear)
         assert note.count(f"more than the {bound} allowed") == len(dear)
         assert label == ("GM 45" if bound == "400 EUR" else "GM 60")
-        assert not idle_options(found)
+        assert not impossible_option_notes(found)
 
 
 def test_rows_that_the_jobs_own_limit_makes_equal_leave_the_least() -> None:

@@ -19,7 +19,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.always_zero import idle_rules, require_ranking
+from slidercrank.optimise.problem.always_zero import idle_constraint_warnings, require_nonzero_quantities
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve
@@ -61,7 +61,7 @@ def problem(mechanism: Mechanism, name: str, *constraints: Constraint) -> Proble
 def refusal(given: Mechanism, name: str) -> str:
     """Return why a quantity is refused as an objective; empty if it is not."""
     try:
-        require_ranking(problem(given, name))
+        require_nonzero_quantities(problem(given, name))
     except InputError as error:
         return str(error)
     return ""
@@ -92,7 +92,7 @@ def test_every_quantity_without_some_cause_is_refused_with_its_remedy_or_finite_
     closed |= {"outward_to_inward_time_ratio", "inward_to_outward_time_ratio"}
     assert {name for name, count in refused.items() if not count} == closed
     for name, quantity in QUANTITIES.items():  # the remedies, followed
-        require_ranking(problem(fitted(quantity, machine(*CAUSES)), name))
+        require_nonzero_quantities(problem(fitted(quantity, machine(*CAUSES)), name))
 
 
 @pytest.mark.parametrize("name", ["position_error", "position_error_rss", "self_locking_margin"])
@@ -143,7 +143,7 @@ def test_a_rule_on_what_is_zero_for_every_design_is_told_to_leave_none_out() -> 
         for name in QUANTITIES:
             if QUANTITIES[name].undefined_because((given,)):
                 continue
-            told = idle_rules(problem(given, "stroke", Constraint(quantity=name, upper=1e9)))
+            told = idle_constraint_warnings(problem(given, "stroke", Constraint(quantity=name, upper=1e9)))
             why = refusal(given, name).removeprefix(f"objectives.{name}: ")
             assert len(told) == bool(why)
             assert all(sentence.startswith(f"constraints.{name} excludes no design: ") for sentence in told)

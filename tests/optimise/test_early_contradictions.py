@@ -15,7 +15,7 @@ from slidercrank.objectives.formula.linear import unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 from slidercrank.objectives.gas import VOLUMETRIC_EFFICIENCY
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.options import idle_options
+from slidercrank.optimise.job.options import impossible_option_notes
 from slidercrank.optimise.solve import solve
 
 pytestmark = pytest.mark.usefixtures("little")
@@ -125,9 +125,9 @@ def test_options_that_no_design_can_have_are_told_and_refused_where_none_is_left
         options = [{"name": f"M {place}", "constraints": own} for place, own in enumerate(limits)]
         return job(choice=[{"name": "motor", "option": options}], objectives={"peak_torque": "minimise"})
 
-    (told,) = idle_options(parse_job(with_options(high, low)))
+    (told,) = impossible_option_notes(parse_job(with_options(high, low)))
     assert told.endswith("M 0: stroke min 300 mm, where at most 154.919 mm is possible")
-    assert idle_options(parse_job(with_options(low, low))) == []
+    assert impossible_option_notes(parse_job(with_options(low, low))) == []
     with pytest.raises(
         JobError, match="at least one option must have a design within the ranges; none has: for M 0 stroke min 300"
     ):

@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.file import MOST, require_few, toml_tables
+from slidercrank.optimise.job.file import MOST, require_few_values, toml_tables
 from slidercrank.service.jobs.job_toml import job_toml
 
 LONGEST = 10.0
@@ -54,11 +54,11 @@ def test_what_a_job_may_hold_is_counted_alike_as_tables_and_as_text() -> None:
         data = {"load": [drawn(rng, 60) for _ in range(rng.randint(1, 8))], "x": drawn(rng, 400)}
         data["fill"] = [0] * (MOST - items(data) - 1)
         assert items(data) == MOST
-        require_few(data)
+        require_few_values(data)
         assert toml_tables(job_toml(data)) == tomllib.loads(job_toml(data)) == data
         data["fill"].append(0)
         with pytest.raises(JobError, match=f"at most {MOST} values, lists and tables; got {MOST + 1}; leave some out"):
-            require_few(data)
+            require_few_values(data)
 
 
 @pytest.mark.parametrize("one", ["[[a]]\n", "[t{}]\n", "k{} = 1\n", "[t{}.a.a.a.a.a]\n", "a.b.k{} = [{{}}]\n"])

@@ -14,7 +14,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job, with_files
 from slidercrank.optimise.job.curve_file import MOST_POINTS, SHARE
-from slidercrank.optimise.job.job_notes import sources_of
+from slidercrank.optimise.job.job_notes import file_summaries
 
 RANGES = {"crank": ["20 mm", "80 mm"], "rod": ["120 mm", "300 mm"], "offset": ["0 mm", "60 mm"]}
 
@@ -158,7 +158,7 @@ def test_a_long_table_is_thinned_within_the_stated_bound_and_its_steps_stay(seed
         own[again + (part.start == 0)] = False
         error = np.abs(np.interp(at[part], kept[own], forces[:-1][own]) - force[part])
         assert error.max() <= bound * (1.0 + 1e-9)
-    (said,) = sources_of(data)
+    (said,) = file_summaries(data)
     assert f"3,600 rows of angle_deg, force_N; first 0, {force[0]:.6g}; last 359.9, {force[-1]:.6g}" in said
     assert f"{len(kept):,} points kept; no value changes by more than {bound:.3g} N, 0.05 % of its range" in said
 
@@ -256,7 +256,7 @@ def test_a_coarse_record_between_one_turn_and_two_is_refused_and_two_turns_are_r
         read("time_s,force_N\n0,1\n0.1,2\n0.3,3\n0.7,4\n", "120 rpm")
     data = with_files(job({"file": "a.csv"}), {"a.csv": "angle_deg,force_N\n0,1\n180,2\n360,3\n540,4\n"})
     assert data["load"][0]["cycle"] == "720 deg"
-    assert sources_of(data)[0].endswith("two turns, a cycle of 720 deg")
+    assert file_summaries(data)[0].endswith("two turns, a cycle of 720 deg")
 
 
 def test_a_file_and_a_force_in_one_load_are_refused_before_the_file_is_read() -> None:
@@ -291,7 +291,7 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
     loads = load_job(tmp_path / "job.toml").mechanism.loads
     assert loads == (given(crank_angles=["0 deg", "90 deg"], forces=["-2 N", "1000.5 N"]),)
     assert needed_files(tmp_path / "job.toml") == [tmp_path / "trace.csv"]
-    assert sources_of(read_job(tmp_path / "job.toml")) == [
+    assert file_summaries(read_job(tmp_path / "job.toml")) == [
         "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, -2; last 90, 1000.5; separated by semicolons; "
         "decimal comma"
     ]

@@ -19,7 +19,7 @@ from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
 from slidercrank.optimise.decisions.like import like
 from slidercrank.optimise.job import load_job, needed_files, parse_job
-from slidercrank.optimise.job.custom_quantities import FormulaPart, named
+from slidercrank.optimise.job.custom_quantities import FormulaPart, require_usable_names
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.solve import solve
 
@@ -304,7 +304,7 @@ def test_no_quantity_takes_the_column_of_another_number() -> None:
         for stem, problem in ((column, problems[""]), *([(name, problems[unit])] if name and unit in units else [])):
             own = tuple(replace(of, name=stem) if of.name == "mine" else of for of in problem.own)
             with contextlib.suppress(InputError):
-                named({stem: FormulaPart(formula="rod / crank")})
+                require_usable_names({stem: FormulaPart(formula="rod / crank")})
                 fields = {of.name: of.field for of in replace(problem, own=own).own}
                 assert fields[stem] not in columns
                 continue

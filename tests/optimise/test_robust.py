@@ -15,7 +15,7 @@ from slidercrank.optimise.decisions.price_of_robustness import robust_cost
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust import Robust, nominal, robust, robust_quantities
+from slidercrank.optimise.problem.robust import Robust, nominal_problem, robust, robust_quantities
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
@@ -121,7 +121,7 @@ def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> No
 
 
 def test_the_nominal_problem_comes_back() -> None:
-    assert nominal(robust(plain(), Robust())) == plain()
+    assert nominal_problem(robust(plain(), Robust())) == plain()
 
 
 def test_equalities_targets_and_position_errors_stay_nominal() -> None:

@@ -106,8 +106,8 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
 def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbers: list[float], said: str) -> None:
     table = read_table(text, "the file")
     assert [float(column[0]) for column in table.numbers([0, 1])] == numbers
-    assert table.understood([0, 1]).endswith(said)
-    assert f"first {numbers[0]:.6g}, {numbers[1]:.6g};" in table.understood([0, 1])
+    assert table.summary_text([0, 1]).endswith(said)
+    assert f"first {numbers[0]:.6g}, {numbers[1]:.6g};" in table.summary_text([0, 1])
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_names_of_columns_may_be_commented_and_have_blanks_between_blanks(text: 
 
 
 def test_one_row_and_a_negative_zero_are_reported_as_people_write_them() -> None:
-    assert read_table("a;b\n-0;2\n", "f").understood([0, 1]).startswith("1 row of a, b; first 0, 2; last 0, 2;")
+    assert read_table("a;b\n-0;2\n", "f").summary_text([0, 1]).startswith("1 row of a, b; first 0, 2; last 0, 2;")
 
 
 def test_a_folder_is_refused_once(tmp_path: Path) -> None:

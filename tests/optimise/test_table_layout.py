@@ -28,7 +28,7 @@ def test_random_titles_above_random_tables_are_skipped_and_counted(separator: st
         assert table.heads == ("time (ms)", *(f"force {n} (N)" for n in range(1, width))), text
         np.testing.assert_array_equal(np.column_stack(table.numbers(range(width))), numbers)
         said = f"{titles} title line{'s' if titles > 1 else ''} above the column names skipped"
-        assert said in table.understood(range(width))
+        assert said in table.summary_text(range(width))
 
 
 @pytest.mark.parametrize(
@@ -46,7 +46,7 @@ def test_random_titles_above_random_tables_are_skipped_and_counted(separator: st
 def test_what_may_be_a_row_or_the_names_is_no_title(text: str, titles: int, heads: tuple[str, ...]) -> None:
     table = read_table(text, "the file")
     assert table.heads == heads
-    assert ("title line" in table.understood([0])) == (titles > 0)
+    assert ("title line" in table.summary_text([0])) == (titles > 0)
 
 
 def test_a_row_of_more_cells_names_the_lines_above_as_a_cause() -> None:

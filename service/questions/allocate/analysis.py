@@ -13,7 +13,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
 from ....model.tolerance.exact import worst
 from ....objectives.kinds import ANGLE, LENGTH, display_unit
-from ....optimise.problem.costs import Costs, costs_before
+from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.input_words import Kind
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
@@ -126,7 +126,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, cost
                 "bound_saving_per_mdeg": 1e-3 * part.saving / unit if angle else None,
             }
         )
-    was = costs_before(costs, linkage, before)
+    was = costs_of_tolerances(costs, linkage, before)
     error = Signal.POSITION_ERROR if allocation.kind == "worst case" else Signal.POSITION_ERROR_RSS
     return {
         "kind": allocation.kind,

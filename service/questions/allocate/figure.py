@@ -14,7 +14,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.tolerance.first_order import FirstOrder, first_order
 from ....model.tolerance.sources import SOURCES, counted_angles
 from ....objectives.kinds import LENGTH, System
-from ....optimise.problem.costs import Costs, costs_before
+from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
 from ...render.numerals import format_number, with_unit
@@ -54,7 +54,7 @@ def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, be
     now = first_order(allocation.mechanism, linkage, theta)
     share, error = _cumulated_error(now, allocation.kind)
     contributes = now.contributions.max(axis=1) > 0.0
-    was = costs_before(costs, linkage, before)
+    was = costs_of_tolerances(costs, linkage, before)
     spans = [(float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in counted_angles(before, linkage)]
     return AllocationCurves(
         np.degrees(theta),

@@ -104,10 +104,10 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
 
 def _read_step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, parsed as in a job."""
-    from ....optimise.job.grids import step_of
+    from ....optimise.job.grids import read_step
 
     small = SMALL_LENGTH if kind is LENGTH else kind
-    return step_of(text, lambda given: parse_value(key, str(given), small, sign="positive"))
+    return read_step(text, lambda given: parse_value(key, str(given), small, sign="positive"))
 
 
 def _rounding_record(rounded: Rounded) -> dict[str, Any]:
