@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import json
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -77,6 +78,7 @@ def test_answers_are_closed_and_go_with_their_tag(name: str) -> None:
         text = "".join(cell["source"])
         if cell["cell_type"] == "code":
             assert cell["metadata"]["jupyter"] == {"source_hidden": True, "outputs_hidden": True}
+            assert re.match(r"# Answer \d in Python\n", text)  # the line that shows while the cell is closed
         else:
             assert text.startswith("<details>\n<summary>")
             assert text.endswith("\n\n</details>")

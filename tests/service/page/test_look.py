@@ -147,3 +147,34 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     exact = math.sqrt((l + r) ** 2 - e**2) - math.sqrt((l - r) ** 2 - e**2)
     assert float(job["constraints"]["stroke"]["equals"].split()[0]) == pytest.approx(exact, rel=1e-7)
     assert list(store.jobs()) == []
+
+
+CLEARANCE = """range => {
+  const label = document.querySelector(".dimension.radius text").getBoundingClientRect();
+  const crank = document.querySelector(".machines .link.crank");
+  const width = crank.getBBox().height;
+  return [270, 280, 290, 296, 297, 300, 310].map(angle => {
+    range.value = angle;
+    range.dispatchEvent(new Event("input", { bubbles: true }));
+    const box = crank.parentNode.querySelectorAll(".pin")[1].getBoundingClientRect();
+    const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2];
+    const across = Math.max(label.left - x, 0, x - label.right);
+    const down = Math.max(label.top - y, 0, y - label.bottom);
+    return Math.hypot(across, down) - width / 2;
+  });
+}"""
+"""Pixels between the end of the crank and its dimension as the pin passes it."""
+
+
+@pytest.mark.slow
+def test_the_crank_does_not_hide_its_dimension_as_it_passes(form: Open, store: Store) -> None:
+    page = form(store, "#/look?crank_mm=60&rod_mm=230&offset_mm=70", viewport={"width": 1280, "height": 900})
+    expect(page.locator(".dimension.radius text")).to_have_text("crank 60\xa0mm")
+    gaps = page.locator(".strip input[type=range]").first.evaluate(CLEARANCE)
+    assert len({round(gap, 6) for gap in gaps}) == len(gaps)  # the crank has moved
+    assert min(gaps) >= 0.0
+    picture = page.locator(".machines svg").first.bounding_box()
+    label = page.locator(".dimension.radius text").bounding_box()
+    assert picture is not None
+    assert label is not None
+    assert label["y"] + label["height"] <= picture["y"] + picture["height"]

@@ -62,7 +62,7 @@ export function scenery({
     written &&
       ends?.every(Number.isFinite) &&
       strokeOf(view, ends, y(e) - (e < 0 ? -1 : 1) * (0.54 * tall * view.unit + 16), swings),
-    written && !swings && crankOf(view, r, e),
+    written && !swings && crankOf(view, r, e, link),
     hasStrokeAngles && ends?.every(Number.isFinite) && strokeAngles(view, r, e, centres, direction),
     bearing(x(0), y(0), link),
   ];
@@ -183,13 +183,19 @@ function strokeOf(view, ends, y, swings) {
   );
 }
 
-/** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e */
-function crankOf(view, r, e) {
+/** Dimension the crank as the radius of its circle, where no rod passes. @param {View} view @param {number} r @param {number} e @param {number} link */
+function crankOf(view, r, e, link) {
   const radius = view.unit * r;
   if (radius < 45) return null;
   const down = e < 0 ? -1 : 1;
   const turn = 0.35 * Math.PI; // from the line of centres, outward and away from the slider line
-  const [x, y] = [view.x(0) + radius * Math.cos(turn), view.y(0) + down * radius * Math.sin(turn)];
+  /** @param {number} size @returns {Page.Point} */
+  const at = (size) => [
+    view.x(0) + size * Math.cos(turn),
+    view.y(0) + down * size * Math.sin(turn),
+  ];
+  const [x, y] = at(radius);
+  const [left, edge] = at(radius + link / 2 + 4); // the value stays clear of the crank's end as it passes
   const side = Math.atan2(y - view.y(0), x - view.x(0));
   /** @param {number} by */
   const wing = (by) =>
@@ -198,7 +204,7 @@ function crankOf(view, r, e) {
     "g",
     { class: "dimension radius" },
     svg("path", { d: `M${view.x(0)} ${view.y(0)}L${x} ${y}M${wing(0.4)}L${x} ${y}L${wing(-0.4)}` }),
-    svg("text", { x: x + 8, y: y + (down > 0 ? 6 : 2) }, `crank ${withUnit(r, "mm", 4)}`),
+    svg("text", { x: left, y: edge + (down > 0 ? 10 : -1) }, `crank ${withUnit(r, "mm", 4)}`),
   );
 }
 
