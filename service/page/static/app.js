@@ -12,7 +12,7 @@ import { sentenceOf } from "./lib/refusals.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
- * and ends what it began once `signal` is aborted. Problems that it throws are shown in its place.
+ * and stops its work once `signal` is aborted. Errors that it throws are shown in its place.
  * @type {{ name: string, match: (parts: string[]) => boolean, load: () => Promise<Page.View> }[]}
  */
 const VIEWS = [
@@ -56,7 +56,7 @@ const NAVIGATION = [
 
 let leaving = new AbortController();
 
-/** Show the view of the address. again: as it was, in other units. */
+/** Show the view for the address. again: whether to show the same view in other units. */
 async function showView({ again = false } = {}) {
   leaving.abort();
   leaving = new AbortController();
@@ -71,13 +71,13 @@ async function showView({ again = false } = {}) {
   try {
     const view = VIEWS.find(({ match }) => match(parts));
     if (!view) throw new Error("There is no such page.");
-    place.classList.add(`of-${view.name}`); // which the style of the view begins with
+    place.classList.add(`of-${view.name}`); // prefix of the view's style rules
     const module = await view.load();
     if (signal.aborted) return;
     document.title = `${module.title} · slidercrank`;
     await module.show(place, { parts, query, signal });
     restore();
-    // Who began to use the view before it was whole stays where they are: an open menu closes as the focus leaves it.
+    // Do not take the focus from a reader who already uses the view: an open menu closes when it loses the focus.
     if (changed && !again && !signal.aborted && !focused(main)) main.focus({ preventScroll: true });
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
@@ -159,6 +159,6 @@ window.addEventListener("hashchange", () => showView());
 watchDownloads();
 rememberScroll();
 showPreferences();
-const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // what is wrong with the service, the view says
+const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // the view reports errors of the service
 if (system() === "inch") units.then(() => showView());
 else showView();

@@ -174,7 +174,7 @@ WRONG = [
     ("stroke, exactly", "9000", "at most"),
     ("time ratio, at most", "0.9", "must be 1 or more"),
     ("least transmission angle, at least", "95", "must lie between 0 and 90 deg"),
-    ("of the crank angle", "x", "must be an angle"),
+    ("crank angle tolerance", "x", "must be an angle"),
     ("designs", "1.5", "must be a whole number"),
     ("crank, to", "2*(75", "is not closed"),
 ]
@@ -543,7 +543,7 @@ def test_a_question_mark_opens_the_sentence_and_leads_to_the_help(form: Open, st
     ask.focus()
     page.keyboard.press("Enter")
     expect(ask).to_have_attribute("aria-expanded", "true")
-    expect(page.get_by_text("The stroke is the distance of the slider").first).to_be_visible()
+    expect(page.get_by_text("The stroke is the distance between the slider").first).to_be_visible()
     page.get_by_role("link", name="More about stroke").first.click()
     expect(page.get_by_role("heading", level=1)).to_have_text("stroke")
 

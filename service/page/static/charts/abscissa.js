@@ -1,4 +1,4 @@
-/** What curves are drawn over: crank angle, time, the way of the slider, or both ways of a swing. */
+/** Abscissas of curves: crank angle, time, slider displacement, or both strokes of a swing. */
 
 import { inDisplayUnit, unitOf } from "../lib/numbers.js";
 import { between, crankAt, turned } from "./cycle.js";
@@ -17,14 +17,14 @@ import { range } from "./scale.js";
  * @property {((x: number) => number) | null} angle the place in the cycle, where there is only one
  */
 
-/** What there is to choose from; time needs a crank that turns at a speed. @type {{ name: string, title: string }[]} */
+/** Available abscissas; time needs a crank speed. @type {{ name: string, title: string }[]} */
 export const OVER = [
   { name: "angle", title: "crank angle" },
   { name: "time", title: "time" },
   { name: "position", title: "slider position" },
   { name: "way", title: "distance from the inner dead centre" },
 ];
-/** The same of a swing. @type {{ name: string, title: string }[]} */
+/** The same for a swing. @type {{ name: string, title: string }[]} */
 export const OVER_SWING = [
   { name: "angle", title: "both strokes" },
   { name: "time", title: "time" },
@@ -38,14 +38,14 @@ const ENDS = [
   { at: 360, text: "start" },
 ];
 
-/** Return the way of the slider from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
+/** Return the slider's displacement from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
 export function wayAt({ curves, sliderEnds: [inner] }, angle) {
   const position = between(curves.slider_position_mm, angle);
   return position === null ? null : position - inner;
 }
 
 /**
- * Return what is chosen by name. rpm: cycles a minute, its sign the direction of the crank. turns: of the crank in a cycle, 0 of a swing.
+ * Return the abscissa with a name. rpm: cycles per minute; the sign is the direction of the crank. turns: crank turns per cycle, 0 for a swing.
  * @param {string} name @param {number} rpm @param {number} turns @returns {Abscissa}
  */
 export function abscissaOf(name, rpm, turns = 1) {
@@ -80,7 +80,7 @@ function overTime(seconds, direction) {
   };
 }
 
-/** Over the crank angle of a swing, forth and back. @returns {Abscissa} */
+/** Return the crank angle of a swing, back and forth, as the abscissa. @returns {Abscissa} */
 function overCrank() {
   /** @param {Curved} one @param {number} place */
   const place = (one, place) => crankAt(one, place);

@@ -46,7 +46,7 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   context.restore();
 }
 
-/** Return the heading of an axis, and which way is better. @param {Page.Axis} axis */
+/** Return the heading of an axis and its better direction. @param {Page.Axis} axis */
 function titled({ column, better }) {
   return better ? `${headed(column)} (${better})` : headed(column);
 }

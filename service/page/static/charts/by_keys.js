@@ -1,4 +1,4 @@
-/** Designs of a chart by keys: arrows go from one to the next, Enter opens it, the space bar selects it; each is read out. */
+/** Keyboard access to the designs of a chart: arrows move between them, Enter opens one, Space selects it; each is read out. */
 
 import { h } from "../lib/dom.js";
 

@@ -1,9 +1,9 @@
-/** Designs of a chart by the pointer: pointed at, opened or selected by a click; what a drag does is of the chart. */
+/** Pointer access to the designs of a chart: hover, open or select by click; the chart defines what a drag does. */
 
 /** @typedef {{ x: number, y: number }} Place pixels in the chart */
 
 /**
- * Let the pointer reach the designs of a chart. under(here): the design there, or null. cursor(here, row): how the pointer looks there.
+ * Let the pointer reach the designs of a chart. under(here): the design there, or null. cursor(here, row): the pointer's shape there.
  * begin(here, event): whether a drag may begin there. drag(here): a drag goes on. end(dragged): the button is up again, after a drag or
  * without one; return whether a press without a drag may open a design.
  * @param {HTMLElement} top
@@ -56,7 +56,7 @@ export function byPointer(top, chart, { isDrawn, under, cursor, begin, drag, end
 }
 
 /**
- * Return which of `count` things is nearest, null where none is nearer than `least`. distance(n): of one of them.
+ * Return the index of the nearest of `count` items; null if none is nearer than `least`. distance(n): distance of item n.
  * @param {number} count @param {(n: number) => number} distance @param {number} least
  */
 export function nearest(count, distance, least) {

@@ -1,4 +1,4 @@
-/** The parts of a chart of curves: axes, dead centres, lines, least and greatest values, and what it says in words. */
+/** Parts of a curve chart: axes, dead centres, lines, minimum and maximum, and a description in words. */
 
 import { svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
@@ -91,7 +91,7 @@ export function line(one, { x, y, abscissa }) {
 }
 
 /**
- * Return the marks of least and greatest value of a curve, none if they are unknown. Those of its points alone are said to be about that.
+ * Return the marks of a curve's minimum and maximum, none if they are unknown. Values of samples alone are marked as approximate.
  * @param {Drawn} one @param {Pen} pen
  */
 export function peaks(one, { x, y, abscissa }) {
@@ -119,7 +119,7 @@ export function peaks(one, { x, y, abscissa }) {
 }
 
 /**
- * Return a sentence for a curve: its least and greatest value if known, and where.
+ * Return a sentence on a curve's minimum and maximum, if known, and where they are.
  * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Abscissa} abscissa
  */
 export function summary(words, unit, series, key, abscissa) {

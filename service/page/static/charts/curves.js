@@ -10,15 +10,15 @@ import { range, scale } from "./scale.js";
 /**
  * @import { Abscissa } from "./abscissa.js"
  *
- * What a chart shows of a design: its curves under a name; series: which colour it has.
+ * Curves of a design in a chart, with its name; series: its colour.
  * @typedef {Pick<Page.Machine, "name" | "series" | "curves" | "exact" | "centres" | "sliderEnds" | "turns">} Shown
  * @typedef {{ key: string } & Page.Heading} Panel
  * @typedef {Shown & { values: (number | null)[], ends?: Page.Ends | null }} Drawn as it is shown: in the reader's units
  */
 
 const HEIGHTS = { large: 250, small: 140 };
-const SOON = 150; // ms after a change, until charts that are out of sight follow
-const EVERY = 100; // ms between two readouts while it moves; faster ones cannot be read
+const SOON = 150; // ms after a change until charts out of sight follow
+const EVERY = 100; // ms between readouts while it moves; faster ones cannot be read
 
 /**
  * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
@@ -45,7 +45,7 @@ export function curveCharts(place, turned, sizes) {
   let later = 0;
   let observed = false;
   /** @type {Set<Element>} */
-  const inSight = new Set(); // charts that the reader sees
+  const inSight = new Set(); // charts in sight
 
   function arrange() {
     if (!content) return;
@@ -69,7 +69,7 @@ export function curveCharts(place, turned, sizes) {
     later = setTimeout(() => charts.forEach(drawn), SOON);
   }
 
-  /** Put the charts into their places: those that are large, in their order, before the others. */
+  /** Arrange the charts: large ones first, in their order. */
   function sort() {
     const first = large.flatMap((key) => charts.find((one) => one.panel.key === key) ?? []);
     const chosen = (first.length ? first : charts).slice(0, most);
@@ -84,7 +84,7 @@ export function curveCharts(place, turned, sizes) {
     );
   }
 
-  /** Make a curve large, in place of the last of those that are, or small. @param {string} key */
+  /** Make a curve large, in place of the last large one, or small. @param {string} key */
   function resize(key) {
     const now = charts
       .filter((one) => one.figure.parentElement === wide)
@@ -159,7 +159,7 @@ function chart(panel, turned, resize) {
     },
     onpointermove: (event) => (lit || event.pointerType === "mouse") && move(event),
   });
-  // Cursor and dots lie over the picture, which is not painted again as they move.
+  // Cursor and dots are a layer of their own, so that the picture is not repainted as they move.
   const cursor = h("div", { class: "cursor" });
   const plot = h("div", { class: "plot" }, picture);
   const figure = h(
@@ -196,7 +196,7 @@ function chart(panel, turned, resize) {
     );
   };
 
-  /** Return the crank angle whose point on the first curve is nearest: over a way there are two at every place. @param {number} right @param {number} down */
+  /** Return the crank angle of the nearest point on the first curve: over a displacement, each place has two. @param {number} right @param {number} down */
   function nearest(right, down) {
     const [{ values }] = series;
     let [best, least] = [0, Infinity];

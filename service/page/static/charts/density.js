@@ -1,4 +1,4 @@
-/** Many lines at once as a density: each adds one to the pixels that it crosses, and what is dense is darker. */
+/** Density of many lines: each adds one to the pixels that it crosses; denser pixels are darker. */
 
 /**
  * Lines between upright axes. `across` are the pixels of the axes, `heights` the pixel row of each line on each axis, line by

@@ -1,11 +1,11 @@
-/** Ranges of axes that stand still while what they show grows. */
+/** Axis ranges that stay still while their data grows. */
 
 import { range } from "./scale.js";
 
 const AHEAD = 0.2; // of the range, which is left free on the side where it had to grow
 
 /**
- * Return a function that gives the range of an axis for values: it holds all that it has held before, and grows by steps.
+ * Return a function that gives an axis range for values: it includes all earlier ranges and grows in steps.
  * @returns {(key: string, values: Iterable<Api.Row[string]>) => Page.Range}
  */
 export function growingRange() {

@@ -1,10 +1,10 @@
-/** Histograms beside the axes of parallel coordinates: how many chosen designs are where. */
+/** Histograms of the chosen designs beside the axes of parallel coordinates. */
 
 const BINS = 24;
 const WIDE = 16; // pixels, of the fullest bin of an axis
 
 /**
- * Return how many rows of a mask are in each bin of each axis, axis after axis, from the top.
+ * Return the number of rows of a mask in each bin, axis by axis, from the top.
  * @param {Int16Array} heights of every design on every axis, less than 0 where it has no value
  * @param {number} axes @param {ArrayLike<number>} mask @param {number} top of the axes @param {number} bottom
  */

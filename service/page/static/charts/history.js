@@ -1,4 +1,4 @@
-/** A value over rounds, as a line that grows. */
+/** Growing line of a value over the rounds. */
 
 import { svg } from "../lib/dom.js";
 import { grouped, text } from "../lib/numbers.js";

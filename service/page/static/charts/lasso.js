@@ -1,4 +1,4 @@
-/** A line drawn by hand around some designs. */
+/** Freehand line around some designs. */
 
 const MOST = 32; // corners: a link stays short
 

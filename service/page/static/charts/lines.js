@@ -2,7 +2,7 @@
 
 import { nearest } from "./by_pointer.js";
 
-const NEAR = 8; // pixels up or down from a line within which it is pointed at
+const NEAR = 8; // pixels above or below a line within which the pointer is on it
 
 /**
  * Draw the line of a design. across, heights: of the axes, and of all designs on them in pixels, below 0 where a design has no value.
@@ -22,13 +22,13 @@ export function line(context, row, axes, across, heights) {
 }
 
 /**
- * Return the design that `mask` has and whose line passes nearest above or below a place, null where none is near.
+ * Return the design of `mask` whose line passes nearest above or below a place; null if none is near.
  * @param {{ across: number[], heights: Int16Array }} view @param {Uint8Array} mask @param {number} x @param {number} y
  */
 export function nearestLine({ across, heights }, mask, x, y) {
   const count = across.length;
   const after = across.findIndex((at) => at >= x);
-  const right = after < 0 ? count - 1 : after; // beyond the ends it is the end that counts
+  const right = after < 0 ? count - 1 : after; // beyond the ends, the end counts
   const left = after <= 0 ? right : right - 1;
   const share = right === left ? 0 : (x - across[left]) / (across[right] - across[left]);
   /** @param {number} row */

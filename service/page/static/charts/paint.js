@@ -1,4 +1,4 @@
-/** Canvas layers, and the colours that values have on them. */
+/** Canvas layers and the colours of values. */
 
 import { h } from "../lib/dom.js";
 
@@ -59,7 +59,7 @@ export function layers(count, label) {
 }
 
 /**
- * Draw squares of 3 pixels at places, in colours[of[i]], those that `mask` has; all of them without one. They take the place of
+ * Draw 3-pixel squares at places, in colours[of[i]], for the rows of `mask`, or all rows without one. They replace
  * everything on the layer, whose pixels are those of the page.
  * @param {Page.Canvas} context @param {ArrayLike<number>} across @param {ArrayLike<number>} up @param {Uint8Array | null} mask @param {Uint8Array} of
  * @param {string[]} colours
@@ -84,7 +84,7 @@ export function squares(context, across, up, mask, of, colours) {
 }
 
 /**
- * Write words that stay readable on whatever is drawn, by an edge in the colour of the ground.
+ * Write text that stays readable on any drawing, with an outline in the background colour.
  * @param {Page.Canvas} context @param {string} words @param {number} x @param {number} y @param {Page.Ink} ink @param {number} edge pixels
  */
 export function writeOver(context, words, x, y, ink, edge = 3) {
@@ -102,7 +102,7 @@ export function rgb(colour) {
 
 /**
  * Return `count` colours from low to high: viridis, by S. van der Walt and N. Smith (public domain), whose steps look alike,
- * without the end that cannot be told from the ground.
+ * without the end that blends into the background.
  * @param {Page.Ink} ink @param {number} count
  */
 export function ramp(ink, count) {
@@ -119,7 +119,7 @@ export function ramp(ink, count) {
   });
 }
 
-/** Return the colours of words: those of the series, again from the first after the last. @param {Page.Ink} ink @param {number} count */
+/** Return the colours of categories: those of the series, repeated. @param {Page.Ink} ink @param {number} count */
 export function palette(ink, count) {
   return Array.from({ length: count }, (_, index) => ink[`series-${1 + (index % 6)}`]);
 }

@@ -42,9 +42,9 @@ import { shadesOf } from "./shades.js";
  */
 
 const MARGIN = 12; // pixels above and below the axes
-const NEAR = 22; // pixels from an axis within which a drag is about it
+const NEAR = 22; // pixels from an axis within which a drag acts on it
 const EDGE = 7; // pixels from an end of a limit within which a drag moves that end
-const FEW = 500; // lines that are drawn one by one; more of them as a density
+const FEW = 500; // lines drawn one by one; more are drawn as a density
 const [BACK, FRONT, OVER] = [0, 1, 2];
 
 /**
@@ -59,11 +59,11 @@ export function parallel(chart) {
   );
   const { place, contexts } = stack;
   /** @type {View} */
-  let view; // nothing until it is drawn first
+  let view; // empty until it is first drawn
   /** @type {{ axis: number, from: number, span: number[] | null, moved: boolean } | null} */
   let dragged = null;
 
-  /** Lay out: where the axes are, and where every design is on them. */
+  /** Lay out the axes and the designs on them. */
   function lay() {
     const width = Math.max(1, Math.round(place.clientWidth));
     const height = Math.max(200, Math.min(360, Math.round(window.innerHeight * 0.42)));
@@ -115,7 +115,7 @@ export function parallel(chart) {
       );
   }
 
-  /** Draw all designs behind the chosen ones, once; of many, they are seen only while some are left out. */
+  /** Draw all designs behind the chosen ones, once; with many designs, they show only while some are excluded. */
   function drawBack() {
     if (!view.all || view.backed) return;
     view.backed = true;
@@ -135,7 +135,7 @@ export function parallel(chart) {
     context.globalAlpha = 1;
   }
 
-  /** Draw the chosen ones. Of many, only those are touched that changed, unless most did. */
+  /** Draw the chosen designs. With many designs, redraw only those that changed, unless most did. */
   function drawChosen() {
     const { mask, chosen } = chart.limits;
     const some = chosen < chart.data.count;
@@ -208,7 +208,7 @@ export function parallel(chart) {
     }
   }
 
-  /** Return where a design that is none of the front crosses the axes, just beyond the end of one that does not reach it. @param {Api.Row} cells */
+  /** Return where a design outside the front crosses the axes, just beyond the end of an axis that does not reach it. @param {Api.Row} cells */
   function heightsOf(cells) {
     return Int16Array.from(view.axes, ({ key }, axis) => {
       const words = chart.data.words(key);
@@ -246,7 +246,7 @@ export function parallel(chart) {
     }
   }
 
-  /** Return the pixels [top, bottom] that a limit lets through. @param {number} axis @param {Page.Limit} limit @returns {number[][]} */
+  /** Return the pixels [top, bottom] within a limit. @param {number} axis @param {Page.Limit} limit @returns {number[][]} */
   function spans(axis, limit) {
     const { at, low, high } = view.scales[axis];
     /** @param {number} a @param {number} b @returns {number[]} */
@@ -282,7 +282,7 @@ export function parallel(chart) {
     return true;
   }
 
-  /** Set the limit that a drag to a place is; return whether it is far enough for one. @param {{ x: number, y: number }} here */
+  /** Set the limit by a drag to a place; return whether the drag is long enough. @param {{ x: number, y: number }} here */
   function drag(here) {
     if (!dragged) return false;
     const pending = axisAt(here).y;
@@ -339,7 +339,7 @@ export function parallel(chart) {
     const { axis } = axisAt(at(event));
     if (axis >= 0) chart.limit(view.axes[axis].key, null);
   });
-  let along = 0; // the axis along which keys go from design to design
+  let along = 0; // the axis along which keys move between designs
   byKeys(place, {
     mask: () => chart.limits.mask,
     point: chart.point,
@@ -375,7 +375,7 @@ export function parallel(chart) {
   };
 }
 
-/** Return how much colour one of so many lines has. @param {number} count */
+/** Return the opacity of one of `count` lines. @param {number} count */
 function strength(count) {
   return Math.min(0.6, 40 / Math.max(1, count) + 0.02);
 }

@@ -104,7 +104,7 @@ export function points(series, x, y, label, held = null, handlers = undefined, s
 }
 
 /**
- * Mark the point under the pointer, and tell of it.
+ * Mark and report the point under the pointer.
  * @param {SVGSVGElement} picture @param {{ points: Api.Row[string][][] }[]} series @param {(point: Page.Point) => Page.Point} place
  * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} told
  */
@@ -149,7 +149,7 @@ export function isPoint(point) {
   return point.every(Number.isFinite);
 }
 
-/** Return the sign of a series for a legend. @param {number} index */
+/** Return the legend symbol of a series. @param {number} index */
 export function sign(index) {
   return svg(
     "svg",

@@ -2,7 +2,7 @@
 
 import { isConstant } from "../lib/constant.js";
 
-const WIDE = 1.5; // a range is worth a logarithmic axis from this ratio of its ends on
+const WIDE = 1.5; // least ratio of the ends of a range for a logarithmic axis
 
 /**
  * Return {at(value), value(pixel), ticks, text(tick)} for values from `low` to `high` on pixels from `start` to `end`.
@@ -61,7 +61,7 @@ export function logScale(low, high, start, end, count = 5) {
   };
 }
 
-/** Whether an axis of a range may be logarithmic, and is another one then. @param {Page.Range} options */
+/** Whether a logarithmic axis is possible and useful for a range. @param {Page.Range} options */
 export function mayBeLog({ low, high }) {
   return low > 0 && high >= WIDE * low;
 }

@@ -33,8 +33,8 @@ import { shadesOf } from "./shades.js";
  */
 
 const MARGIN = 0.04; // of a logarithmic axis, beyond the designs
-const NEAR = 10; // pixels within which a design is pointed at
-const FEW = 1500; // designs that are drawn as discs; more as squares of pixels, which take a tenth of the time
+const NEAR = 10; // pixels within which the pointer is on a design
+const FEW = 1500; // designs drawn as discs; more are drawn as squares, in a tenth of the time
 const [BACK, FRONT, OVER] = [0, 1, 2];
 const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
 
@@ -63,12 +63,12 @@ export function scatter(chart) {
   );
   const { place, contexts, top } = stack;
   /** @type {View} */
-  let view; // nothing until it is drawn first
+  let view; // empty until it is first drawn
   /** @type {{ x: number, y: number, right: number, bottom: number } | null} */
   let box = null;
   /** @type {Page.Point[] | null} */
   let line = null; // drawn by hand, in pixels
-  let free = false; // whether a drag draws a line, not a box
+  let free = false; // whether a drag draws a line instead of a box
 
   function lay() {
     const width = Math.max(1, Math.round(place.clientWidth));
@@ -137,7 +137,7 @@ export function scatter(chart) {
     return { ...drawn, column, ticks, better: data.better(key) };
   }
 
-  /** Return the numbers that an axis has to reach. @param {string} key @returns {Iterable<Api.Row[string]>} */
+  /** Return the numbers that an axis must include. @param {string} key @returns {Iterable<Api.Row[string]>} */
   function withOthers(key) {
     const others = [...chart.others(), ...chart.behind()];
     return others.length
@@ -253,7 +253,7 @@ export function scatter(chart) {
     },
   });
 
-  /** Draw a box or a line from where the button went down; return whether it is far enough for one. @param {{ x: number, y: number }} here */
+  /** Draw a box or a line from where the button went down; return whether it is large enough. @param {{ x: number, y: number }} here */
   function drag(here) {
     if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return false;
     if (free) {

@@ -1,4 +1,4 @@
-/** The colours that designs have by one of their columns, the same in every chart of a front. */
+/** Colours of designs by one column, the same in every chart of a front. */
 
 import { palette, ramp } from "./paint.js";
 

@@ -1,4 +1,4 @@
-/** A front so small that only its shape shows. */
+/** Thumbnail of a front. */
 
 import { svg } from "../lib/dom.js";
 import { isPoint } from "./points.js";

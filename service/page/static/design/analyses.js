@@ -1,4 +1,4 @@
-/** Analyses of a design: some one below the other, the others a tab each; all that the service has, with text, tables and figure. */
+/** Analyses of a design: some always visible, the others in tabs, each with text, tables and figure. */
 
 import { whenNear } from "../lib/deferred.js";
 import { fill, h } from "../lib/dom.js";
@@ -7,7 +7,7 @@ import { question } from "./question.js";
 
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowRight: 1 };
-/** Titles of those that are always in sight, by name. @type {Record<string, string>} */
+/** Titles of the analyses that are always visible, by name. @type {Record<string, string>} */
 const TITLES = {
   extremes: "Extreme values over the turn",
   sensitivity: "Sensitivity",
@@ -55,7 +55,7 @@ export function analyses(
   let lengths = null;
   /** @type {ReturnType<typeof question>[]} */
   const begun = []; // of the sections
-  let near = false; // whether the tabs are, or have been, in sight
+  let near = false; // whether the tabs are or have been visible
 
   const buttons = listed.map((one, n) =>
     h(
@@ -72,7 +72,7 @@ export function analyses(
     ),
   );
 
-  /** Mark the chosen tab. The buttons stay what they are: who has the focus on one keeps it. */
+  /** Mark the chosen tab. The buttons are not redrawn, so they keep the focus. */
   function markChosen() {
     buttons.forEach((button, n) => {
       button.setAttribute("aria-selected", String(n === chosen));

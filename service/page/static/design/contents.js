@@ -1,9 +1,9 @@
-/** The table of contents of a long view: it says where the reader is, and goes elsewhere. */
+/** Table of contents of a long view; shows the current part and leads to the others. */
 
 import { h } from "../lib/dom.js";
 
 /**
- * Return a choice of the parts of a view, which follows as the reader scrolls.
+ * Return a select of the parts of a view that follows scrolling.
  * @param {[string, HTMLElement][]} parts their titles, and where they are, from the top @param {AbortSignal} signal
  */
 export function contents(parts, signal) {

@@ -1,4 +1,4 @@
-/** Least and greatest value of every curve of a design, for its charts. */
+/** Minimum and maximum of every curve of a design, for its charts. */
 
 import { valueOf } from "../lib/numbers.js";
 

@@ -15,7 +15,7 @@ export function focusLastStep(place) {
 
 /** @typedef {{ job: string, number: number, named: HTMLElement, undo: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
-/** Return what the reader looks at, whichever design it is. */
+/** Return the part of the view that the reader looks at, for any design. */
 function currentView() {
   const { query } = read();
   return { over: query.get("over"), tab: query.get("tab") };

@@ -1,4 +1,4 @@
-/** Crank angles that put the slider of a design at a position, each with a button that turns the crank there. */
+/** Crank angles that put the slider at a position, each with a button that turns the crank there. */
 
 import { fill, h } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";

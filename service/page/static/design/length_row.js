@@ -27,8 +27,8 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
     { class: "at-limit", role: "status", hidden: true },
     " · outside the job",
   );
-  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or another unit was read
-  let wrong = ""; // why what was typed is no length
+  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or a unit was understood
+  let wrong = ""; // why the typed text is not a length
   const number = numberField({
     id,
     disabled: fixed,
@@ -40,7 +40,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
       understood.textContent = said;
       set(value ?? null);
     },
-    // Put the length that was understood in place of what was typed, and leave in sight how.
+    // Replace the typed text with the length that was understood, and keep the explanation visible.
     onchange: () => {
       const { value, said = "" } = typed();
       if (value === undefined) return;
@@ -64,7 +64,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
     },
   });
 
-  /** Return what the field says, or why it is no length. @returns {{ value?: number, said?: string | null, wrong?: string }} */
+  /** Return the length in the field, or why it is not one. @returns {{ value?: number, said?: string | null, wrong?: string }} */
   function typed() {
     const parsed = parseQuantity(number.value, "mm");
     if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;

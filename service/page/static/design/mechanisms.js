@@ -1,4 +1,4 @@
-/** The mechanisms that move together, and what moves them: play, speed, crank angle, forces. */
+/** Mechanisms that move together, with their controls: play, speed, crank angle, forces. */
 
 import { between, crankAt, placeOf } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";

@@ -89,7 +89,7 @@ function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
 }
 
 /**
- * Return how much a value is from another, as text: "+1.2 %"; empty where that has no meaning.
+ * Return the relative difference of a value from another as text: "+1.2 %"; empty if it has no meaning.
  * @param {Api.Row[string] | undefined} value @param {Api.Row[string] | undefined} from
  */
 export function difference(value, from) {

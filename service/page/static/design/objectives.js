@@ -1,4 +1,4 @@
-/** The objectives of a design at a glance: value, and where it stands in the front. */
+/** Objectives of a design at a glance: value and rank within the front. */
 
 import { fill, h } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
@@ -8,7 +8,7 @@ import { rankInFront } from "./rank.js";
 const KEY = 4; // digits of a key figure; all of them are there when pointed at
 const ALL = 12;
 
-/** Return what is wanted of an objective, in words. @param {Api.Objective} objective */
+/** Return the sense of an objective in words. @param {Api.Objective} objective */
 export function sense({ sense: way, target, unit }) {
   return typeof target !== "number" ? way : `target ${withUnit(target, unit)}`;
 }

@@ -1,9 +1,9 @@
-/** Where the value of an objective stands among those of a front. */
+/** Rank of an objective's value within a front. */
 
 import { isConstant } from "../lib/constant.js";
 
 /**
- * Return a number that is the smaller the better a value of an objective is.
+ * Return a number that is smaller for a better value of an objective.
  * @param {Api.Row[string] | undefined} value @param {Pick<Api.Objective, "sense" | "target">} objective
  */
 export function rankOf(value, { sense, target }) {

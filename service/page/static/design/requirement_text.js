@@ -1,10 +1,10 @@
-/** What a job asks of a design, in words, and how a design misses it. */
+/** Requirements of a job in words, and how a design misses them. */
 
 import { text, withUnit } from "../lib/numbers.js";
 
 /** @typedef {Pick<Api.Requirement, "title" | "unit" | "lower" | "upper">} Asked A requirement, or a range. */
 
-/** Return what a requirement asks, in words. @param {Omit<Asked, "title">} requirement @param {number} digits */
+/** Return a requirement in words. @param {Omit<Asked, "title">} requirement @param {number} digits */
 export function requirementText({ lower, upper, unit }, digits = 5) {
   if (lower !== null && lower === upper) return `exactly ${withUnit(lower, unit, digits)}`;
   if (upper === null) return `at least ${withUnit(lower, unit, digits)}`;

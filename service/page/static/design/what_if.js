@@ -1,4 +1,4 @@
-/** Sliders for other lengths ("What if?"), and where the change leaves the front. */
+/** Sliders for other lengths ("What if?") and the changed design's place relative to the front. */
 
 import { isAbort, post } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
@@ -46,8 +46,8 @@ export function whatIf(
   const { value: linked = [], ...begun } = /** @type {Page.Numbers} */ (start ?? designLengths);
   /** @type {Page.Lengths} */
   const lengths = begun;
-  const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // numbers that vary besides
-  /** Of these those that are others than the design's. @type {Record<string, number>} */
+  const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // extra variables
+  /** Those that differ from the design's. @type {Record<string, number>} */
   let values = Object.fromEntries(
     linked.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]),
   );
@@ -76,8 +76,8 @@ export function whatIf(
   const rule = equal.length
     ? h("label", { class: "holding" }, holding, ` The other lengths follow, to keep ${kept}`)
     : null;
-  let last = "crank"; // the length that was moved last
-  let keepsLengths = start !== null; // the lengths of a link are shown as they are
+  let last = "crank"; // the length moved last
+  let keepsLengths = start !== null; // lengths from a link are shown unchanged
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
   const reset = h(
@@ -105,7 +105,7 @@ export function whatIf(
   let busy = false;
   let again = false;
 
-  /** Return what is wrong with a length that was typed; nothing with "". */
+  /** Return what is wrong with a typed length; "" for nothing. */
   const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
   const moved = () =>
     Object.keys(values).length > 0 ||
@@ -130,7 +130,7 @@ export function whatIf(
     ask();
   }
 
-  /** One question at a time, the latest lengths next: questions that overtake each other would leave the slider without answer. */
+  /** Ask one question at a time, the latest lengths next: overlapping questions would leave the slider without an answer. */
   async function ask() {
     unread = "";
     reset.disabled = !moved() && !wrong();
@@ -179,7 +179,7 @@ export function whatIf(
     }
   }
 
-  /** Say why there is no answer, in its place. @param {string} sentence */
+  /** Show why there is no answer, in its place. @param {string} sentence */
   function refuse(sentence) {
     answer = null;
     changed(null, { impossible: true });
@@ -188,7 +188,7 @@ export function whatIf(
     map.show(base, null);
   }
 
-  /** Let the other lengths stand where they followed to. @param {Api.Row} design */
+  /** Show the lengths that followed. @param {Api.Row} design */
   function adoptLengths(design) {
     const to = lengthsOf(design);
     for (const row of rows) {
@@ -281,7 +281,7 @@ function comparison(objectives, before, after) {
 }
 
 /**
- * Return what is wrong with a changed design, and where it is beside the front.
+ * Return the faults of a changed design and its place relative to the front.
  * @param {Api.WhatIf} answer @param {Pick<Api.Requirements, "ranges" | "requirements">} asked @param {Api.Objective[]} objectives @param {string} job
  */
 function sentences(answer, { ranges, requirements }, objectives, job) {
@@ -328,7 +328,7 @@ function sentences(answer, { ranges, requirements }, objectives, job) {
   ];
 }
 
-/** Return what a design misses, in a sentence. @param {string} column @param {Api.Row} design @param {Api.Requirement[]} requirements */
+/** Return a sentence on a missed requirement. @param {string} column @param {Api.Row} design @param {Api.Requirement[]} requirements */
 function missed(column, design, requirements) {
   if (column === "slow_stroke")
     return design.slow_stroke === "equal"

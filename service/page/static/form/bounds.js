@@ -16,7 +16,7 @@ const MODES = [
 ];
 /** @type {Record<string, string[]>} */
 const KEYS = { any: [], equals: ["equals"], min: ["min"], max: ["max"], between: ["min", "max"] };
-/** What is asked of a bound, in words. @type {Record<string, string>} */
+/** Kinds of bounds in words. @type {Record<string, string>} */
 const SAID = { equals: "exactly", min: "at least", max: "at most" };
 
 /**
@@ -87,7 +87,7 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
     (both && names.length ? KEYS.between : names).forEach((key, place) => {
       const n = Math.min(place, inputs.length - 1);
       const typed = both ? (kind ? both[place] : Number(both[place])) : n >= 0 && read(n).value;
-      values[key] = typed === false ? "" : (typed ?? ""); // the service says that it is missing
+      values[key] = typed === false ? "" : (typed ?? ""); // the service reports it as missing
     });
     form.put(spot.path, names.length ? values : undefined);
   };
@@ -104,7 +104,7 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
   return { mode, keys, inputs, controls };
 }
 
-/** Return which kind of requirement is given. @param {unknown} requirement */
+/** Return the kind of a requirement. @param {unknown} requirement */
 function modeOf(requirement) {
   if (!isTable(requirement)) return "any";
   if (requirement.equals !== undefined) return "equals";

@@ -1,4 +1,4 @@
-/** Choices between options, such as gearmotors of a catalogue: a table to paste, a row an option. */
+/** Choices between options, such as gearmotors from a catalogue: a pasted table with one option per row. */
 
 import { h } from "../lib/dom.js";
 import { plain } from "./controls.js";
@@ -10,7 +10,7 @@ const EXAMPLE = "name,peak_torque max (N m),price (EUR),maker\nGM 40,40,310,A\nG
 const WHY =
   "One row per option. The first line names the columns: name, then limits such as “peak_torque max (N m)”, numbers of the job such as “mechanism.slider.mass (kg)”, and values to store with each design, such as “price (EUR)” or a maker. Stored numbers may be objectives or requirements. An empty cell sets no limit. Columns that begin with # are skipped.";
 
-/** Return the fields of the choices, and a button for another one. @param {Form.Whole} form */
+/** Return the fields of the choices and a button that adds one. @param {Form.Whole} form */
 export function choices(form) {
   const jobValue = form.at(["choice"]);
   const all = Array.isArray(jobValue) ? jobValue : [];
@@ -29,7 +29,7 @@ export function choices(form) {
   return [all.map((one, place) => row(form, one, place, all)), h("p", { class: "wide" }, add)];
 }
 
-/** Return what there is to choose from, in a line. @param {Form.Whole} form */
+/** Return the choices in one line. @param {Form.Whole} form */
 export function choicesGiven(form) {
   const jobValue = form.at(["choice"]);
   return (Array.isArray(jobValue) ? jobValue : [])
@@ -95,7 +95,7 @@ function row(form, one, place, all) {
     WHY,
     { wide: true },
   );
-  const begun = text.value; // as browsers have its ends of lines
+  const begun = text.value; // with the line ends of browsers
   const drop = h(
     "button",
     {

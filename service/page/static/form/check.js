@@ -1,4 +1,4 @@
-/** Live checks: what the service says of the job while it is typed, a moment after the last change; only the latest answer counts. */
+/** Live checks of the job by the service shortly after each change; only the latest answer counts. */
 
 import { isAbort, post, statusOf } from "../lib/api.js";
 
@@ -35,7 +35,7 @@ export function checker(report, signal) {
   });
   return (/** @type {Asked} */ { job, submission }, { now = false } = {}) => {
     clearTimeout(timer);
-    running?.abort(); // what it says is of another job by now
+    running?.abort(); // its answer is outdated
     timer = setTimeout(() => ask(structuredClone({ job, submission })), now ? 0 : WAIT);
   };
 }

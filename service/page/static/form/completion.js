@@ -4,7 +4,7 @@ import { fill, h } from "../lib/dom.js";
 
 const MOST = 12; // names in sight
 const WORD = /[A-Za-z_][\w.]*$/;
-const AFTER_NUMBER = /[\d.]\s*$/; // what stands there is a unit
+const AFTER_NUMBER = /[\d.]\s*$/; // a unit stands there
 
 /**
  * Return an input with the names that it may have below it, as {word, names}. number: it is one for numbers, in which formulas are rare.

@@ -11,7 +11,7 @@ import { convert, split, unitsOf, usual } from "../lib/units.js";
 const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list };
 
 /**
- * Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can say.
+ * Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can state.
  * @param {Form.Whole} form @param {Form.Path} path @param {Partial<Form.Looks>} options @returns {HTMLElement | null}
  */
 export function byschema(form, path, options = {}) {
@@ -74,7 +74,7 @@ export function entries(ones, { label, kind, percent = false, range = false, uni
   return { inputs, units, controls: units ? [...inputs, units] : inputs, read };
 }
 
-/** Return a field of one of several words. Left out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
+/** Return a field for one of several words; leaving it out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function choice(
   form,
   path,
@@ -172,7 +172,7 @@ function list(form, path, { label, why, example }) {
 }
 
 /**
- * Return an input for a number as text, so that what is mistyped can be said.
+ * Return an input for a number as text, so that mistakes can be explained.
  * @param {string} id @param {string} value @param {string | null} label
  */
 export function numberInput(id, value, label = null) {
@@ -207,7 +207,7 @@ export function unitSelect(label, kind, unit, percent = false, id = null) {
 }
 
 /**
- * Have inputs show the same values in the unit that was chosen.
+ * Show the values of inputs in the chosen unit.
  * @param {HTMLSelectElement} select @param {HTMLInputElement[]} inputs @param {string | null | undefined} kind
  */
 export function changeUnit(select, inputs, kind) {

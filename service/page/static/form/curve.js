@@ -176,7 +176,7 @@ function scalesOf(points, marks) {
   };
 }
 
-/** Return a value to a digit that one can still see. @param {number} value @param {Page.Range} axis */
+/** Return a value rounded to a visible digit. @param {number} value @param {Page.Range} axis */
 function rounded(value, { low, high }) {
   const step = 10 ** Math.floor(Math.log10((high - low) / FINE) + 1e-9);
   return Number((Math.round(value / step) * step).toPrecision(12));

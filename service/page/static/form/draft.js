@@ -18,7 +18,7 @@ export function keepDraft(draft) {
     if (draft === null) sessionStorage.removeItem(KEY);
     else sessionStorage.setItem(KEY, JSON.stringify(draft));
   } catch {
-    // A browser that keeps nothing: the form works until it is left.
+    // The browser stores nothing: the form works until it is closed.
   }
 }
 

@@ -1,4 +1,4 @@
-/** A field of the form: label, control, explanation and what is wrong with it, tied together for everybody. */
+/** A field of the form: label, control, explanation and mistakes, linked for assistive technology. */
 
 import { byId, focused, h } from "../lib/dom.js";
 import { idOf, written } from "./path.js";
@@ -61,7 +61,7 @@ export function field(
 }
 
 /**
- * Put a field that is made anew in the place of one; what has the focus in it keeps it.
+ * Replace a field with a new version; the focus within it is kept.
  * @param {Form.Whole} form @param {HTMLElement} node @param {() => HTMLElement} make
  */
 export function replace(form, node, make) {
@@ -112,7 +112,7 @@ export function explanation(id, label, why) {
 }
 
 /**
- * Show on fields what is wrong; return the sentences that belong to no field. What nobody has typed into yet is asked for, not blamed,
+ * Show on fields what is wrong; return the sentences that belong to no field. Empty untouched fields are not marked as mistakes,
  * unless what is missing counts: once the search is to be started.
  * @param {Form.Field[]} fields @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} options
  */

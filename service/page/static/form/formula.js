@@ -1,4 +1,4 @@
-/** Formulas of a job: of a requirement, of an objective, or with a name of their own. */
+/** Formulas in a job: as requirements, as objectives, or with names. */
 
 import { byId, fill, focused, h } from "../lib/dom.js";
 import { bounds } from "./bounds.js";
@@ -107,14 +107,14 @@ function row(form, table, key, place, asked, what) {
         spot.path = [table, typed];
         return;
       }
-      form.put(spot.path, form.at(spot.path)); // so that it is looked at again
+      form.put(spot.path, form.at(spot.path)); // so that it is checked again
     },
   });
   const below = h("div", { class: "field-controls asked" });
   let kind = kindAt(form, spot.path);
   /** @type {Set<string>} */
   const early = new Set(); // bounds that were typed before the kind of the formula was known
-  /** Give a number that was typed without one the unit that its field begins with. @param {string} key @param {string} now */
+  /** Give a number typed without a unit the default unit of its field. @param {string} key @param {string} now */
   const withUnit = (key, now) => {
     const bound = form.at([...spot.path, key]);
     if (typeof bound === "number") form.put([...spot.path, key], join(String(bound), usual(now)));
@@ -329,7 +329,7 @@ function named(form, name, place) {
   );
 }
 
-/** Give a formula another name, wherever the job has it. @param {Form.Whole} form @param {string} before @param {string} after */
+/** Rename a formula wherever the job uses it. @param {Form.Whole} form @param {string} before @param {string} after */
 function callIt(form, before, after) {
   const word = new RegExp(`(?<![\\w.])${before}(?![\\w.(])`, "g");
   /** @param {unknown} part @returns {unknown} */

@@ -1,4 +1,4 @@
-/** Mass of a link: nothing, by its mass, or by its section. */
+/** Mass of a link: none, as a mass, or by its section. */
 
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";

@@ -1,4 +1,4 @@
-/** The loads on the slider: each of one of the kinds that the schema tells of, told apart by a key. */
+/** Loads on the slider, each of a kind from the schema, identified by a key. */
 
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
@@ -90,7 +90,7 @@ function one(form, load, place, all) {
     .filter((key) => key !== "source")
     .filter((key) => !table || !columns.some((one) => one.key === key));
   const chosen = field(form, path, "kind of load", [select], "", { tell: () => say() });
-  /** Say below the kind what the service understood of the load. */
+  /** Show below the kind how the service understood the load. */
   function say() {
     const loads = form.said?.understood?.loads ?? [];
     const line = chosen.querySelector(".understood");

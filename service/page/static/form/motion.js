@@ -1,4 +1,4 @@
-/** How the crank moves: it rotates fully, or swings between two angles; and what belongs to either. */
+/** Motion of the crank: full rotation, or a swing between two angles, with the fields of each. */
 
 import { h } from "../lib/dom.js";
 import { say } from "../lib/notices.js";
@@ -10,7 +10,7 @@ import { speed } from "./speed.js";
 /** @import { Column } from "./points.js" */
 
 const PATH = ["motion"];
-/** What states the ends of a swing: the keys of it, and what a new one begins with. @type {Record<string, Record<string, string>>} */
+/** Ways to state the ends of a swing: keys, and initial values. @type {Record<string, Record<string, string>>} */
 const ENDS = {
   "two crank angles": { from: "0 deg", to: "60 deg" },
   "crank angle and swing": { from: "0 deg", swing: "60 deg" },
@@ -149,7 +149,7 @@ export function motion(form, turning) {
   ];
 }
 
-/** Let the crank swing, or turn through; what cannot be asked of that is taken out, and said. @param {Form.Whole} form @param {unknown} kind */
+/** Let the crank swing or rotate fully; remove what does not apply, and say so. @param {Form.Whole} form @param {unknown} kind */
 function change(form, kind) {
   form.put(PATH, kind === undefined ? undefined : structuredClone(FIRST));
   /** @type {string[]} */

@@ -53,7 +53,7 @@ export function objective(form, quantity) {
 }
 
 /**
- * Return the controls of what is wanted of an objective: its direction, or a value to come near to. again: draws them anew.
+ * Return the controls of an objective's sense: a direction or a target. again: redraws them.
  * @param {Form.Whole} form @param {Form.Spot} spot @param {{ title: string, kind: string | null, again: () => void }} of
  */
 export function objectiveField(form, spot, { title, kind, again }) {

@@ -1,4 +1,4 @@
-/** Places in a job: lists of keys, such as ["load", 0, "force"], and what stands there. */
+/** Paths in a job: lists of keys, such as ["load", 0, "force"], and the values there. */
 
 import { isRange } from "../lib/number_text.js";
 
@@ -63,7 +63,7 @@ function quoted(key) {
 }
 
 /**
- * Return a table with one of its keys called otherwise, in its place.
+ * Return a table with one key renamed in place.
  * @param {Record<string, unknown>} table @param {string} before @param {string} after
  */
 export function renamed(table, before, after) {

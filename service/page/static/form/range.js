@@ -176,7 +176,7 @@ function seriesSelect(form, label, id, chosen) {
   );
 }
 
-/** Return the step to begin with, a power of ten that divides the range well. @param {HTMLInputElement[]} inputs @param {string} unit */
+/** Return an initial step, a power of ten that divides the range well. @param {HTMLInputElement[]} inputs @param {string} unit */
 function firstStep(inputs, unit) {
   const span = Math.abs(Number(inputs[1]?.value) - Number(inputs[0].value));
   const step =

@@ -1,4 +1,4 @@
-/** The schema of jobs: what belongs at each place, as a form needs to know it. */
+/** The schema of jobs, as the form needs it. */
 
 import { kindOf } from "../lib/units.js";
 

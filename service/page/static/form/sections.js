@@ -187,7 +187,7 @@ function turning(form, place, part) {
   return swings(form) && form.at(place.split(".")) === undefined ? null : part();
 }
 
-/** Return what the job has at some places, in a line; "" for nothing. @param {Form.Whole} form @param {...string} places */
+/** Return the job's values at some paths in one line; "" for none. @param {Form.Whole} form @param {...string} places */
 function has(form, ...places) {
   /** @param {unknown} part @param {string} key @returns {string[]} */
   const entriesOf = (part, key) => {
@@ -323,7 +323,7 @@ function wishes(form) {
 function tolerances(form) {
   /** @param {string} key */
   const dimension = (key) =>
-    byschema(form, ["tolerances", key], { label: `of the ${key.replace("_", " ")}` });
+    byschema(form, ["tolerances", key], { label: `${key.replace("_", " ")} tolerance` });
   return [
     h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
     more(
@@ -366,7 +366,7 @@ function robust(form) {
   return [select, on ? byschema(form, ["robust"], { label: "robust" }) : null];
 }
 
-/** Return which parts of the job have no fields. @param {Form.Whole} form */
+/** Return the parts of the job without fields. @param {Form.Whole} form */
 function kept(form) {
   const parts = Object.keys(form.job).filter((key) => !FORM_TABLES.has(key));
   const functions = Object.entries(form.at(["quantity"]) ?? {})

@@ -30,7 +30,7 @@ export function sketch(signal) {
   let hasLinkage = false;
   /** @type {[number, number] | null} */
   let ends = null; // of a swing, deg
-  let share = 0; // of its ways forth and back
+  let share = 0; // of its way back and forth
   const label = () => (button.textContent = moving ? "Pause" : "Move");
   label();
   /** @param {number} now */

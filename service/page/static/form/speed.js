@@ -24,7 +24,7 @@ const WHY = {
   strokes_per_minute: "The number of crank turns per minute. A speed profile is scaled to it.",
 };
 
-/** Return the fields of a speed that goes up and down over the turn: harmonics, or points. @param {Form.Whole} form */
+/** Return the fields of a speed profile: harmonics or points. @param {Form.Whole} form */
 export function speedProfile(form) {
   const path = ["mechanism", "speed_profile"];
   const table = points(
@@ -83,7 +83,7 @@ export function speed(form) {
   function write() {
     const typed = input.value.trim();
     if (/^[-−]/.test(typed)) {
-      way.value = "-"; // as typed, so that nothing is turned round twice
+      way.value = "-"; // as typed, so that no sign is reversed twice
       input.value = typed.slice(1);
     }
     const value = speedEntry.read(0).value;

@@ -1,4 +1,4 @@
-/** Material, pins and sizes of crank and rod as bars, for stress and safety; what of these is held and what varies. */
+/** Material, pins and bar sizes of crank and rod, for stress and safety; which are fixed and which vary. */
 
 import { h } from "../lib/dom.js";
 import { convert, join, split } from "../lib/units.js";
@@ -128,7 +128,7 @@ function inMetres({ number, unit }) {
   return Number(convert(number, unit, "m", "length"));
 }
 
-/** Return what is given of material and pins, in a line. @param {Form.Whole} form */
+/** Return the material and pins in one line. @param {Form.Whole} form */
 export function strengthGiven(form) {
   const pins = Object.values(form.at([...PATH, "pins"]) ?? {}).map(String);
   const yields = form.at([...PATH, "material", "yield_strength"]);

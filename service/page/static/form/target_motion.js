@@ -1,4 +1,4 @@
-/** A wanted motion of the slider: points over the crank angle, pasted or drawn, and what may be shifted. */
+/** Desired slider motion: points over the crank angle, pasted or drawn, and permitted shifts. */
 
 import { between } from "../charts/cycle.js";
 import { h } from "../lib/dom.js";

@@ -1,4 +1,4 @@
-/** Fields of numbers: what was typed is read, said beside the field, and put in order when the field is left. */
+/** Number fields: typed text is parsed, explained beside the field, and tidied when the field loses focus. */
 
 import { parseNumber } from "../lib/number_text.js";
 import { join, measureOf } from "../lib/units.js";

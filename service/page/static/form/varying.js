@@ -1,15 +1,15 @@
-/** Further numbers that vary: which of the numbers of the job do, and the values that each may take. */
+/** Extra variables: which numbers of the job vary, and their permitted values. */
 
 import { h } from "../lib/dom.js";
 import { at, idOf, isTable } from "./path.js";
 import { range } from "./range.js";
 import { describe, words } from "./schema.js";
 
-/** Numbers that have their values beside them. */
+/** Numbers whose permitted values stand beside them. */
 const SECTION_SIZE = /^(sections\.pins\.\w+|mechanism\.(crank|rod)\.(width|depth))$/;
 const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table that says values
 
-/** Return the fields of the numbers that vary besides the dimensions, and a choice of another one. @param {Form.Whole} form */
+/** Return the fields of the extra variables and a select to add one. @param {Form.Whole} form */
 export function varying(form) {
   const taken = new Set(leaves(form).map(({ name }) => name));
   const all = leaves(form).filter(({ name }) => !hasSizeField(form, name));
@@ -61,7 +61,7 @@ function hasSizeField(form, name) {
   );
 }
 
-/** Return the names of the numbers that vary besides the dimensions, in words. @param {Form.Whole} form */
+/** Return the names of the extra variables in words. @param {Form.Whole} form */
 export function varyingNames(form) {
   return leaves(form).map(({ name }) => titleOf(name));
 }
@@ -73,7 +73,7 @@ function roots(form) {
     .map(([key]) => key);
 }
 
-/** Return where numbers vary: path in the job, and the name of the number. @param {Form.Whole} form */
+/** Return the extra variables: path in the job and name. @param {Form.Whole} form */
 function leaves(form) {
   const tables = roots(form);
   /** @type {{ path: Form.Path, name: string }[]} */

@@ -1,4 +1,4 @@
-/** Above every axis its name, with a menu: its limits as fields, and its place among the others. */
+/** Heads of the axes: name, and a menu with limits as fields and the position among the axes. */
 
 import { fill, first, focused, h, markInvalid, numberField } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
@@ -200,7 +200,7 @@ export function axisFields(explorer) {
 }
 
 /**
- * Return the number of a field in the unit of the API, null for an empty one, undefined (and marked) for what is none.
+ * Return the number in a field in the unit of the API; null for an empty field; undefined, with the field marked, for other text.
  * @param {HTMLInputElement} node @param {string} unit @returns {number | null | undefined}
  */
 function number(node, unit) {

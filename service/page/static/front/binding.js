@@ -1,4 +1,4 @@
-/** Limits of the job on which designs of the front rest; a wider one runs again, by one click. */
+/** Active constraints of the job; one click widens a limit and runs again. */
 
 import { get, post } from "../lib/api.js";
 import { go } from "../lib/address.js";
@@ -13,7 +13,7 @@ import { capital } from "../lib/words.js";
 
 const FEW = 4; // limits that are shown at once
 const WORDS = { lower: "at least", upper: "at most" };
-const REST = 1e-6; // of a limit: designs rest on it
+const REST = 1e-6; // of a limit: it is active
 
 /** Return the panel of the limits of an explorer. @param {Explorer} explorer */
 export function bindingPanel(explorer) {

@@ -1,4 +1,4 @@
-/** The kept designs of a run beside its front: names, notes, stars, the decision and its reason, for all who see the run. */
+/** Kept designs of a run: names, notes, stars, the decision and its reason, shared by everyone with access. */
 
 import { link } from "../lib/address.js";
 import { address, get, patch, post, remove } from "../lib/api.js";
@@ -13,7 +13,7 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const EVERY = 5_000; // ms between two looks at what others keep
+const EVERY = 5_000; // ms between polls for others' changes
 
 /** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer, at whose head the decision is. @param {Explorer} explorer */
 export function bookmarksPanel(explorer) {
@@ -65,7 +65,7 @@ export function bookmarksPanel(explorer) {
       loaded = true;
       designs = answer.designs;
       drawTable();
-      if (before || marks().length) explorer.update("all"); // else what is typed at the axes stays
+      if (before || marks().length) explorer.update("all"); // otherwise text typed at the axes stays
     }, refuse);
   }
 
@@ -81,7 +81,7 @@ export function bookmarksPanel(explorer) {
     await ask();
   }
 
-  /** What was typed goes to the service; nothing, where it was typed back. @param {number} [number] @param {Partial<Api.Kept>} [changes] */
+  /** Send what was typed; nothing if it is unchanged. @param {number} [number] @param {Partial<Api.Kept>} [changes] */
   function sent(number, changes) {
     typing = false;
     if (number !== undefined && changes) change(number, changes);
@@ -109,7 +109,7 @@ export function bookmarksPanel(explorer) {
       : null;
   }
 
-  /** Say at the head of the run which design is decided for, with its report. @param {Api.Kept | undefined} one */
+  /** Show the decision at the head of the run, with its report. @param {Api.Kept | undefined} one */
   function showDecision(one) {
     const href = one && hrefOf(one);
     fill(
@@ -279,7 +279,7 @@ export function bookmarksPanel(explorer) {
     add.disabled = !ticked;
   }
 
-  /** Return those that are none of the front, for the charts. */
+  /** Return the kept designs outside the front, for the charts. */
   const marks = () =>
     designs
       .filter(({ changed, star }) => changed && (star || !only.checked))

@@ -31,7 +31,7 @@ export function marksOf(explorer, kind) {
   return marks;
 }
 
-/** Return the designs that are marked though they are none of the front, each with its name. @param {Explorer} explorer */
+/** Return the marked designs outside the front, each with its name. @param {Explorer} explorer */
 export function othersOf({ wishing, kept }) {
   const wished = wishing?.cells();
   return [...(kept?.marks() ?? []), ...(wished ? [{ cells: wished, name: "wished" }] : [])];

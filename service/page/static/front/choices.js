@@ -13,7 +13,7 @@ import { wishesFrom, wishQuery } from "./wishes.js";
 const MOST = 3; // designs side by side
 
 /**
- * Return what an address says, completed: axes, limits, log, x, y, colour, columns, sort, page, selected, weights, wish.
+ * Return the choices in an address, completed: axes, limits, log, x, y, colour, columns, sort, page, selected, weights, wish.
  * @param {URLSearchParams} query @param {Api.Front} front
  */
 export function choicesFrom(query, front) {

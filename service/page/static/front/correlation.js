@@ -1,4 +1,4 @@
-/** How two quantities of designs go together: their rank correlation, in words and for every pair of objectives. */
+/** Rank correlation of two quantities, in words and for every pair of objectives. */
 
 import { fill, h } from "../lib/dom.js";
 import { capital } from "../lib/words.js";

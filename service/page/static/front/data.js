@@ -45,17 +45,17 @@ export class FrontData {
     this.take(values);
   }
 
-  /** Take in columns as the service gives them: {key: cells}. @param {Record<string, Api.Row[string][]>} values */
+  /** Add columns from the service: {key: cells}. @param {Record<string, Api.Row[string][]>} values */
   take(values) {
     for (const [key, cells] of Object.entries(values)) this.kept.set(key, stored(cells));
   }
 
-  /** Whether a column is here. @param {string} key */
+  /** Whether a column is loaded. @param {string} key */
   has(key) {
     return this.kept.has(key);
   }
 
-  /** Return a column that is here. @param {string} key */
+  /** Return a loaded column. @param {string} key */
   of(key) {
     return /** @type {Kept} */ (this.kept.get(key));
   }
@@ -88,7 +88,7 @@ export class FrontData {
     return this.objectives.find(({ column }) => column === key)?.sense ?? "minimise";
   }
 
-  /** Return in words which way is better of a column; empty where no objective says so. @param {string} key */
+  /** Return the better direction of a column in words; empty without an objective. @param {string} key */
   better(key) {
     const objective = this.objectives.find(({ column }) => column === key);
     if (!objective) return "";

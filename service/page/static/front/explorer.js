@@ -51,7 +51,7 @@ export async function explore(place, { job, front, values, query, files, decisio
   if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, decision, signal });
 }
 
-/** Choices in a front, and the parts that show it; they tell it what the reader does. */
+/** State of the explorer and its parts, which report the reader's actions to it. */
 export class Explorer {
   /** @type {number | null} */
   pointed = null;
@@ -70,7 +70,7 @@ export class Explorer {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   tabling;
   /** @type {Awaited<ReturnType<typeof previousFront>>} */
-  before = null; // the run that this one is a changed copy of
+  before = null; // the run that this one was copied from
   count = h("p", { class: "count", role: "status" });
   /** @param {HTMLElement} place @param {{ job: Api.Job, data: FrontData, chosen: Chosen, limits: Limits, files: HTMLElement, decision: HTMLElement, signal: AbortSignal }} options */
   constructor(place, { job, data, chosen, limits, files, decision, signal }) {
@@ -233,7 +233,7 @@ export class Explorer {
     });
   }
 
-  /** Set a limit, null to let go. @param {string} key @param {Page.Limit | null} limit */
+  /** Set a limit; null removes it. @param {string} key @param {Page.Limit | null} limit */
   limit(key, limit) {
     this.limits.set(key, limit);
     this.chosen.page = 1;
@@ -241,7 +241,7 @@ export class Explorer {
     else this.change({}, "chosen");
   }
 
-  /** Keep what is within a line [[x, y], ...] drawn around designs of the scatter, null to let go. @param {Page.Point[] | null} line */
+  /** Keep the designs within a line [[x, y], ...] in the scatter plot; null removes it. @param {Page.Point[] | null} line */
   surround(line) {
     this.limits.lasso = line && { x: this.chosen.x, y: this.chosen.y, line };
     this.chosen.page = 1;

@@ -20,7 +20,7 @@ export class Limits {
     this.mask = new Uint8Array(data.count);
   }
 
-  /** Set the limit of a column, or take it away with null. @param {string} key @param {Page.Limit | null} limit */
+  /** Set the limit of a column; null removes it. @param {string} key @param {Page.Limit | null} limit */
   set(key, limit) {
     const open =
       !limit ||
@@ -58,12 +58,12 @@ export class Limits {
     this.chosen = chosen;
   }
 
-  /** Whether there is none. */
+  /** Whether there are no limits. */
   get open() {
     return !this.of.size && !this.lasso;
   }
 
-  /** Let all of them go. */
+  /** Remove all limits. */
   clear() {
     this.of.clear();
     this.lasso = null;

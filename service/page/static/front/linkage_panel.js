@@ -11,7 +11,7 @@ import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const START = 60; // deg: here all links are apart
+const START = 60; // deg: no links overlap here
 const SOON = 120; // ms that a design is pointed at, until its swing is asked for
 const TIMES = 72; // of a swing forth and back
 const ENDS = /** @type {Page.Point} */ ([0, 180]); // places in the swing

@@ -9,7 +9,7 @@ export function storeOrder(job, numbers) {
     if (numbers === null) sessionStorage.removeItem(key(job));
     else sessionStorage.setItem(key(job), JSON.stringify(numbers));
   } catch {
-    // A browser that keeps nothing, or not so many: they are walked through by number.
+    // The browser stores nothing, or not that much: designs are listed by number.
   }
 }
 

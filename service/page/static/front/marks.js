@@ -84,7 +84,7 @@ export function marksPanel(explorer) {
         explorer.picked = null;
         explorer.update("marks");
       }
-      picked.textContent = weights ? "Give one of them a weight." : "";
+      picked.textContent = weights ? "Set at least one weight." : "";
       return;
     }
     const topsis = data.objectives

@@ -1,4 +1,4 @@
-/** The front of the run that this one is a changed copy of: it stays behind the new one. */
+/** Front of the run that this one was copied from, drawn behind the new one. */
 
 import { get, isAbort } from "../lib/api.js";
 import { FrontData } from "./data.js";

@@ -217,7 +217,7 @@ export function designTable(explorer) {
 }
 
 /**
- * Return a value with as many places as all of its column have, so that the points are in line; others as they are.
+ * Return a value with as many decimals as its column, so that decimal points align; other values unchanged.
  * @param {Api.Row[string]} value @param {string} unit @param {Page.Range} range
  */
 function aligned(value, unit, { low, high }) {

@@ -83,7 +83,7 @@ export function wishingPanel(explorer) {
   let way = ""; // the link of the design
   let turn = 0; // of the latest question
   /** @type {Wishes[]} */
-  let earlierWishes = []; // of the run, by anybody
+  let earlierWishes = []; // of the run, by anyone
 
   /** @param {Api.Objective} objective */
   function row({ quantity, title, unit }) {
@@ -194,7 +194,7 @@ export function wishingPanel(explorer) {
     else take(wishes);
   }
 
-  /** Take over wishes, null to have none, and ask for the design. @param {Wishes | null} wishes */
+  /** Adopt wishes, null for none, and ask for the design. @param {Wishes | null} wishes */
   function take(wishes) {
     explorer.change(
       { wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } },
@@ -370,7 +370,7 @@ export function wishingPanel(explorer) {
     );
   }
 
-  /** Ask for the wishes that anybody made of the run. */
+  /** Ask for everyone's wishes on the run. */
   async function askBefore() {
     await attempt(async () => {
       earlierWishes = (await get(`jobs/${job.id}/wishes`, {}, explorer.signal)).made.map(wishesOf);
@@ -378,7 +378,7 @@ export function wishingPanel(explorer) {
     });
   }
 
-  /** Offer the wishes that were made before. */
+  /** Offer earlier wishes. */
   function drawBefore() {
     const open = first(before, "details")?.hasAttribute("open");
     const items = earlierWishes.map((wishes) =>

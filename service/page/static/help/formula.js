@@ -1,4 +1,4 @@
-/** Formulas as people set them: from the plain text of the help, such as "cos(mu_min) = (r + |e|) / l", to MathML. */
+/** Typeset formulas: from the plain text of the help, such as "cos(mu_min) = (r + |e|) / l", to MathML. */
 
 import { h, mathml } from "../lib/dom.js";
 

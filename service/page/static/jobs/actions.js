@@ -1,4 +1,4 @@
-/** Actions on a job: finish, resume, clone; and behind a button of its own, delete. */
+/** Actions on a job: finish, resume, clone and, in a menu, delete. */
 
 import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
@@ -117,7 +117,7 @@ export function actions(job, changed, { primary = false } = {}) {
 }
 
 /**
- * Ask whether something is meant; the promise gives the answer.
+ * Ask for confirmation; the promise gives the answer.
  * @param {string} question @param {string} consequence @param {string} yes @returns {Promise<boolean>}
  */
 function confirmed(question, consequence, yes) {

@@ -6,8 +6,8 @@ import { h } from "../lib/dom.js";
 import { drawing } from "../mechanism/drawing.js";
 import { motionOf } from "../mechanism/motion.js";
 
-const TURN = 5000; // ms of a turn, of all alike: speeds of machines cannot be looked at
-const START = 50; // deg: here all links are apart
+const TURN = 5000; // ms per turn, the same for all: real speeds are too fast to watch
+const START = 50; // deg: no links overlap here
 
 /** Return {node, begin()} of the shipped machines; begin: ask for them, once they are to be seen. @param {AbortSignal} signal */
 export function gallery(signal) {

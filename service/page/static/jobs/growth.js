@@ -1,4 +1,4 @@
-/** How much a search still gains: what its last rounds added to the hypervolume of the front. */
+/** Recent gain of a search: hypervolume added by its last rounds. */
 
 const ROUNDS = 10;
 

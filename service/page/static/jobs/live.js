@@ -1,4 +1,4 @@
-/** A run while it goes on: where it stands, how it grows, what was said. */
+/** A run in progress: its progress, its growing front and its log. */
 
 import { history } from "../charts/history.js";
 import { points } from "../charts/points.js";
@@ -14,12 +14,12 @@ import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
 import { clock, duration } from "./times.js";
 
-const OFTEN = 700; // ms between two looks at the job for its front
+const OFTEN = 700; // ms between requests for the front
 const AGAIN = 2000; // ms until the next try where the service does not answer
 const PAST = 1000; // events before now that are shown
 const LOG = 200; // lines
-const LONG = 10_000; // ms without a word in the first rounds, after which it is said why
-const STALE = 3; // rounds of the usual length without a word, after which nothing is known of the time that is left
+const LONG = 10_000; // ms of silence in the first rounds before the reason is shown
+const STALE = 3; // rounds of silence after which the remaining time is unknown
 const AT_LEAST = 5000; // ms that this takes at least
 
 /**
@@ -131,11 +131,11 @@ export function watch(place, job, { signal, changed }) {
     while (log.children.length > LOG) log.lastElementChild?.remove();
   }
 
-  /** Take in the end of a round; a search that began anew takes the place of the one before. @param {Api.Progress} data */
+  /** Add the end of a round; a restarted search replaces the one before. @param {Api.Progress} data */
   function grow(data) {
     while (rounds.length && rounds[rounds.length - 1].round >= data.round) rounds.pop();
     rounds.push(data);
-    // Once for all events that are told again together.
+    // Once for all events that are replayed together.
     drawing ??= requestAnimationFrame(() => {
       drawing = null;
       fill(

@@ -1,10 +1,10 @@
-/** Outcome of a run that gave no whole front, with the remedy. */
+/** Outcome of a run without a complete front, with the remedy. */
 
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 import { capital, inWords } from "../lib/words.js";
 
-/** Return what to say of a job that has ended otherwise than done; null of one that is done. @param {Api.Job} job */
+/** Return the message for a job that ended without success; null for one that is done. @param {Api.Job} job */
 export function outcome(job) {
   const again = h(
     "a",

@@ -36,7 +36,7 @@ export function stages() {
 }
 
 /**
- * Return the stages after an event: the last one goes on, or another one begins; a search that begins anew has its own.
+ * Return the stages after an event: the last one continues or another one begins; a restarted search has its own.
  * @param {readonly Stage[]} before @param {Api.Progress} data @param {number} seconds of the event before @returns {Stage[]}
  */
 export function taken(before, data, seconds) {

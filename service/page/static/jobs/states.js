@@ -1,4 +1,4 @@
-/** The states of a job in words, with a sign and a colour. */
+/** States of a job in words, with a symbol and a colour. */
 
 import { h } from "../lib/dom.js";
 
@@ -19,12 +19,12 @@ export const STATES = ["queued", "running", "done", "infeasible", "cancelled", "
 /** @type {string[]} */
 export const ENDED = ["done", "infeasible", "cancelled", "failed"];
 
-/** Return what a state is called. @param {string} state */
+/** Return the word for a state. @param {string} state */
 export function stateWord(state) {
   return WORDS[state] ?? state;
 }
 
-/** Return a badge that says in which state a job is. @param {Api.JobRow} job */
+/** Return a badge with the state of a job. @param {Api.JobRow} job */
 export function badge(job) {
   const state = job.state === "running" && job.cancel_asked ? "stopping" : job.state;
   return h(

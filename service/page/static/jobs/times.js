@@ -3,7 +3,7 @@
 import { h } from "../lib/dom.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-const LEAST = 0.1; // s, of a duration that is told
+const LEAST = 0.1; // s, of a duration that is shown
 const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
 /** Return when a job ended, or since when it runs or waits, in words: exact when pointed at. @param {Api.JobRow} job */
@@ -21,7 +21,7 @@ export function ago(seconds) {
   const date = new Date(1000 * seconds);
   /** @param {{ currentTarget: HTMLElement }} event */
   const exact = (event) => {
-    // Only then: a browser takes 50 ms to make itself ready to write dates.
+    // Only when needed: browsers take 50 ms to prepare date formatting.
     event.currentTarget.title = date.toLocaleString(undefined, {
       dateStyle: "medium",
       timeStyle: "medium",

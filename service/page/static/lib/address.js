@@ -1,4 +1,4 @@
-/** The address after the #: which view, and what is chosen in it, so that a link shows the same to somebody else. */
+/** The address after the #: the view and the choices in it, so that a link shows others the same. */
 
 /** Return {parts, query} of the address: "#/jobs/7?x=crank_mm" is {parts: ["jobs", "7"], query: URLSearchParams}. */
 export function read() {
@@ -24,7 +24,7 @@ export function link(parts, query = {}) {
 }
 
 /**
- * Keep what is chosen in the address of this view, without a step in the history and without drawing anew.
+ * Store choices in the address of this view, without a history entry and without redrawing.
  * @param {Record<string, Dom.Value>} query
  */
 export function keep(query) {
@@ -32,7 +32,7 @@ export function keep(query) {
 }
 
 /**
- * Return the address of a view as the reader left it, or the plain one: the way back keeps what was chosen there.
+ * Return the address of a view as the reader left it, or the plain one, so that choices there are kept.
  * @param {readonly (string | number)[]} parts
  */
 export function left(parts) {

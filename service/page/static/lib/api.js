@@ -31,7 +31,7 @@ export function isInfeasible(error) {
 }
 
 /**
- * Return the address of something in the API; query: an object, its arrays repeat a key, null leaves one out.
+ * Return an address in the API; query: an object, its arrays repeat a key, null leaves one out.
  * @param {string} path @param {Api.Query} query
  */
 export function address(path, query = {}) {

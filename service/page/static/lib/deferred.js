@@ -5,7 +5,7 @@ const NEAR = "300px"; // before it is in sight
 const parts = new Set();
 
 /**
- * Begin once, when a place comes near.
+ * Start once, when a place comes into view.
  * @param {Element} place @param {() => Promise<unknown>} begin @param {AbortSignal} signal of the view
  */
 export function whenNear(place, begin, signal) {

@@ -6,7 +6,7 @@ const AGAIN = 2000; // ms until the next try after the connection was refused
 
 /**
  * Follow a job from its event `after` until it is stopped or `signal` is aborted. Whether the job has ended only the job itself
- * says: a job that was cancelled goes on when it is resumed, and its events tell of all that.
+ * says: a cancelled job continues when it is resumed, and its events report that.
  * told(event) is called with {number, at, kind, data}, once for each, in order; connected(yes) as the connection comes and goes.
  * @param {number} job
  * @param {{ after?: number, signal?: AbortSignal, told: (event: Api.Event) => void, connected?: (yes: boolean) => void }} Followed

@@ -1,4 +1,4 @@
-/** Things behind a button: a list that opens below it, and closes by Escape, by a click elsewhere, and as the focus leaves it. */
+/** Menu: a list that opens below a button, and closes on Escape, on a click elsewhere, and on loss of focus. */
 
 import { h } from "./dom.js";
 

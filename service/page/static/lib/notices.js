@@ -35,7 +35,7 @@ export async function attempt(action, refuse = sayProblem, busy = undefined) {
   }
 }
 
-/** Say what went wrong; nothing for what was only given up. @param {unknown} error */
+/** Show an error, unless it is an abort. @param {unknown} error */
 export function sayProblem(error) {
   if (!isAbort(error)) say(sentenceOf(error), "error");
 }

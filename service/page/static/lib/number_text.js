@@ -95,7 +95,7 @@ class Parser {
     this.text = text;
     this.rest = text;
     this.field = field;
-    this.doubtful = ""; // the other way to read a number of which there are two
+    this.doubtful = ""; // the other reading of an ambiguous number
     /** @type {[string, string][]} */
     this.spellings = spellingsOf(field);
   }

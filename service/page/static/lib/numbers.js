@@ -38,7 +38,7 @@ export function unitTable() {
   return table;
 }
 
-/** Make ready to show numbers in any system. Without an answer of the service they are metric. */
+/** Load the units of both systems. Without an answer from the service, numbers are metric. */
 export async function readySystem() {
   if (SYSTEMS.inch) return;
   const units = await unitTable();
@@ -138,7 +138,7 @@ export function text(value, unit = "", digits = 5) {
   return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
 }
 
-/** Return a number of a size that nobody counts zeros of: "2.48·10⁶". @param {number} value @param {number} digits */
+/** Return a very large or small number in scientific notation: "2.48·10⁶". @param {number} value @param {number} digits */
 export function withPower(value, digits) {
   const [factor, power] = value.toExponential(digits - 1).split("e");
   const raised = power.replace(/./g, (sign) => POWERS[sign] ?? "");

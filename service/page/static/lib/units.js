@@ -11,7 +11,7 @@ let SPOKEN = {}; // by kind, the unit that other words mean there: 1/min of a sp
 let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
 
-/** Make ready to offer units and to read them: the service has the table of kinds. */
+/** Load the table of kinds, to offer and to parse units. */
 export async function readyKinds() {
   const { kinds: known } = await unitTable();
   KINDS = Object.fromEntries(

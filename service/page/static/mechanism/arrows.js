@@ -10,7 +10,7 @@ const DOT = 2.5;
 const HEAD = 7;
 
 /**
- * What the arrows are. at: 0 pivot, 1 crank pin, 2 slider pin; along: keys of the curves of its components in x and y.
+ * The arrows. at: 0 pivot, 1 crank pin, 2 slider pin; along: keys of the curves of its components in x and y.
  * @type {{ name: string, title: string, at: number, along: [string | null, string | null] }[]}
  */
 export const ARROWS = [

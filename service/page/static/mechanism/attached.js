@@ -1,4 +1,4 @@
-/** What a machine has besides its linkage: cylinders about the piston, the actuator of the slider, a body on the crank. */
+/** Parts besides the linkage: cylinders around pistons, the actuator of the slider, a body on the crank. */
 
 import { svg } from "../lib/dom.js";
 

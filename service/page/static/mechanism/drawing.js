@@ -14,7 +14,7 @@ import { bar, placed, scenery } from "./scenery.js";
  * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
-const EVERY = 100; // ms between two values while it moves; faster ones cannot be read
+const EVERY = 100; // ms between values while it moves; faster ones cannot be read
 
 /**
  * Put a drawing into `place`; label: what a screen reader says of it; grips: of grips.js, by which its lengths are dragged. It fills the width of its place and returns
@@ -34,7 +34,7 @@ const EVERY = 100; // ms between two values while it moves; faster ones cannot b
 export function drawing(place, { label, grips = null }) {
   const parts = movingParts();
   const handle = svg("circle", { class: "handle" });
-  // What stands still is a picture of its own, so that it is not painted again in every frame.
+  // Fixed parts are a picture of their own, so that they are not repainted in every frame.
   const [still, moving] = [
     svg("svg", { class: "still" }),
     svg("svg", { class: "moving" }, parts.nodes, handle, grips?.nodes),
@@ -177,7 +177,7 @@ function crossed({ crank_mm: r }, motion, turns) {
   );
 }
 
-/** Give an element numbers as attributes. @type {(node: Element, numbers: Record<string, number>) => void} */
+/** Set numbers as attributes of an element. @type {(node: Element, numbers: Record<string, number>) => void} */
 function measure(node, numbers) {
   for (const [name, number] of Object.entries(numbers)) node.setAttribute(name, String(number));
 }

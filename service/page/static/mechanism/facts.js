@@ -1,4 +1,4 @@
-/** What the page says of one mechanism. */
+/** Facts about one mechanism. */
 
 import { h } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";

@@ -1,4 +1,4 @@
-/** What the lengths of a mechanism are dragged by: crank pin, slider and guide, by a pointer or by keys. */
+/** Grips that change the lengths of a mechanism: crank pin, slider and guide, by pointer or keys. */
 
 import { svg } from "../lib/dom.js";
 import { fromDisplayUnit, inDisplayUnit, withUnit } from "../lib/numbers.js";

@@ -1,4 +1,4 @@
-/** The motion of a linkage from its lengths alone: where nobody need ask the service, because only the geometry is shown. */
+/** Motion of a linkage from its lengths alone, where only the geometry is shown and the service is not needed. */
 
 const POINTS = 360;
 

@@ -1,4 +1,4 @@
-/** The place in the cycle that all parts of the view share, of a turn the crank angle, and what turns it. */
+/** The place in the cycle (for a turn, the crank angle) that all parts of the view share, and its playback. */
 
 import { turned } from "../charts/cycle.js";
 
@@ -34,7 +34,7 @@ export function playback(rpm, signal, cycle = "one turn") {
     );
   /** @param {number} now */
   const step = (now) => {
-    const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a pause of the browser it goes on where it was
+    const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after the browser was suspended, it continues where it was
     last = now;
     state.angle = turned(state.angle + (state.direction * 360 * seconds) / state.pace.seconds);
     tell();

@@ -1,4 +1,4 @@
-/** A linkage so small that only its proportions show. */
+/** Thumbnail of a linkage. */
 
 import { svg } from "../lib/dom.js";
 import { motionOf } from "./motion.js";
@@ -7,7 +7,7 @@ import { motionOf } from "./motion.js";
 
 const WIDTH = 88;
 const HEIGHTS = [26, 64];
-const ANGLES = [60, 30, 90, 0, 120, 330, 180, 270]; // deg, of the crank: at the first all links are apart, but not every one closes there
+const ANGLES = [60, 30, 90, 0, 120, 330, 180, 270]; // crank angles, deg: no links overlap at the first, but not every linkage closes there
 
 /**
  * Return a picture of a linkage in a frame that several share, so that they have one scale.

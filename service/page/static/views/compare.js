@@ -88,7 +88,7 @@ export async function show(place, { query, signal }) {
     showComparison(null);
   }
 
-  /** Say what a design has that is pointed at. @param {{ n: number, row: number } | null} one */
+  /** Describe the design under the pointer. @param {{ n: number, row: number } | null} one */
   function showComparison(one) {
     if (!one) return fill(readout, "Point at a design to read it; click to open it.");
     const { job, data } = runs[one.n];
@@ -105,7 +105,7 @@ export async function show(place, { query, signal }) {
   }
 
   function drawTable() {
-    /** Return the design that is best in an objective of its own; null where the run has another. @param {(typeof runs)[0]} run @param {string} key */
+    /** Return the best design in one of the run's objectives; null if it has another. @param {(typeof runs)[0]} run @param {string} key */
     const bestDesign = ({ front }, key) => {
       const objective = front.objectives.find((objective) => objective.column === key);
       return objective ? front.extremes[objective.quantity] : null;
@@ -195,7 +195,7 @@ export async function show(place, { query, signal }) {
     return row === null ? words : h("a", { href: link(["jobs", job, "designs", row + 1]) }, words);
   }
 
-  /** Say who is better where, and what differs between the jobs. */
+  /** Show which run is better in what, and the differences between the jobs. */
   async function drawWords() {
     const query = { job: runs.map(({ job }) => String(job.id)), units: apiSystem() };
     await attempt(

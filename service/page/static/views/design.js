@@ -27,7 +27,7 @@ export const title = "Design";
 
 const SOON = 150; // ms
 const CYCLES = ["back and forth", "one turn", "two turns"];
-/** Where one goes within the view: parts, and what they are called. @type {[string, string][]} */
+/** Parts of the view for its table of contents, with titles. @type {[string, string][]} */
 const CONTENTS = [
   ["stage", "Drawing"],
   ["what-if", "What if?"],
@@ -106,7 +106,7 @@ export async function show(place, { parts, query, signal }) {
   );
   const files = exportMenu(job, number);
   let own = requirements.name; // of the design itself
-  /** Say what the design is called that is shown. */
+  /** Show the name of the displayed design. */
   const rename = () => {
     const name = capital(changed?.name ?? own);
     named.textContent = name === `Design ${number}` ? name : `${name} · ${number}`;
@@ -217,7 +217,7 @@ export async function show(place, { parts, query, signal }) {
   );
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
-  let refused = false; // whether the last change cannot be had, so that all is of the design itself
+  let refused = false; // whether the last change is impossible, so that everything shows the design itself
   /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
   const glance = (designs) => {
     const [shown] = designs;

@@ -1,4 +1,4 @@
-/** One mechanism: three lengths, typed or dragged, and how it moves; nothing is searched, and no run is stored. */
+/** One mechanism: three lengths, typed or dragged, and its motion, without a search or a stored run. */
 
 import { abscissaOf } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
@@ -38,7 +38,7 @@ const PANELS = [
 export async function show(place, { query, signal }) {
   await Promise.all([readySystem(), readyKinds()]);
   if (signal.aborted) return;
-  place.classList.add("of-design"); // whose drawing, curves and lengths it has
+  place.classList.add("of-design"); // reuses the styles of drawing, curves and lengths
   const { stated, unread } = statedIn(query);
   const angle = playback(0, signal); // at paces of the screen: the speed changes
   angle.set(START);
@@ -89,7 +89,7 @@ export async function show(place, { query, signal }) {
       { isOfJob: false, describedBy: WRONG },
     ),
   );
-  let typedSpeed = ""; // why what was typed is no speed
+  let typedSpeed = ""; // why the typed text is not a speed
   const speed = numberField({
     id: "look-speed",
     value: text(stated.rpm, "rpm"),
@@ -104,10 +104,10 @@ export async function show(place, { query, signal }) {
   let busy = false;
   let again = false;
 
-  /** Return why what was typed states no mechanism, or "". */
+  /** Return why the typed texts state no mechanism, or "". */
   const mistakes = () => [...rows.map((row) => row.wrong()), typedSpeed].filter(Boolean).join(" ");
 
-  /** Keep in the address what is stated; what is no number, as it was typed. */
+  /** Keep the stated values in the address; other text as it was typed. */
   function keepStated() {
     const typed = rows.filter((row) => row.wrong()).map((row) => [row.key, row.text()]);
     keep({ ...stated, ...Object.fromEntries(typed), ...(typedSpeed && { rpm: speed.value }) });
@@ -119,7 +119,7 @@ export async function show(place, { query, signal }) {
     draw();
   }
 
-  /** Go to other lengths, or another speed. @param {Partial<Stated>} other @param {string} [typed] key of the length that was typed */
+  /** Set other lengths or another speed. @param {Partial<Stated>} other @param {string} [typed] key of the length that was typed */
   function take(other, typed = "") {
     for (const [key, value] of Object.entries(other))
       stated[/** @type {keyof Stated} */ (key)] = Number(value.toPrecision(10)); // 60 mm, also from inches
@@ -129,7 +129,7 @@ export async function show(place, { query, signal }) {
     ask();
   }
 
-  /** Draw the mechanism from its lengths, until the service has looked at them; return whether there is one. @param {Api.Example | null} [example] */
+  /** Draw the mechanism from its lengths until the service has checked them; return whether there is one. @param {Api.Example | null} [example] */
   function draw(example = null) {
     const { rpm, ...row } = stated;
     const motion = motionOf(row);
@@ -206,7 +206,7 @@ export async function show(place, { query, signal }) {
     }
   }
 
-  /** Show what the service says. @param {Api.Example | null} example @param {string[]} faults @param {Api.Change} [change] to a rod that lets the crank rotate */
+  /** Show the answer of the service. @param {Api.Example | null} example @param {string[]} faults @param {Api.Change} [change] to a rod that lets the crank rotate */
   function update(example, faults, change) {
     mend.hidden = !change;
     if (change) {
@@ -284,7 +284,7 @@ function marked({ extremes }) {
   return Object.fromEntries(ends);
 }
 
-/** Return where the slider is innermost and outermost, deg. @param {(number | null)[]} positions @returns {Page.Point} */
+/** Return the crank angles of the innermost and outermost slider position, deg. @param {(number | null)[]} positions @returns {Page.Point} */
 function ends(positions) {
   const found = extremes(positions);
   return found ? [found.low.angle, found.high.angle] : [0, 180];

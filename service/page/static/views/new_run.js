@@ -1,4 +1,4 @@
-/** A new run: the form of a job, checked while it is typed, with a sketch of what it allows. */
+/** A new run: the job form, checked while you type, with a sketch. */
 
 import { checker } from "../form/check.js";
 import { keepDraft, kept, newKey } from "../form/draft.js";
@@ -185,7 +185,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     if (checked) mark(checked.wrong);
   }
   /**
-   * Put another draft in place of this one, which can be brought back.
+   * Replace the draft with another one; the old one can be restored.
    * @param {Pick<Form.Draft, "job" | "submission" | "source">} other @param {{ text?: boolean }} options
    */
   function take(other, { text = false } = {}) {

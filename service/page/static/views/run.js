@@ -12,7 +12,7 @@ export const title = "Run";
 
 const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** A run: while it goes on its progress, afterwards the explorer of its front. @param {HTMLElement} place @param {Page.Visit} options */
+/** A run: its progress while it is solved, then the explorer of its front. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1)
@@ -22,10 +22,10 @@ export async function show(place, { parts, signal }) {
   const files = h("ul"); // of the front, that its explorer makes
   const decision = h("p", { class: "decision", hidden: true }); // which it says too
   /** @type {{ control: AbortController, live: boolean } | null} */
-  let inner = null; // ends what the body shows
-  const explorer = import("../front/explorer.js"); // comes while the job is asked for
+  let inner = null; // stops what the body shows
+  const explorer = import("../front/explorer.js"); // loads while the job is requested
 
-  /** Show a job as it stands; null: somebody deleted it. @param {Api.Job | null} job */
+  /** Show a job in its current state; null if it was deleted. @param {Api.Job | null} job */
   async function showJob(job) {
     if (signal.aborted) return;
     if (job === null) {
@@ -121,7 +121,7 @@ export async function show(place, { parts, signal }) {
     );
   }
 
-  /** Past all that can be done with charts. */
+  /** Skips the charts. */
   function skipToTable() {
     const part = first(body, ".the-table");
     if (!part) return;

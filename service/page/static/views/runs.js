@@ -10,7 +10,7 @@ import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "Runs";
 
-const EACH = 2000; // ms between two looks while the page is seen
+const EACH = 2000; // ms between polls while the page is visible
 const PAGE = 25;
 const SORTS = /** @type {const} */ (["newest", "oldest", "name", "state", "decided"]);
 
@@ -119,7 +119,7 @@ export async function show(place, { query, signal }) {
     );
   };
 
-  /** Look once, and again after a while. */
+  /** Poll once, and again after a while. */
   async function look() {
     clearTimeout(timer);
     const before = filters.before || null;
