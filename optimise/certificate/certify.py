@@ -3,13 +3,13 @@
 The statement proven, for an epsilon e and objectives scaled by their range over the front: **for every feasible design,
 some design of the set is worse by at most e of the range in every objective**. So no permitted design can beat all
 designs in the set by more than e. The set is the front as delivered, or the front completed by designs that the proof
-search adds: a front with few designs leaves gaps, and no proof can be better than the widest gap. The certificate
+search adds. A front with few designs leaves gaps, and no proof can be better than the widest gap. The certificate
 states both numbers, and the design that shows the widest gap.
 
-A box of designs is closed when none of its designs can be feasible, or when one design in the set covers the box's
-lower corner (`cover`) and thus every feasible design in the box. Other boxes are halved, largest excess first, so at
-any time the largest excess among open boxes is a proven epsilon. In a small box, a feasible design from the box itself
-may cover its corner when no other design does; that design is added.
+A box of designs is closed when none of its designs can be feasible. It is also closed when one design in the set covers
+the box's lower corner (`cover`), and thus every feasible design in the box. Other boxes are halved, largest excess
+first, so at any time the largest excess among open boxes is a proven epsilon. In a small box, a feasible design from
+the box itself may cover its corner when no other design does; that design is added.
 
 The proof relies on the bounds from `boxes`, which account for rounding, and on the model's values for the designs in
 the set. Requirements count as met to a relative 1e-9, as everywhere else.

@@ -1,10 +1,10 @@
 """A curve over the cycle, enclosed over boxes of designs at selected crank angles.
 
-A curve's greatest value over the cycle is at least its value at any one crank angle, so an enclosure at one angle
+A curve's greatest value over the cycle is at least its value at any one crank angle. So an enclosure at one angle
 bounds the peak from below for every design in a box. At the peak of the box's middle design, the bound is accurate to
 second order in the box size, because the curve is flat there. If the curve counts only during part of the stroke and
-peaks at the end of that part, the angle follows the design: the slider has covered a fixed fraction of its stroke. This
-module does not bound peaks from above.
+peaks at the end of that part, the angle follows the design. There, the slider has covered a fixed fraction of its
+stroke. This module does not bound peaks from above.
 
 The cylinders of a crankshaft add up at the same shaft angle. Along a speed profile, that angle determines the speed.
 """

@@ -1,6 +1,6 @@
 """Load-to-resistance ratios of bars and pins, enclosed over boxes of designs.
 
-The greatest stress over the cycle is at least the stress at one point and angle; the greatest force on a pin is at
+The greatest stress over the cycle is at least the stress at one point and angle. The greatest force on a pin is at
 least its force at one angle. So stresses and pressures have lower bounds, and safety factors have upper bounds. The
 point is a fraction of the bar's length, so it moves with the design. Where the section may vanish in a box, a safety
 factor uses max(section, 0): designs without a section have no positive one.

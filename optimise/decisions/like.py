@@ -1,7 +1,8 @@
 """Find a design like a given one that also meets further requirements: the nearest point on the remaining front.
 
 The requirements are added to those of the problem. The result is the Pareto-optimal design of the extended problem that
-is nearest to the given one, by Euclidean distance in the objectives, each divided by its range over the given front.
+is nearest to the given one. The measure is the Euclidean distance in the objectives, each divided by its range over the
+given front.
 
 A solver cannot search the set of Pareto-optimal designs directly, but the polish maps every point onto that set and
 leaves its members unchanged. So samples cover the extended problem, and those nearest to the given design are polished,

@@ -12,8 +12,8 @@ met, all are exceeded (the function is negative); otherwise the conflicting ones
 their ranges. A small multiple rho of the sum makes every minimiser Pareto-optimal, whether the wishes can be met or
 not.
 
-The polish solves it on every branch of the problem (sign of the offset, choices), starting from distinct designs on the
-front that are nearest to the desired values. Their lengths are tried on all other branches as well. If they end in
+The polish solves it on every branch of the problem (sign of the offset, choices). It starts from distinct designs on
+the front that are nearest to the desired values. Their lengths are tried on all other branches as well. If they end in
 different optima, more designs are tried. The answer is never worse than the best design on the front, and exact within
 its valley; only more starts can show that no other valley is deeper.
 """

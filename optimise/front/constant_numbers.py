@@ -10,8 +10,8 @@ from ...model.arrays import Array, Mask
 SAME = 1e-9
 """Relative spread within which numbers count as equal.
 
-A quantity that the requirements hold at a value leaves the search with a spread of one or a few last bits (2e-16 each),
-amplified by its inputs, and constraints count as met to 1e-9. A spread that is visible in a drawing is a million times
+A quantity that the requirements hold at a value leaves the search with a spread of a few last bits (2e-16 each),
+amplified by its inputs. Constraints count as met to 1e-9. A spread that is visible in a drawing is a million times
 greater.
 """
 

@@ -22,7 +22,7 @@ class Progress:
 
     round, rounds: number of this round and of planned rounds. feasible: number of feasible designs found so far.
     hypervolume: hypervolume of these designs; it never decreases. During the search, its unit is a box spanned by the
-    first feasible designs, so it may exceed 1; in a front's history, it is a fraction of the front's box. It cannot be
+    first feasible designs, so it may exceed 1. In a front's history, it is a fraction of the front's box. It cannot be
     compared between runs. step, steps: progress within the stage, 0 of 0 at the end of a round.
     """
 

@@ -49,8 +49,8 @@ class Rounded:
     """Designs with round numbers near a front's design, best first.
 
     Non-dominated designs that meet every requirement within the allowed misses come first, least loss first; then
-    designs that miss little but lose clearly less. If `is_met` is False, these are the nearest designs: first the one
-    with the least relative violation beyond the allowed misses, then those that miss more but lose clearly less. See
+    designs that miss little but lose clearly less. If `is_met` is False, these are the nearest designs. The first has
+    the least relative violation beyond the allowed misses; those that follow miss more but lose clearly less. See
     `rounding.rounded`.
 
     problem: the problem that they solve, with its choices made. design: (3 + v,), the design to round. steps: steps of

@@ -5,9 +5,9 @@ A design is Pareto-stationary if no direction improves every objective while the
     min | sum_i lambda_i g_i + sum_j mu_j a_j |   with lambda >= 0, sum lambda = 1, mu >= 0
 
 is zero (Karush-Kuhn-Tucker conditions of the multi-objective problem; Miettinen, "Nonlinear Multiobjective
-Optimization", 1999, Thm 3.1.5). At a kink, all its pieces count. It is solved as a non-negative least-squares
-problem: sum lambda = 1 becomes one more weighted row, and the minimiser is the same up to its length, because the rest
-is homogeneous.
+Optimization", 1999, Thm 3.1.5). At a kink, all its pieces count. It is solved as a non-negative least-squares problem
+with sum lambda = 1 as one more weighted row. The minimiser is the same up to its length, because the rest is
+homogeneous.
 """
 
 from __future__ import annotations

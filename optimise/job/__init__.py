@@ -58,7 +58,7 @@ def load_job(
 
     Issues an `InputWarning` for probable mistakes, such as a number without a unit; the problem's `warnings` has the
     sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, violates the
-    schema or contradicts itself; raises its subclass `InfeasibleError` if no design can meet it.
+    schema or contradicts itself. Raises its subclass `InfeasibleError` if no design can meet it.
     """
     if not isinstance(path, str | PathLike):
         raise JobError(f"a job file must be given by its path; got {type(path).__name__}; for tables use problem")

@@ -102,7 +102,7 @@ def _parse_tables(text: str, suffix: str) -> dict[str, Any]:
 def toml_tables(text: str) -> dict[str, Any]:
     """Return the tables of a TOML text. Raises JobError.
 
-    Dotted keys with more than `DEEPEST` words raise an error before the text is parsed: for these, `tomllib` takes time
+    Dotted keys with more than `DEEPEST` words raise an error before the text is parsed, because `tomllib` takes time
     and memory that grow with the square of their length. So do texts with far more values than a job may have; each
     value has one or two of the counted signs.
     """

@@ -1,7 +1,7 @@
 """Linear requirements on dimensions and extra variables that exclude each other within the ranges.
 
 For either sign of the offset, a linear programme in crank, rod, |offset| and extra variables decides whether some point
-meets them all; full rotation, rod >= crank + |offset|, is one of its rows.
+meets them all. Full rotation, rod >= crank + |offset|, is one of its rows.
 """
 
 from __future__ import annotations

@@ -238,7 +238,7 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
     """Return an upper bound on the time ratio for (r+a)/l <= cosine and a/l within `share`.
 
     With p = r / l and q = a / l, the excess angle increases with both, so its greatest value lies on p + q = cosine.
-    That line is divided into cells of p, each bounded by its greatest p and its greatest q: the bound is never below
+    That line is divided into cells of p, each bounded by its greatest p and its greatest q. The bound is never below
     the true maximum, and above it by about 1 / cells.
     """
     best = 0.0

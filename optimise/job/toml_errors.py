@@ -1,6 +1,6 @@
 """Mistakes in TOML syntax, in words: line and key, rule, typed text, and correction.
 
-The parser only says where it stops. So each of several edits is tried on the line; the edit that lets the parser read
+The parser only says where it stops. So each of several edits is tried on the line. The edit that lets the parser read
 most of it is kept, until the whole line can be read. A remedy is therefore always a line that the parser accepts.
 """
 

@@ -1,7 +1,7 @@
 """From the paths in [variables] and [[choice]] to extra variables of the machine and to variants of the problem.
 
 A path names a number of the job. To find its effect, the machine is built twice, with the number at both ends of its
-range: every number of the machine that differs must be proportional to it. So each number is read, and rejected, by the
+range. Every number of the machine that differs must be proportional to it. So each number is read, and rejected, by the
 rules of its own key, and any number in a job may vary.
 """
 
@@ -78,8 +78,8 @@ def variants_of(
 ) -> tuple[tuple[str, ...], tuple[Variant, ...], tuple[Variant, ...]]:
     """Return the names of a job's choices, every combination of their options, and the combinations in the catalogue.
 
-    None if there are no choices. formulas: those of the job, which its options may also constrain. amounts: those of
-    the job.
+    All are empty if there are no choices. formulas: those of the job, which its options may also constrain.
+    amounts: those of the job.
     """
     every = list(_choice_axes(job, formulas, amounts))
     axes = [(name, [option for option in options if option.searched]) for name, options in every]

@@ -139,7 +139,7 @@ def shgo(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the optima of the basins found by simplicial homology, with part of the budget for each branch.
 
     S. C. Endres, C. Sandrock and W. W. Focke, "A simplicial homology algorithm for Lipschitz optimisation", J. Glob.
-    Optim. 72, 2018. It identifies basins from feasible Sobol points and descends into each; if a peak has a kink, the
+    Optim. 72, 2018. It identifies basins from feasible Sobol points and descends into each. If a peak has a kink, the
     descent ends short of the optimum, so the epigraph form (`scalar_objective`) continues from there.
     """
     archive, improvements = Archive.empty(1), Archive.empty(1)

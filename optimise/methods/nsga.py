@@ -7,7 +7,7 @@
 
 Children are created by simulated binary crossover and polynomial mutation. Constraints enter by constrained domination:
 feasible designs come first, then smaller violations. Several branches (signs of the offset) become one categorical
-parameter: selection follows the front, whereas a fixed part of the budget per branch would be wasted on poor branches.
+parameter, so selection follows the front. A fixed part of the budget per branch would be wasted on poor branches.
 
 Selection and crossover need only the last generation and its parents. So each generation is a new Optuna study in
 memory with these designs and a new sampler: its cost is constant, and it depends only on them.

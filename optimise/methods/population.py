@@ -1,7 +1,7 @@
 """Evolution by generations: breed, evaluate as one batch, store.
 
 A method only defines how to breed a brood from the previous generations. Every brood has its own random numbers, seeded
-by the run's seed and the brood's number, and depends only on these generations: a recorded brood need not be bred
+by the run's seed and the brood's number. It depends only on these generations, so a recorded brood need not be bred
 again.
 """
 

@@ -97,7 +97,7 @@ def _momentum_at_cell_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
     """Return p (n,) at the starts of cells, from the cells' multipliers (n,) and the gains (2, n) near their ends.
 
     The programme determines the mean of two cells weighted by their widths, which is p at the centroid of the hat
-    function over both; multipliers of single cells may alternate.
+    function over both. Multipliers of single cells may alternate.
     """
     total = float(gains.sum())
     before = np.concatenate([[0.0], np.cumsum(gains.sum(axis=0))[:-1]])

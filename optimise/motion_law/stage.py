@@ -1,8 +1,8 @@
 """The best law on the cells of a turn.
 
 A required cycle time makes the problem non-convex only if the best law would be faster. Then the tangent of the time is
-renewed until it changes nothing (`programme`), and the law is the convex combination of the slow and the fast law with
-exactly the cycle time: it is no worse, because limits, peak and RMS torque are convex.
+renewed until it changes nothing (`programme`). The law is the convex combination of the slow and the fast law with
+exactly the cycle time. It is no worse, because limits, peak and RMS torque are convex.
 
 Among the laws with the least peak torque, the one with the least RMS torque is chosen, at the cost of a ten-thousandth
 of the peak.

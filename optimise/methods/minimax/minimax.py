@@ -1,17 +1,17 @@
 """Minimise the greatest of smooth pieces by sequential convex programming, such as the peak torque.
 
-A peak over the cycle is the greatest of its local peaks, max_p f_p(u), over continuous crank angle; at the optimum,
-several are often equally high, where the peak has a kink and no gradient. Nothing is smoothed: each iteration
-linearises every local peak and every constraint at the current design (exact values and gradients; a local peak's
-gradient is that at its crank angle, by the envelope theorem) and solves the convex programme of `subproblem` within a
-trust region. The step is judged by actual over predicted decrease of the exact penalty function
+A peak over the cycle is the greatest of its local peaks, max_p f_p(u), over continuous crank angle. At the optimum,
+several are often equally high; there the peak has a kink and no gradient. Nothing is smoothed. Each iteration
+linearises every local peak and every constraint at the current design, and solves the convex programme of `subproblem`
+within a trust region. Values and gradients are exact; a local peak's gradient is that at its crank angle, by the
+envelope theorem. The step is judged by actual over predicted decrease of the exact penalty function
 
     max_p f_p(u) + w max(0, max_j c_j(u)),
 
 and corrected to second order before it is rejected (Conn, Gould and Toint, "Trust-Region Methods", 2000, ch. 11 and
-15.3). If as many pieces and constraints as unknowns determine the optimum, first-order steps converge quadratically; if
-fewer do, the curvature of the Lagrangian, from differences of exact gradients with the previous step's multipliers,
-keeps them fast.
+15.3). If as many pieces and constraints as unknowns determine the optimum, first-order steps converge quadratically. If
+fewer do, the curvature of the Lagrangian keeps them fast; it comes from differences of exact gradients with the
+previous step's multipliers.
 
 The multipliers of the last programme prove the optimum: weights of the pieces that add up to one, and prices of the
 constraints, with
