@@ -59,7 +59,7 @@ def jax_function(problem: Problem, quantities: Sequence[str] | None = None) -> J
         designs = jax.numpy.asarray(x)
         if designs.shape[-1:] != (width,):
             raise InputError(
-                f"the last axis must have {width} numbers, one design; got an array of shape {designs.shape}"
+                f"the last axis must hold the {width} numbers of a design; got an array of shape {designs.shape}"
             )
         values: jax.Array = differentiable(designs)
         return values

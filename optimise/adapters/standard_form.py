@@ -273,7 +273,7 @@ def _requested_branch(problem: Problem, index: int | None) -> EliminationBranch 
         )
     if not branches[index].free:
         raise InputError(
-            "the equalities and ranges must leave something free; no unknown is left; widen a range, or use solve"
+            "the equalities and ranges must leave an unknown free; none is left; widen a range, or use solve"
         )
     return branches[index]
 

@@ -51,8 +51,8 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     def apply(x: torch.Tensor) -> torch.Tensor:
         if x.dtype != torch.float64 or x.device.type != "cpu":
             raise InputError(
-                f"designs are double-precision tensors on the processor; got {x.dtype} on {x.device}; "
-                "write x.double().cpu()"
+                f"designs must be double-precision tensors on the CPU; got {x.dtype} on {x.device}; write "
+                "x.double().cpu()"
             )
         quantities_of_x: torch.Tensor = Quantities.apply(x)
         return quantities_of_x

@@ -57,7 +57,7 @@ def certify_designs(
     if not 0.0 < epsilon < 1.0:
         raise InputError(f"epsilon must be a fraction of the objectives' ranges, above 0 and below 1; got {epsilon:g}")
     if not seconds > 0.0:
-        raise InputError(f"the budget must be longer than zero; got {seconds:g} s")
+        raise InputError(f"the budget must be above zero; got {seconds:g} s")
     chosen = np.array(variants if len(variants) else [0] * len(dimensions), dtype=np.int64)
     if problem.discrete:
         problem, chosen = _with_variant_per_combination(problem, chosen)
@@ -75,8 +75,9 @@ def _with_variant_per_combination(problem: Problem, variants: IntArray) -> tuple
     counts = [axis.count for axis in axes]
     if sum(counts) > MOST_COMBINATIONS:
         raise InputError(
-            f"a certificate takes at most {MOST_COMBINATIONS:,} combinations of listed values; got {sum(counts):,} of "
-            f"{', '.join(item.name for item in problem.discrete)}; list fewer, or certify the job with ranges"
+            f"a certificate can cover at most {MOST_COMBINATIONS:,} combinations of listed values; got "
+            f"{sum(counts):,} of {', '.join(item.name for item in problem.discrete)}; list fewer, or certify the "
+            "job with ranges"
         )
     rows = [(index, row) for index, axis in enumerate(axes) for row in axis.designs(0, axis.count)]
     return with_values(problem, rows), np.cumsum([0, *counts[:-1]])[variants]

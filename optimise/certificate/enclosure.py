@@ -157,7 +157,7 @@ class Enclosure:
 
     def __pow__(self, exponent: int) -> Enclosure:
         if exponent != 2:
-            raise TypeError(f"an enclosure is only squared; got the exponent {exponent}")
+            raise TypeError(f"an enclosure may only be squared; got the exponent {exponent}")
         return self._squared()
 
     def _squared(self) -> Enclosure:

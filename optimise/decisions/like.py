@@ -137,7 +137,7 @@ def extend_problem(
         if ends is None:
             assert required is not None
             unit = quantity.unit
-            existing = f"{_ends_text((required.lower, required.upper), unit.factor, unit.symbol)} is required already"
+            existing = f"{_ends_text((required.lower, required.upper), unit.factor, unit.symbol)} is already required"
             stricter = _ends_text((added.lower, added.upper), unit.factor, unit.symbol)
             contradictions.append(f"{quantity.title} {stricter}, where {existing}")
             keys.append(key_of(["constraints", added.quantity]))

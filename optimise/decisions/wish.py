@@ -61,8 +61,8 @@ class Wishes:
         require_front(front, "a wish")
         if len(front.objectives) < 2:
             raise InputError(
-                f"a wish needs at least two objectives; got one, {front.objectives[0].quantity}; its best design is "
-                "the front"
+                f"a wish needs at least two objectives; got one, {front.objectives[0].quantity}, whose best design "
+                "is the front"
             )
         if not len(front):
             raise InputError(f"a wish needs a front with designs; this one is empty: {front.message}")

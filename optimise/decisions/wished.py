@@ -135,8 +135,8 @@ class Wished:
             )
             return f"{verdict}; this one is nearest"
         if all(cast(float, outcome.short) < -_ROUNDING * outcome.range_ for outcome in wished):
-            return "the wish can be had, and better" + (" in all of it" if len(wished) > 1 else "")
-        return "the wish can be had"
+            return "the wish can be met and exceeded" + (" in every objective" if len(wished) > 1 else "")
+        return "the wish can be met"
 
 
 def outcomes_of(

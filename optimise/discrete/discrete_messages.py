@@ -78,7 +78,7 @@ def failure_message(problem: Problem, judged: Judged) -> str:
             text = f"{value_of_nearest * quantity.unit.factor:.7g} {quantity.unit.symbol}".rstrip()
             off = f"{abs(value_of_nearest - bound) * quantity.unit.factor:.3g} {quantity.unit.symbol}".rstrip()
             shortfall = (
-                f"{quantity.title} {text}, {off} {'above' if value_of_nearest > bound else 'below'} what is asked"
+                f"{quantity.title} {text}, {off} {'above' if value_of_nearest > bound else 'below'} the required value"
             )
             remedy = "ask for a range instead of one value" if item.equality else "relax it"
     remedies = f"{remedy}, or give smaller steps or other ranges"

@@ -57,7 +57,7 @@ class Relaxation:
     def sentence(self, *, other_requirements: str = "all else") -> str:
         """Return the relaxation in words. other_requirements: phrase for the other requirements."""
         limit_word = {"at least": "at most", "at most": "at least", "exactly": "at the nearest"}[self.relation]
-        requested_value = "is kept where a job sets none" if self.standing else "is asked"
+        requested_value = "applies if a job sets none" if self.standing else "is asked"
         requirement = f"{self.title} {self.relation} {self._requested_number()}"
         return (
             f"{requirement} {requested_value}, {limit_word} {self.with_unit} is possible with {other_requirements} met"

@@ -40,7 +40,7 @@ class Priority:
         for value in (self.absolute, self.share):
             if not (isinstance(value, Real) and math.isfinite(value) and value >= 0.0):
                 raise InputError(
-                    f"the tolerance of {self.quantity} must be zero or more, a number; got {value!r}; leave it out"
+                    f"the tolerance of {self.quantity} must be a number, zero or more; got {value!r}; leave it out"
                 )
 
 
@@ -77,8 +77,8 @@ def closeness(
     share = np.asarray(weights, dtype=np.float64)
     if share.shape != values.shape[1:] or not np.isfinite(share).all() or (share < 0.0).any() or not share.any():
         raise InputError(
-            f"weights must be zero or more, one above zero, one for each of {values.shape[1]} objectives; "
-            f"got {', '.join(f'{item:g}' for item in share.ravel())}"
+            f"each of the {values.shape[1]} objectives must have a weight, all zero or more and at least one above "
+            f"zero; got {', '.join(f'{item:g}' for item in share.ravel())}"
         )
     if normalisation == "range":
         scaled = scale_by_range(values, size=size)

@@ -140,7 +140,7 @@ class ParetoFront:
             is_row = False
         if not is_row:
             has = f"rows 0 to {len(self) - 1}" if len(self) else "no design"
-            raise InputError(f"a row must be one of the front's, which are {has}; got {row!r}")
+            raise InputError(f"a row must be one of the front's {has}; got {row!r}")
         return self.problem.part(self.variants[row] if self.variants else 0)
 
     def mechanism(self, row: int) -> Mechanism:

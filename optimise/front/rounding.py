@@ -105,7 +105,7 @@ def _steps_of_movable_numbers(
     return moved, [
         *_unchanged_numbers_text(given, ranges, steps),
         *(
-            f"{name} has discrete values in the job, {rule}, and stays as it is"
+            f"{name} has discrete values in the job, {rule}, and stays unchanged"
             for name, rule in discrete_rules.items()
         ),
     ]
@@ -194,8 +194,8 @@ def _rounding_steps(to: float | Mapping[str, float], part: Problem) -> dict[str,
         if step < _SMALLEST * size:
             step_text, least, greatest = (number_text(part, name, value) for value in (step, _SMALLEST * size, size))
             raise InputError(
-                f"the step of {name} must be at least {least}, {_SMALLEST:g} of {greatest}, the greatest in its range; "
-                f"got {step_text}; give a greater one"
+                f"the step of {name} must be at least {least}, {_SMALLEST:g} of {greatest}, the greatest in its "
+                f"range; got {step_text}; use a larger step"
             )
     return {name: float(steps[name]) for name in ranges if name in steps}
 
@@ -205,11 +205,11 @@ def _unchanged_numbers_text(given: Array, ranges: Mapping[str, Range], steps: Ma
     notes = []
     for value, (name, ends) in zip(given.tolist(), ranges.items(), strict=True):
         if name not in steps:
-            notes.append(f"{name} has no step and stays as it is")
+            notes.append(f"{name} has no step and stays unchanged")
         elif ends.fixed:
             place = value / steps[name]
             if abs(place - round(place)) > FEASIBLE * max(1.0, abs(place)):
                 notes.append(
-                    f"{name} is fixed in this job and stays as it is, although it is not a multiple of the step"
+                    f"{name} is fixed in this job and stays unchanged, although it is not a multiple of the step"
                 )
     return notes

@@ -170,10 +170,10 @@ class RoundingSearch:
         multiples = [x for x in every if lower - slack <= x <= upper + slack and (side is None or side * x > 0.0)]
         if not multiples and window == 1:
             raise InputError(
-                f"the step of {name} must have a multiple within its range, {number_text(self.part, name, lower)} to "
-                f"{number_text(self.part, name, upper)}"
-                f"{'' if side is None else ', on the side that slow_stroke asks for'}; got "
-                f"{number_text(self.part, name, step)}; give a smaller one, or none, so that it stays"
+                f"the step of {name} must have a multiple within its range, {number_text(self.part, name, lower)} "
+                f"to {number_text(self.part, name, upper)}"
+                f"{'' if side is None else ', on the side that slow_stroke asks for'}; "
+                f"got {number_text(self.part, name, step)}; use a smaller step, or none, so that it stays unchanged"
             )
         return multiples
 

@@ -91,7 +91,7 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
             continue
         key = key_of(["choice", place, "table"])
         if "option" in part:
-            raise JobError(f"{key}: must stand without options; got both; leave out one of the two")
+            raise JobError(f"{key}: must not be combined with options; got both; leave out one of the two")
         file = part.get("file")
         source_name = (
             f"{key_of(['choice', place, 'file'])}: {quote(file)}" if isinstance(file, str) else f"{key}: the table"

@@ -102,9 +102,8 @@ def _oversized_pin_messages(mechanism: Mechanism, link: str) -> list[str]:
     """Return why a link's eyes have no net section, whatever the values of the extra variables."""
     width = max(_number_range(mechanism, f"{link}.width"))
     return [
-        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got "
-        f"{1e3 * width:.6g} mm at most and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or take "
-        "a thinner pin"
+        f"mechanism.{link}.width: a bar must be wider than the pins in its eyes; got {1e3 * width:.6g} mm at most "
+        f"and sections.pins.{pin} of {1e3 * least:.6g} mm at least; widen the bar or use a thinner pin"
         for pin in (NEAR, LINKS[link].far)
         if (least := min(_number_range(mechanism, f"strength.{pin}"))) >= width
     ]

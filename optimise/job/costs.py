@@ -35,7 +35,7 @@ class _CostPart(Checked[Cost]):
     makes = Cost
     renamed: ClassVar = {"min": "least", "max": "greatest"}
 
-    cost: PositiveRatio = required("of the part that depends on the tolerance, where that is `at`", 8.0)
+    cost: PositiveRatio = required("of the part that depends on the tolerance, at the tolerance `at`", 8.0)
     fixed: Fraction = optional("the rest of the cost", 5.0, default=0.0)
     exponent: _Exponent = optional("k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0)
 
@@ -43,17 +43,17 @@ class _CostPart(Checked[Cost]):
 class LengthCostPart(_CostPart):
     """Cost of the tolerance of a length: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveLength = required("the tolerance that `cost` is for", "0.05 mm")
-    min: Radius = optional("least tolerance that can be made", "0.005 mm", default=0.0)
-    max: PositiveLength | None = optional("greatest tolerance that is allowed", "0.2 mm")
+    at: PositiveLength = required("the tolerance at which `cost` applies", "0.05 mm")
+    min: Radius = optional("smallest tolerance that can be made", "0.005 mm", default=0.0)
+    max: PositiveLength | None = optional("greatest permissible tolerance", "0.2 mm")
 
 
 class AngleCostPart(_CostPart):
     """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveAngle = required("the tolerance that `cost` is for", "0.1 deg")
-    min: AngleTolerance = optional("least tolerance that can be made", "0.01 deg", default=0.0)
-    max: PositiveAngle | None = optional("greatest tolerance that is allowed", "1 deg")
+    at: PositiveAngle = required("the tolerance at which `cost` applies", "0.1 deg")
+    min: AngleTolerance = optional("smallest tolerance that can be made", "0.01 deg", default=0.0)
+    max: PositiveAngle | None = optional("greatest permissible tolerance", "1 deg")
 
 
 class CostsPart(Built[Costs]):

@@ -102,7 +102,7 @@ class DrivePart(Checked[model.Drive]):
     makes = model.Drive
 
     motor: AnyMotor | None = optional(
-        "motor torque over motor speed, for a machine that runs under its motor",
+        "motor torque over motor speed, for a machine driven by its motor",
         {"stall_torque": "60 N m", "no_load_speed": "400 rpm"},
         {"torque": "20 N m"},
     )

@@ -45,7 +45,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     moving = machine.crank, machine.rod
     if job.mechanism.gravity is None and (machine.slider_mass or any(getattr(link, "mass", 1.0) for link in moving)):
         notes.append(
-            'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
+            'masses are given without gravity, so nothing has weight; add gravity = "9.81 m/s^2", or gravity = 0'
         )
     notes += _pin_notes(job)
     if job.swing() is not None:

@@ -27,7 +27,10 @@ DEEPEST = 8
 LONGEST = 100
 """Number of mistakes to examine; each costs a search for a similar key."""
 
-SEVERAL, SINGLE = "each {0} begins with [[{0}]], in double brackets", "there is one [{0}] only, in single brackets"
+SEVERAL, SINGLE = (
+    "each {0} must begin with [[{0}]], in double brackets",
+    "there must be only one [{0}], in single brackets",
+)
 
 Schema = dict[str, Any]
 

@@ -83,8 +83,8 @@ def _law_points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -
     """Return the points of a law that is stated as a table. Raises `InputError` for lists of different lengths."""
     if law == "table" and not times:
         raise InputError(
-            "a motion law by a table needs fractions of the time and of the travel; got no law_times; add for example "
-            "law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
+            "a tabulated motion law needs fractions of the time and of the travel; got no law_times; add for "
+            "example law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
         )
     if len(times) != len(shares):
         raise InputError(
@@ -278,10 +278,10 @@ def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...])
     for item in varying:
         if item.name == f"motion.{name}" and item.lower <= motion.end <= item.upper:
             raise JobError(
-                f"motion.{name}: starts must lie on one side of the end of the swing, where nothing is left of it; got "
-                f"{factor * item.lower:.6g} to {factor * item.upper:.6g} {unit} with an end at "
-                f"{factor * motion.end:.6g} {unit}; narrow the range, or give {_SPANS[motion.stated_for]} instead of "
-                f"{_ENDS[motion.stated_for]}"
+                f"motion.{name}: starts must lie on one side of the end of the swing, where the swing vanishes; "
+                f"got {factor * item.lower:.6g} to {factor * item.upper:.6g} {unit} with an end at "
+                f"{factor * motion.end:.6g} {unit}; narrow the range, or give {_SPANS[motion.stated_for]} instead "
+                f"of {_ENDS[motion.stated_for]}"
             )
 
 

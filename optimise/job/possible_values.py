@@ -103,8 +103,9 @@ def _narrow_by_rod_to_offset(box: Box, constraint: Constraint, problem: Problem)
     )
     if not narrowed.turns:
         raise InfeasibleError(
-            f"constraints.{ROD_TO_OFFSET.name}: full rotation leaves the crank less than rod - |offset|; got "
-            f"{_bounds_text(constraint)} and with it {_extremes_text(narrowed)}; shorten the crank, or raise the ratio"
+            f"constraints.{ROD_TO_OFFSET.name}: full rotation needs a crank below rod - |offset|; got "
+            f"{_bounds_text(constraint)} and with it {_extremes_text(narrowed)}; shorten the crank, or raise the "
+            "ratio"
         )
     return narrowed
 

@@ -221,7 +221,9 @@ class TableFile:
             signs.first_match(_certain_number_pattern(",", ".")),
         )
         if point is not None and comma is not None:
-            raise InputError(f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers alike")
+            raise InputError(
+                f"{self.name} must use one decimal sign; got {comma} and {point}; write all numbers the same way"
+            )
         if point is not None or comma is not None:
             return (".", ",") if comma is None else (",", ".")
         comma, point = (

@@ -101,7 +101,7 @@ class OptionPart(Part):
         "texts to store with designs, such as a manufacturer", {"maker": "Example Motors"}, default={}
     )
     searched: bool = optional(
-        "whether designs are searched with it; otherwise it is only named where it is the least that suffices",
+        "whether the search uses it; otherwise it is only named where it is the smallest sufficient option",
         False,
         default=True,
     )

@@ -41,10 +41,10 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
     shortest = reachable.laws_within(_AMPLE * max(load, request.torque_limit or 0.0, 1.0)).shortest
     if shortest > longest:
         return InputError(
-            f"the limits of speed allow no cycle shorter than {shortest:.6g} s; {limits.name('cycle_time')} is "
+            f"the speed limits allow no cycle shorter than {shortest:.6g} s; {limits.name('cycle_time')} is "
             f"{limits.cycle_time:.6g} s; extend it, or raise a limit"
         )
-    slower = "; raise it, or widen the limits of speed" + ("" if math.isinf(longest) else ", or extend the cycle time")
+    slower = "; raise it, or widen the speed limits" + ("" if math.isinf(longest) else ", or extend the cycle time")
     if request.crank_acceleration is not None:
         needed = programme.solve("acceleration", needs)
         if needed is not None and needed.value > 1.0:
@@ -70,7 +70,7 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
             )
     narrow = [limits.name(field) for field in request.narrowing_fields]
     return InputError(
-        "a motion law must be resolved between the limits of speed; got a machine whose kinetic energy is too small "
-        "beside the work of its loads, or limits that leave almost no room; state or raise the inertia in [drive] "
-        f"(motor_inertia, gear_ratio, flywheel), or widen {' or '.join(narrow) or 'the limits'}"
+        "a motion law must be resolved between the speed limits; got a machine whose kinetic energy is too small "
+        "compared with the work of its loads, or limits that leave almost no room; state or raise the inertia in "
+        f"[drive] (motor_inertia, gear_ratio, flywheel), or widen {' or '.join(narrow) or 'the limits'}"
     )

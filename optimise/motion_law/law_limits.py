@@ -141,15 +141,15 @@ def resolve_limits(
     if request.cycle_time is None and not speed:
         raise InputError(f"a motion law needs a cycle time; got a machine without speed; give {name('cycle_time')}")
     if request.objective == "cycle time" and request.torque_limit is None:
-        raise InputError(f"the shortest cycle needs a greatest torque; got none; give {name('torque_limit')}")
+        raise InputError(f"the shortest cycle needs a torque limit; got none; give {name('torque_limit')}")
     if request.objective == "cycle time" and request.cycle_time is not None and speed:
         raise InputError(
-            f"the shortest cycle is a result; got {name('cycle_time')} {request.cycle_time:.6g} s; leave it out, or "
-            f"limit {name('greatest_speed')}"
+            f"the shortest cycle must not have a given cycle time; got {name('cycle_time')} "
+            f"{request.cycle_time:.6g} s; leave it out, or limit {name('greatest_speed')}"
         )
     if request.objective == "rms torque" and request.timing == "at most":
         raise InputError(
-            f"the RMS torque is over the whole cycle time; got {name('timing')} at most; ask for the equal cycle time"
+            f"the RMS torque needs an exact cycle time; got {name('timing')} at most; ask for the equal cycle time"
         )
     cycle_time = TURN / speed if request.cycle_time is None else request.cycle_time
     mean = TURN / cycle_time
@@ -180,7 +180,7 @@ def resolve_limits(
             if abs(mean / limit - 1.0) < _ONLY_CONSTANT and (field == "greatest_speed" or request.timing == "equal"):
                 raise InputError(
                     f"a cycle of {cycle_time:.6g} s has a mean crank speed of {rpm_text(mean)}; {name(field)} is "
-                    f"{rpm_text(limit)}, which leaves constant speed alone; change one of them"
+                    f"{rpm_text(limit)}, which only allows constant speed; change one of them"
                 )
     window = _crank_angle_window(mechanism, linkage, request, name("window"), name("window_speed"))
     return LawLimits(request, cycle_time, least, greatest, window, mechanism.direction, labels)

@@ -166,8 +166,8 @@ class Analysis(Mapping[str, float]):
         """
         if self.swing is not None:
             raise InputError(
-                "measured curves are compared at crank angles of a full turn; got a crank that swings, which passes "
-                "each angle twice; compare with `Analysis.cycle`, which has both strokes over time"
+                "measured curves can only be compared for a crank that rotates fully; got a crank that swings, "
+                "which passes each angle twice; compare with `Analysis.cycle`, which has both strokes over time"
             )
         import pandas as pd
 

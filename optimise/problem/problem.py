@@ -206,10 +206,10 @@ class Problem:
                     raise InputError(
                         f"{objective.quantity} grows without bound as the offset goes to zero, so it cannot be "
                         f"maximised; got an offset from {self.offset.lower:g} to {self.offset.upper:g} m; keep the "
-                        "range off zero"
+                        "range away from zero"
                     )
         if self.crank.lower <= 0.0 or self.rod.lower <= 0.0:
-            raise InputError("crank and rod must be longer than zero; raise the lower end of their ranges")
+            raise InputError("crank and rod must be above zero; raise the lower end of their ranges")
 
     def _add_swing_quantities(self, swing: Swing) -> None:
         """Add the quantities of a swing. Raises `InputError` for anything that a swing cannot have."""
@@ -372,8 +372,8 @@ class Problem:
     def _require_no_choices(self) -> None:
         if self.variants:
             raise InputError(
-                f"a design of a problem with choices ({', '.join(self.choices)}) belongs to one option; got the "
-                f"problem with all {len(self.variants)}; use one of problem.parts()"
+                f"a design of a problem with choices ({', '.join(self.choices)}) must belong to one option; got "
+                f"the problem with all {len(self.variants)}; use one of problem.parts()"
             )
 
     @property

@@ -72,7 +72,7 @@ class Constraint:
         for bound in (self.lower, self.upper):
             if bound is not None and not _is_finite(bound):
                 raise InputError(
-                    f"the constraint on {self.quantity} must be a finite number, SI; got {_number_text(bound)}"
+                    f"the constraint on {self.quantity} must be a finite number in SI units; got {_number_text(bound)}"
                 )
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise InputError(
@@ -112,10 +112,10 @@ class Objective:
         _require_name(self.quantity)
         object.__setattr__(self, "sense", _standard_sense(self.quantity, self.sense))
         if (self.sense == "target") != (self.target is not None):
-            raise InputError(f"the objective {self.quantity} needs a target exactly when its sense is 'target'")
+            raise InputError(f"the objective {self.quantity} must have a target if, and only if, its sense is 'target'")
         if self.target is not None and not _is_finite(self.target):
             raise InputError(
-                f"the target of {self.quantity} must be a finite number, SI; got {_number_text(self.target)}"
+                f"the target of {self.quantity} must be a finite number in SI units; got {_number_text(self.target)}"
             )
         _warn_of_units(self.quantity, {"target": self.target})
 

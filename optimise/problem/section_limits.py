@@ -42,7 +42,7 @@ class SectionLimits:
         for name in ("width", "depth"):
             low, high = getattr(self, name)
             if not 0.0 < low < high < math.inf:
-                raise InputError(f"the {name} needs 0 < least < greatest, finite; got {low:g} to {high:g} m")
+                raise InputError(f"the {name} must have 0 < least < greatest, both finite; got {low:g} to {high:g} m")
         if not 1.0 <= self.eye_concentration < math.inf:
             raise InputError(f"eye_concentration must be at least 1 and finite; got {self.eye_concentration:g}")
         if self.criterion not in ("goodman", "soderberg"):

@@ -63,7 +63,7 @@ class RodSpace:
                 f"the space for the rod balance must have a positive, finite radius; got {self.radius:g} m"
             )
         if not (math.isfinite(self.mass) and self.mass > 0.0):
-            raise InputError(f"the greatest mass of the rod balance must be positive, finite; got {self.mass:g} kg")
+            raise InputError(f"the greatest mass of the rod balance must be positive and finite; got {self.mass:g} kg")
 
 
 @dataclass(frozen=True)

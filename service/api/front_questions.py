@@ -178,7 +178,7 @@ _ROUNDED_EXAMPLE = {
             ],
         }
     ],
-    "notes": ["rod has no step and stays as it is"],
+    "notes": ["rod has no step and stays unchanged"],
 }
 
 

@@ -238,7 +238,7 @@ def test_a_file_stays_in_its_job_by_name_and_text(tmp_path: Path) -> None:
     assert sc.problem(tables, folder=tmp_path) == parse_job(pusher())
     (tmp_path / "job.json").write_text(json.dumps(tables))
     assert load_job(tmp_path / "job.json") == parse_job(pusher())
-    with pytest.raises(JobError, match=r"choice #1\.table: must stand without options; got both"):
+    with pytest.raises(JobError, match=r"choice #1\.table: must not be combined with options; got both"):
         parse_job(pusher(choice=[{"name": "g", "table": SIX, "option": []}]))
 
 

@@ -125,7 +125,7 @@ def test_what_cannot_be_picked_by_is_said() -> None:
     front = fronts.front()
     with pytest.raises(InputError, match=r"one of the objectives time_ratio, peak_torque, .*; got 'stroke'"):
         front.topsis({"stroke": 1.0})
-    with pytest.raises(InputError, match="weights must be zero or more, one above zero"):
+    with pytest.raises(InputError, match="objectives must have a weight, all zero or more"):
         front.topsis({"peak_torque": 0.0})
     with pytest.raises(InputError, match="got 0, -1, 0, 0"):
         front.topsis({"peak_torque": -1.0})
@@ -133,7 +133,7 @@ def test_what_cannot_be_picked_by_is_said() -> None:
         front.lexicographic()
     with pytest.raises(InputError, match="at least one objective, each once"):
         front.lexicographic("peak_torque", "peak_torque")
-    with pytest.raises(InputError, match="tolerance of peak_torque must be zero or more, a number; got -1"):
+    with pytest.raises(InputError, match="tolerance of peak_torque must be a number, zero or more; got -1"):
         Priority(quantity="peak_torque", absolute=-1.0)
     empty = fronts.empty_front("infeasible", "nothing")
     with pytest.raises(InputError, match="the front is empty"):

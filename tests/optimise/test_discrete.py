@@ -212,7 +212,7 @@ def test_five_million_combinations_are_judged_one_by_one() -> None:
 def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
     problem = parse_job(job({"offset": ["0 mm", "40 mm"]}))
     assert (
-        "crank has discrete values in the job, multiples of 0.5 mm, and stays as it is"
+        "crank has discrete values in the job, multiples of 0.5 mm, and stays unchanged"
         in solve(problem).rounded(0, 1e-3).notes
     )
     found = neighbours(Axes.of_problem(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
@@ -317,7 +317,9 @@ def test_an_equality_that_no_combination_has_is_told_before_the_search_with_the_
 def test_requirements_over_the_cycle_that_no_combination_meets_are_told_with_the_nearest() -> None:
     front = solve(parse_job(job(constraints={"peak_torque": {"max": "0.5 N m"}})))
     assert (front.status, len(front)) == ("infeasible", 0)
-    assert re.search(r"has peak torque [\d.]+ N m, [\d.]+ N m above what is asked; relax it, or give", front.message)
+    assert re.search(
+        r"has peak torque [\d.]+ N m, [\d.]+ N m above the required value; relax it, or give", front.message
+    )
 
 
 @pytest.mark.parametrize(

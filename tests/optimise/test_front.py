@@ -244,5 +244,5 @@ def test_a_row_that_is_none_of_the_front_is_refused_in_a_sentence(row: Any) -> N
     front = pair()
     asks = (front.part, front.mechanism, front.rates, front.trade_offs, lambda row: like(front, row))
     for ask in asks:
-        with pytest.raises(InputError, match=f"a row must be one of the front's, which are rows 0 to 29; got {row!r}"):
+        with pytest.raises(InputError, match=f"a row must be one of the front's rows 0 to 29; got {row!r}"):
             ask(row)

@@ -113,7 +113,7 @@ def test_several_requirements_that_must_give_way_together_are_said_so() -> None:
 def test_a_floor_that_nobody_asked_for_is_named_where_it_alone_stands_in_the_way() -> None:
     """Next to locking the time ratio goes on towards 3, which the floor of 10 deg cuts off."""
     front = refused({"time_ratio": (2.3, None)}, offset=(0.0, 0.5))
-    assert "least transmission angle at least 10 deg is kept where a job sets none, at most" in front.message
+    assert "least transmission angle at least 10 deg applies if a job sets none, at most" in front.message
     angle = reachable(front, "transmission_angle")
     held: dict[str, Bounds] = {"time_ratio": (2.3, None), "transmission_angle": (degrees(angle), None)}
     assert solve(problem({"peak_torque": "minimise"}, held, offset=(0.0, 0.5))).status == "done"

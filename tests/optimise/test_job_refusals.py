@@ -35,7 +35,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (SPEED, SPEED + "\nmotor = 3", ['mechanism.motor: unknown key "motor"; it belongs in [drive]; move it there']),
     (SPEED, SPEED + "\nxyz = 3", ["mechanism.xyz", "unknown key", "possible here: speed,"]),
     ("[objectives]", "[objective]", ["objective: unknown heading [objective]; did you mean [objectives]?"]),
-    ("[variables]", "[[variables]]", ["variables: there is one [variables] only", "write [variables]"]),
+    ("[variables]", "[[variables]]", ["variables: there must be only one [variables]", "write [variables]"]),
     ('name = "Vibrating sieve"', "", ["name: is missing", "add for example name ="]),
     ('name = "Vibrating sieve"', "name = 3", ["name: must be text in quotes", "got 3"]),
     ('name = "Vibrating sieve"', 'name = " "', ["name: must be one line of text, not empty"]),
@@ -169,7 +169,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (
         STROKE,
         "rod_to_offset = { equals = 1.2 }",
-        ["constraints.rod_to_offset", "crank less than rod - |offset|", "equals 1.2", "crank of at least 80 mm"],
+        ["constraints.rod_to_offset", "crank below rod - |offset|", "equals 1.2", "crank of at least 80 mm"],
     ),
     (STROKE, "rod_to_crank = { min = 8 }", ["constraints.rod_to_crank", "at most 7.5", "min 8", "rod"]),
     (STROKE, "time_ratio = { min = 0.8 }", ["constraints.time_ratio", "1 or more", "min 0.8", "inverse"]),

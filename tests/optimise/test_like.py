@@ -91,7 +91,7 @@ def test_what_contradicts_the_problem_outright_is_said() -> None:
     given = front(False)
     found = like(given, 3, Constraint(quantity="stroke", lower=0.25), ranges={"rod": (0.7, 0.8)})
     assert (found.status, len(found)) == ("infeasible", 0)
-    assert "stroke at least 250 mm, where exactly 200 mm is required already" in found.message
+    assert "stroke at least 250 mm, where exactly 200 mm is already required" in found.message
     remedy = "choose other values, or change constraints.stroke and variables.rod in the job and solve it again"
     assert found.message.endswith(remedy)
     assert (

@@ -67,11 +67,11 @@ SLIPS: dict[str, tuple[Any, str]] = {
         "the weight of peak_torque must be a number; got 'high'",
     ),
     "ranking": (lambda: front().lexicographic(3), "a ranking may only contain names and Priority(...); got 3"),
-    "share": (lambda: door.Priority(quantity="peak_torque", share="10 %"), "zero or more, a number; got '10 %'"),
+    "share": (lambda: door.Priority(quantity="peak_torque", share="10 %"), "zero or more; got '10 %'"),
     "units": (lambda: front().trade_offs(0, "imperial"), "system must be 'metric' or 'inch'; got 'imperial'"),
     "bound of a constraint": (
         lambda: door.Constraint(quantity="stroke", lower="80 mm"),
-        "the constraint on stroke must be a finite number, SI; got '80 mm'",
+        "the constraint on stroke must be a finite number in SI units; got '80 mm'",
     ),
     "degrees": (
         lambda: front().pick("peak_torque", transmission_angle=(40, None)),

@@ -393,11 +393,13 @@ def test_what_is_fixed_or_has_no_step_stays_and_is_told() -> None:
     front = solve(problem(PLAIN, HELD, offset=0.0503, designs=6, samples=256))
     found = front.rounded(1, 0.0005)
     assert set(found.dimensions[:, 2]) == {0.0503}
-    assert found.notes == ("offset is fixed in this job and stays as it is, although it is not a multiple of the step",)
+    assert found.notes == (
+        "offset is fixed in this job and stays unchanged, although it is not a multiple of the step",
+    )
     assert front.rounded(1, 0.0001).notes == ()
     alone = front.rounded(1, {"rod": 0.001})
     assert set(alone.dimensions[:, 0]) == {front.dimensions[1, 0]}
-    assert alone.notes == ("crank has no step and stays as it is", "offset has no step and stays as it is")
+    assert alone.notes == ("crank has no step and stays unchanged", "offset has no step and stays unchanged")
     with pytest.raises(InputError, match="got offset, fixed or with discrete values in this job;"):
         front.rounded(1, {"offset": 0.001})
 

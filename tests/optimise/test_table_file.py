@@ -113,7 +113,7 @@ def test_the_decimal_sign_is_that_of_the_whole_file_and_is_said(text: str, numbe
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("a;b\n1,5;2.5\n", "must use one decimal sign; got 1,5 and 2.5; write all numbers alike"),
+        ("a;b\n1,5;2.5\n", "must use one decimal sign; got 1,5 and 2.5; write all numbers the same way"),
         (
             'a,b\n"1,300",5\n',
             "must have an unambiguous decimal sign; got 1,300, which may mean a thousand times as much",

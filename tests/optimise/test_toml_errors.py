@@ -131,13 +131,14 @@ REFUSED = {
         "line 3, friction: may be given only once; got friction in line 1 already; move the lines below it there"
     ),
     '[load]\nforce = "1 N"\n[mechanism]\nspeed = "1 rpm"\n[[load]]\nforce = "2 N"\n': (
-        "line 1, load: each load begins with [[load]], in double brackets; got [load]; write [[load]]"
+        "line 1, load: each load must begin with [[load]], in double brackets; got [load]; write [[load]]"
     ),
     '[[load]]\nforce = "1 N"\n[mechanism]\nspeed = "1 rpm"\n[load]\nforce = "2 N"\n': (
-        "line 5, load: each load begins with [[load]], in double brackets; got [load]; write [[load]]"
+        "line 5, load: each load must begin with [[load]], in double brackets; got [load]; write [[load]]"
     ),
     "[mechanism]\n[[mechanism]]\n": (
-        "line 2, mechanism: there is one [mechanism] only, in single brackets; got [[mechanism]]; write [mechanism]"
+        "line 2, mechanism: there must be only one [mechanism], in single brackets; got [[mechanism]]; "
+        "write [mechanism]"
     ),
     '[[load]]\nforce = "1 N"\n[[load]]\nforce = 2 N\n': (
         'line 4, load #2.force: a value with a unit must be in quotes; got force = 2 N; write force = "2 N"'

@@ -157,7 +157,7 @@ def test_what_can_be_had_is_had_and_better() -> None:
     answer = wish(of, {"peak_torque": worse[0], "time_ratio": -worse[1], "footprint": worse[2]})
     assert answer.possible
     assert (answer.found.values[0] < worse).all()
-    assert answer.sentences()[0] == "the wish can be had, and better in all of it"
+    assert answer.sentences()[0] == "the wish can be met and exceeded in every objective"
     assert "better than the" in answer.sentences()[1]
 
 

@@ -110,7 +110,7 @@ def test_a_job_runs_as_a_process(tmp_path: Path) -> None:
     )
     assert done.returncode == 0
     assert done.stderr.splitlines() == [
-        'note: masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0'
+        'note: masses are given without gravity, so nothing has weight; add gravity = "9.81 m/s^2", or gravity = 0'
     ]
     record = json.loads(done.stdout)
     assert record["designs"]

@@ -151,7 +151,7 @@ def test_forgotten_gravity_is_told(gravity: str | None, told: bool, tmp_path: Pa
     job.write_text("\n".join(lines))
     done = command("check", job)
     assert done.exit_code == 0, done.stderr
-    assert ("masses are given but no gravity" in done.stdout) == told
+    assert ("masses are given without gravity" in done.stdout) == told
 
 
 @pytest.mark.parametrize(

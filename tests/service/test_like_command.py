@@ -44,7 +44,7 @@ def test_a_design_like_another_with_more_transmission_angle(kept: Path, command:
 def test_what_cannot_be_met_is_exit_code_3(kept: Path, command: Command) -> None:
     done = command("like", "latest", 1, "--runs", kept, "--where", "stroke <= 200 mm", "--json")
     assert done.exit_code == 3
-    assert "stroke at most 200 mm, where exactly 280 mm is required already" in done.stderr
+    assert "stroke at most 200 mm, where exactly 280 mm is already required" in done.stderr
     assert json.loads(done.stdout)["status"] == "infeasible"
 
 

@@ -148,7 +148,7 @@ def test_what_was_not_measured_is_missing(cell: str) -> None:
         ),
         (
             PLAIN.replace("300.5", '"300,5"').replace("240", "240.5"),
-            "must use one decimal sign; got 300,5 and 240.5; write all numbers alike",
+            "must use one decimal sign; got 300,5 and 240.5; write all numbers the same way",
         ),
         (
             PLAIN.replace("300.5", '"1,300"'),

@@ -351,7 +351,7 @@ def test_designs_without_an_answer_are_refused_as_elsewhere(solved: Solved) -> N
     with pytest.raises(InputError, match="a design of a problem with choices"):
         sc.load_job(JOBS / "catalogue.toml").ask("balance", [0.04, 0.1, 0.02])
     for row in (99, -1, 1.0):
-        with pytest.raises(InputError, match=f"a row must be one of the front's, which are rows 0 to 2; got {row}"):
+        with pytest.raises(InputError, match=f"a row must be one of the front's rows 0 to 2; got {row}"):
             fronts.front(designs=3).ask("balance", row)  # type: ignore[arg-type]
 
 

@@ -83,7 +83,7 @@ def test_the_table_tells_changes_and_the_tightest_requirement(banded: Path, comm
     assert f"{best['change_peak_torque_Nm']:+.3g}" in done.stdout
     assert "1: tightest is " in done.stdout
     assert "keep every requirement" in done.stdout
-    assert done.stderr == "note: mechanism.slider.mass has no step and stays as it is\n"
+    assert done.stderr == "note: mechanism.slider.mass has no step and stays unchanged\n"
 
 
 def test_inches_are_given_and_shown(banded: Path, command: Command) -> None:

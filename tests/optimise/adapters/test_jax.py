@@ -68,6 +68,6 @@ def test_lists_are_taken_and_other_widths_refused_before_jax_calls_back() -> Non
     function = sc.jax_function(problem(), ["stroke"])
     assert function([0.04, 0.1, 0.02]).shape == (1,)
     with pytest.raises(
-        sc.InputError, match=r"the last axis must have 3 numbers, one design; got an array of shape \(2,\)"
+        sc.InputError, match=r"the last axis must hold the 3 numbers of a design; got an array of shape \(2,\)"
     ):
         function(np.array([0.04, 0.1]))

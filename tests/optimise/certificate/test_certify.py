@@ -280,7 +280,7 @@ def test_the_hypervolume_gap_holds_for_a_fuller_front() -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "reason"), [({"epsilon": 0.0}, "epsilon must be a fraction"), ({"seconds": 0.0}, "longer than zero")]
+    ("options", "reason"), [({"epsilon": 0.0}, "epsilon must be a fraction"), ({"seconds": 0.0}, "above zero")]
 )
 def test_senseless_options_are_refused(options: dict[str, float], reason: str) -> None:
     with pytest.raises(InputError, match=reason):

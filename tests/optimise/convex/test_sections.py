@@ -305,13 +305,13 @@ def test_what_no_section_carries_is_refused_with_what_fails() -> None:
 def test_wrong_input_is_refused_in_words() -> None:
     with pytest.raises(InputError, match="section sizing only takes joints and guide without friction"):
         size_sections(replace(MACHINE, friction=Friction(guide=0.1)), LINKAGE, STEEL, LIMITS)
-    with pytest.raises(InputError, match="one linkage at a time"):
+    with pytest.raises(InputError, match="one linkage is possible at a time"):
         size_sections(MACHINE, Linkage(np.array([0.05, 0.06]), 0.2), STEEL, LIMITS)
     with pytest.raises(InputError, match="endurance strength <= yield strength <= ultimate strength"):
         replace(STEEL, endurance=400e6)
     with pytest.raises(InputError, match="a material's density must be positive"):
         replace(STEEL, density=0.0)
-    with pytest.raises(InputError, match="the width needs 0 < least < greatest"):
+    with pytest.raises(InputError, match="the width must have 0 < least < greatest"):
         replace(LIMITS, width=(0.02, 0.01))
     with pytest.raises(InputError, match="static_safety must be at least 1"):
         replace(LIMITS, static_safety=0.5)

@@ -198,7 +198,7 @@ REFUSALS: list[tuple[dict[str, Any], str]] = [
     ({"slider_speed": 7.0, **NARROW}, r"the slider's speed limit allows \d+.* rpm, and least_speed is 1920 rpm"),
     (
         {"slider_speed": 5.0, "least_speed": 100.0},
-        r"limits of speed allow no cycle shorter than 0\.03\d+ s",
+        r"speed limits allow no cycle shorter than 0\.03\d+ s",
     ),
     (
         {"crank_acceleration": 100.0, "slider_speed": 9.7, **NARROW},
@@ -208,12 +208,12 @@ REFUSALS: list[tuple[dict[str, Any], str]] = [
     ({"window": 0.01}, "a working window needs its distance and its slider speed; got only one; give window_speed"),
     ({"window_speed": 1.0}, "got only one; give window"),
     ({"least_speed": 300.0, "greatest_speed": 200.0}, "least_speed must not exceed greatest_speed"),
-    ({"objective": "cycle time"}, "the shortest cycle needs a greatest torque; got none; give torque_limit"),
+    ({"objective": "cycle time"}, "the shortest cycle needs a torque limit; got none; give torque_limit"),
     (
         {"objective": "cycle time", "torque_limit": 10.0},
         r"a mean torque of 27\.\d+ N m; torque_limit is 10 N m; raise it",
     ),
-    ({"objective": "rms torque", "timing": "at most"}, "the RMS torque is over the whole cycle time"),
+    ({"objective": "rms torque", "timing": "at most"}, "the RMS torque needs an exact cycle time"),
 ]
 
 

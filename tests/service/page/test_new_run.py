@@ -579,7 +579,7 @@ def test_a_number_without_its_unit_is_warned_of_first_and_apart_from_notes(form:
     warning.get_by_role("button", name="Write 120 rpm").click()
     expect(facts).to_contain_text("crank speed 120 rpm", timeout=30_000)
     expect(facts.locator(".warning")).to_have_count(0)
-    expect(facts.locator(".note")).to_contain_text("Masses are given but no gravity")
+    expect(facts.locator(".note")).to_contain_text("Masses are given without gravity")
     job["mechanism"]["speed"] = "120 U/min"
     job["variables"]["offset"] = "10 mm +- 2 mm"
     content = json.dumps(job).encode()

@@ -39,11 +39,11 @@ const SAID = [
     "crank and rod belong under “Tolerances”; move them there",
   ],
   [
-    "each load begins with [[load]], in double brackets; got a single one; write [[load]] for [load]",
+    "each load must begin with [[load]], in double brackets; got a single one; write [[load]] for [load]",
     "must be a list; got a single entry; put it in a list",
   ],
   [
-    "there is one [mechanism] only, in single brackets; got a list of 2; write [mechanism] for [[mechanism]]",
+    "there must be only one [mechanism], in single brackets; got a list of 2; write [mechanism] for [[mechanism]]",
     "must be a single entry; got a list of 2; keep one of them",
   ],
   [
@@ -67,8 +67,8 @@ const SAID = [
     "a slow stroke that is the inward one leaves only offsets from 0 to 20 mm of the range",
   ],
   [
-    'masses are given but no gravity, so that nothing weighs; add gravity = "9.81 m/s^2", or gravity = 0',
-    "masses are given but no gravity, so that nothing weighs; give the gravity under “Masses and loads”, 0 for none",
+    'masses are given without gravity, so nothing has weight; add gravity = "9.81 m/s^2", or gravity = 0',
+    "masses are given without gravity, so nothing has weight; give the gravity under “Masses and loads”, 0 for none",
   ],
   [
     "position, velocity and acceleration diagrams at --at",
