@@ -85,7 +85,8 @@ class LeverPeak(LeverQuantity):
 
     def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool, limit: int) -> Pieces:
         designs, rows = self._passing(mechanism, dimensions)
-        width = len(self.curves) * (limit + 2)
+        at_rest = 0 if self._required_swing.law == "slow" else 2
+        width = len(self.curves) * (limit + at_rest)
         absent = np.inf if self.inverse else -np.inf
         floor = [] if self.least_value is None else [self.least_value]
         values = np.full((len(designs), width + len(floor)), absent)

@@ -38,7 +38,7 @@ CURVES: dict[str, Curve] = {
     "angle_error": lambda c, s: s.angle_error,
 }
 """Curves whose greatest value counts, with the friction of the seal: both ways together."""
-_PANELS = 2.0
+_PANELS = 1.0
 _PEAKS = 4
 
 
@@ -122,9 +122,9 @@ class _Rows:
 def lever_peaks(
     batch: LeverBatch, curves: Sequence[str], *, gradients: bool = False, limit: int = _PEAKS
 ) -> LeverPeaks:
-    """Return the peaks of each of some curves by name; peak of curve c are columns c k to (c + 1) k. limit: see below.
+    """Return the peaks of each of some curves by name; those of curve c are columns c k to (c + 1) k.
 
-    limit: local peaks of each curve, highest first, followed by the values at rest at both ends.
+    limit: local peaks of each curve, highest first; for a law other than slow, two values at rest at the ends follow.
     """
     rows = _Rows(batch, tuple(CURVES[name] for name in curves), len(batch.stepped) if gradients else 0)
     count = batch.count * len(curves)
@@ -134,17 +134,14 @@ def lever_peaks(
     following = np.where(piece + 1 < pieces, np.arange(len(row)) + 1, -1)
     segments = Segments(row, cuts[piece], cuts[piece + 1], np.arange(len(row)), following)
     found = find_maxima(rows, segments, np.full(count, _PANELS), limit=limit, signed=True)
-    moving, rest = LeverPeaks(found.values, found.places, found.slopes), rows.at_rest()
-    return LeverPeaks(
-        *(_by_lever(parts, len(curves), batch.count) for parts in zip(_parts(moving), _parts(rest), strict=True))
-    )
+    parts = [LeverPeaks(found.values, found.places, found.slopes)]
+    if batch.law != "slow":
+        parts.append(rows.at_rest())
+    columns = zip(*((part.values, part.places, part.gradients) for part in parts), strict=True)
+    return LeverPeaks(*(_by_lever(column, len(curves), batch.count) for column in columns))
 
 
-def _parts(peaks: LeverPeaks) -> tuple[Array, Array, Array]:
-    return peaks.values, peaks.places, peaks.gradients
-
-
-def _by_lever(parts: tuple[Array, Array], curves: int, count: int) -> Array:
+def _by_lever(parts: tuple[Array, ...], curves: int, count: int) -> Array:
     """Return peaks in motion and at rest (c n, k, ...) as (n, c k, ...)."""
     joined = np.concatenate(parts, axis=1)
     by_curve = joined.reshape(curves, count, *joined.shape[1:])

@@ -213,9 +213,10 @@ class Analysis(Mapping[str, float]):
 
     def _repr_html_(self) -> str:
         """Drawing of the linkage and table of its quantities, for notebooks."""
+        picture = "" if self.mechanism.lever is not None else self.linkage._repr_html_() or ""
         table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
         lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._violation_text()) if line)
-        return f"<div>{lines}{self.linkage._repr_html_() or ''}{table}</div>"
+        return f"<div>{lines}{picture}{table}</div>"
 
     def __repr__(self) -> str:
         named_quantities = [item for item in self.quantities if item.name in self.quantity_values][:4]

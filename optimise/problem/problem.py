@@ -254,6 +254,8 @@ class Problem:
             picture = Linkage(sizes[0], sizes[1], sizes[2], self.mechanism.branch)._repr_html_() or ""
         except InputError:  # the middle of the ranges need not be a linkage
             picture = ""
+        if self.mechanism.lever is not None:  # it has neither rod nor slider
+            picture = ""
         rows = [(name, self.ranges[name]) for name in DIMENSIONS]
         ranges = "".join(f"<li>{name}: {1e3 * r.lower:g} to {1e3 * r.upper:g} mm</li>" for name, r in rows)
         requirements = "".join(

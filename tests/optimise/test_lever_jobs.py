@@ -190,8 +190,10 @@ def test_keys_of_a_lever_are_refused_for_a_slider_crank() -> None:
         sc.problem(found)
 
 
-def test_curves_of_a_slider_crank_are_refused_for_a_lever() -> None:
-    analysis = sc.problem(lever()).analyse(TIPPER)
+def test_curves_and_pictures_of_a_slider_crank_are_not_those_of_a_lever() -> None:
+    problem = sc.problem(lever())
+    analysis = problem.analyse(TIPPER)
+    assert "<svg" not in problem._repr_html_() + analysis._repr_html_()
     for ask in (analysis.cycle, analysis.plot, lambda: analysis["stroke"]):
         with pytest.raises(InputError, match=r"crank with rod and slider|rotating crank|rotates fully"):
             ask()
