@@ -202,7 +202,7 @@ def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeyp
     found = found.best()
     assert found.values.tolist() == whole.values.tolist()
     assert found.dimensions.tolist() == whole.dimensions.tolist()
-    assert axes.numbers(axes.designs(0, axes.count)).tolist() == list(range(axes.count))
+    assert axes.combination_numbers(axes.designs(0, axes.count)).tolist() == list(range(axes.count))
 
 
 def test_five_million_combinations_are_judged_one_by_one() -> None:

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import slidercrank as sc
-from slidercrank.model.errors import JobError
-from slidercrank.model.input_warning import InputWarning
+from slidercrank.model.errors import InputWarning, JobError
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
