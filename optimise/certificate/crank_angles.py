@@ -77,7 +77,7 @@ def dead_centre_angle(d: Design, far: Mask) -> Enclosure:
     return angle if d.branch > 0.0 else math.pi - angle
 
 
-def follow_dead_centre(
+def track_dead_centre(
     d: Design, sine: Array, cosine: Array, angle: Array, middle: Array
 ) -> tuple[Mask, Enclosure, Enclosure, Any]:
     """Return a mask of middle designs at a dead centre, with sine, cosine and angle that follow the dead centre."""

@@ -35,7 +35,7 @@ from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_mo
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
-from .crank_angles import crank_at_stroke_fraction, dead_centre_angle, follow_dead_centre
+from .crank_angles import crank_at_stroke_fraction, dead_centre_angle, track_dead_centre
 from .enclosure import Enclosure, interval, join_parts, select
 from .machine import BoxMachine, Numbers
 
@@ -108,13 +108,13 @@ class CycleCurve:
         """
         sums = [
             pair
-            for angles in self.angles_beside_load_steps(numbers, positions, middle)
+            for angles in self.angles_around_load_steps(numbers, positions, middle)
             for pair in self.sum_over_cylinders(numbers, angles, middle)
         ]
         sizes: list[Enclosure] = [np.sqrt(x * x + y * y) if self.kind in VECTORS else magnitude(x) for x, y in sums]
         return reduce(join_parts, sizes)
 
-    def angles_beside_load_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
+    def angles_around_load_steps(self, numbers: Numbers, angles: Array, middle: Array) -> list[Array]:
         """Return angles (n, 1) and, if loads have steps, angles on both sides of each step.
 
         A peak at a step moves with the design: beside it, all designs in the box are on one side of the step.
@@ -159,7 +159,7 @@ class CycleCurve:
             sine, cosine = crank_at_stroke_fraction(d, sine, cosine, middle, self.watch.start, self.watch.end)
         jump = None
         if self.jumps:
-            jump, sine, cosine, local = follow_dead_centre(d, sine, cosine, local, middle)
+            jump, sine, cosine, local = track_dead_centre(d, sine, cosine, local, middle)
             if jump.any() and self.mechanism.speed_profile is not None:
                 d = self._design_in_motion(designs[0][0], member, local - member.lead)
         m = design_motion(sine, cosine, d)

@@ -56,7 +56,7 @@ class StressCurve(CycleCurve):
             return self._stress((sine, cosine, m, d, f), parameter_lookup(self.mechanism, numbers), share, side), 0.0
 
         def stresses(angles: Array) -> list[Enclosure]:
-            near_steps = self.angles_beside_load_steps(numbers, angles, middle)
+            near_steps = self.angles_around_load_steps(numbers, angles, middle)
             return [
                 stress
                 for at in near_steps

@@ -82,10 +82,10 @@ def warn_about(problem: Problem) -> None:
     are fast in every design, and about offsets that a slow stroke excludes.
     """
     from ..search.driving_loads import driving_load_warnings
+    from ..search.full_stroke_loads import full_stroke_load_warnings
     from ..search.loaded_stroke import stroke_warnings
-    from ..search.whole_stroke_loads import loads_over_whole_strokes
 
-    sentences = [*driving_load_warnings(problem), *loads_over_whole_strokes(problem)]
+    sentences = [*driving_load_warnings(problem), *full_stroke_load_warnings(problem)]
     for sentence in (*problem.warnings, *sentences, *stroke_warnings(problem, certain=True)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 

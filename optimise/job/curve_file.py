@@ -268,7 +268,7 @@ def drop_closing_point(curve: Curve) -> Curve:
     return replace(curve, arguments=curve.arguments[:-1], values=curve.values[:-1], notes=notes)
 
 
-def thin_curve(curve: Curve) -> Curve:
+def reduce_curve_points(curve: Curve) -> Curve:
     """Return a curve of more than `MOST_POINTS` points without those that straight lines can replace; steps stay.
 
     No value of the curve changes by more than `SHARE` of its range: Ramer, Computer Graphics and Image Processing 1

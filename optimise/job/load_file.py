@@ -11,7 +11,7 @@ from ...model.machine.loads.registry import kinds
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
 from . import values
-from .curve_file import convert_time_to_angle, curve_in, first_cycle, thin_curve
+from .curve_file import convert_time_to_angle, curve_in, first_cycle, reduce_curve_points
 from .messages import key_of
 from .named_files import SOURCE, Files, read_named_table, require_point_count
 from .raw_tables import tables_in
@@ -74,7 +74,7 @@ def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any
     if curve.argument_head.kind is ANGLE:
         curve, turns = first_cycle(curve, {"360 deg": 1, "720 deg": 2}.get(str(rest.get(CYCLE.name))))
         rest |= {CYCLE.name: "720 deg"} if turns == 2 else {}
-    curve = thin_curve(curve)
+    curve = reduce_curve_points(curve)
     require_point_count(len(curve.arguments), curve.name, 2)
     places, sizes = curve.texts()
     return rest | {at: places, value_entry: sizes, SOURCE: curve.source(file)}

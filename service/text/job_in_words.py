@@ -31,8 +31,8 @@ from ...optimise.problem.restatement import restate
 from ...optimise.problem.violation import constraints_of
 from ...optimise.search.driving_loads import driving_load_warnings
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
+from ...optimise.search.full_stroke_loads import full_stroke_load_warnings
 from ...optimise.search.loaded_stroke import stroke_warnings
-from ...optimise.search.whole_stroke_loads import loads_over_whole_strokes
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 
@@ -49,7 +49,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     warnings = [
         *problem.warnings,
         *driving_load_warnings(problem),
-        *loads_over_whole_strokes(problem),
+        *full_stroke_load_warnings(problem),
         *stroke_warnings(problem),
         *idle_constraint_warnings(problem),
         *impossible_option_notes(problem),

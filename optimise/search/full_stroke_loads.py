@@ -14,7 +14,7 @@ _ROUNDING = 1e-9
 """Relative: a part that is longer by less is the whole stroke, as intended."""
 
 
-def loads_over_whole_strokes(problem: Problem) -> list[str]:
+def full_stroke_load_warnings(problem: Problem) -> list[str]:
     """Return a warning for each force that acts over the whole stroke in every sampled design, but is stated for part.
 
     Does not apply to a swing, which need not have dead centres.
