@@ -98,8 +98,8 @@ class Commands(TyperGroup):
                 print_message(f"slidercrank: Disk full: {full_places(error)}; free some space")
                 raise typer.Exit(WRONG_INPUT) from None
             print_message(
-                f"slidercrank: unexpected {type(error).__name__}: {error}; this is a fault of slidercrank, not of the "
-                f"input; see {_log_of(error)}"
+                f"slidercrank: unexpected {type(error).__name__}: {error}; this is a bug in slidercrank, not in "
+                f"the input; see {_log_of(error)}"
             )
             raise typer.Exit(FAULT) from None
 

@@ -109,7 +109,7 @@ class Swing:
         stated = [name for name, is_stated in excluded.items() if is_stated]
         if stated:
             raise InputError(
-                f"the swing of a lever has two lever angles and a law with a name; got {' and '.join(stated)}; give "
+                f"the swing of a lever must have two lever angles and a named law; got {' and '.join(stated)}; give "
                 "from and to, and the tolerance of the cylinder's length in [cylinder]"
             )
         if angle >= math.pi:

@@ -79,8 +79,8 @@ class Call:
             is_inside = False
         if not is_inside:
             raise InputError(
-                f"a run is a folder in {self.runs} without links that lead elsewhere; got {name[:200]!r}; "
-                "name one of the list of runs"
+                f"a run is a folder in {self.runs} without links that lead elsewhere; got {name[:200]!r}; name one "
+                "from the list of runs"
             )
 
     def front(self, name: str) -> tuple[Path, Result]:
@@ -131,8 +131,8 @@ def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
         jobs = shipped_jobs()
         if job.strip() not in jobs:
             raise NotFound(
-                f"a job is its tables, its TOML text, or the name of one that ships, {', '.join(jobs)}; "
-                f"got {job[:60]!r}; give one of them"
+                f"a job must be its tables, its TOML text or the name of an included job, {', '.join(jobs)}; got "
+                f"{job[:60]!r}; give one of them"
             )
         job = jobs[job.strip()]
     tables = toml_tables(job) if isinstance(job, str) else job

@@ -96,7 +96,7 @@ def describe(
         lines.append(f"topic {word}: {topic['shows']}{input_lines}")
     if word in DESIGN_QUESTIONS:
         topic["answer"] = schema = schema_of_record(DESIGN_QUESTIONS[word].record_type)
-        lines.append(f"  answer, whose keys end otherwise in inches: {', '.join(schema['properties'])}")
+        lines.append(f"  answer (keys have other endings in inches): {', '.join(schema['properties'])}")
     if word in shipped_jobs():
         text = job_toml(shipped_jobs()[word])
         record["job"] = {"tables": shipped_jobs()[word], "toml": text}

@@ -39,8 +39,8 @@ Show = Annotated[
     Query(max_length=20, description=f"add a topic, or several: {', '.join(TOPICS)}, or {ALL}; repeatable"),
 ]
 _TOPICS = RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()], names=TOPICS)
-_ALONG = "Next to this design, along the front, with the requirements that are at their limit held:"
-_NOTHING_TO_GAIN = "At this design nothing can be gained in one objective for a loss in the others."
+_ALONG = "Near this design, along the front, with the active requirements held:"
+_NOTHING_TO_GAIN = "At this design no objective can be improved at the expense of the others."
 
 
 class AnalysisModel(BaseModel):

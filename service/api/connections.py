@@ -165,7 +165,7 @@ class Connection(HttpToolsProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
         if isinstance(exc, TimeoutError):
-            self._gate.log("closed, answers were not taken")
+            self._gate.log("closed: answers were not read")
         self._wait(None)
         super().connection_lost(exc)
 

@@ -145,7 +145,7 @@ def _add(name: str, says: QuestionCommand) -> None:
     question = DESIGN_QUESTIONS[name]
     numbers_field: Any = (Annotated[dict[str, Any], RecordSchema(lambda: [question.record_type])], ...)
     description = (
-        f"What `slidercrank {says.called or name} --json` prints of a design of a front. blocks: its text as data."
+        f"Output of `slidercrank {says.called or name} --json` for a design of a front. blocks: its text as data."
     )
     fields: Any = {name: numbers_field, "blocks": (list[AnswerBlock], ...)}
     model = create_model(f"{name.capitalize()}Model", __base__=OfDesign, __doc__=description, **fields)
@@ -173,7 +173,7 @@ def _add(name: str, says: QuestionCommand) -> None:
 
     route = LongRoute if says.sizes else QuickRoute
     show_numbers.__name__, show_numbers.__doc__ = says.endpoint, says.help
-    draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the figure of what `slidercrank {says.called or name}` finds."
+    draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the result of `slidercrank {says.called or name}`."
     inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
     for endpoint in (show_numbers, draw):
         endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]

@@ -43,7 +43,7 @@ _STREAMED: dict[int | str, dict[str, Any]] = {
         "description": "Events, to the end of the job where they are streamed",
         "content": {STREAM: {"schema": {"type": "string"}, "example": _EXAMPLE}},
     },
-    204: {"description": "The job has ended, and nothing came after the event of Last-Event-ID: no need to come back"},
+    204: {"description": "The job has ended, and nothing came after the event of Last-Event-ID: do not reconnect"},
 }
 _log = logging.getLogger(__name__)
 POLL = 0.1

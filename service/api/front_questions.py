@@ -199,7 +199,7 @@ class RoundedModel(OfDesign):
 
 _ROUNDED_RESPONSES: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "The answer; streamed, events of its progress before it",
+        "description": "The answer; if streamed, preceded by progress events",
         "content": {STREAM: {"schema": {"type": "string"}, "example": _ROUNDED_STREAM}},
     }
 }

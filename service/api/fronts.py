@@ -111,14 +111,16 @@ class FrontModel(BaseModel):
         description="trade-offs at the knee, in words",
         examples=[["1 deg more least transmission angle costs 0.8 N m more peak torque"]],
     )
-    strokes_differ: bool = Field(False, description="whether a stroke of a design is loaded more than the other")
+    strokes_differ: bool = Field(
+        False, description="whether one stroke of a design is more heavily loaded than the other"
+    )
     warnings: list[str] = Field([], description="warnings about possible mistakes, in words", examples=[[]])
     violated: ViolatedOfAll = {}
     violations: Violations
     discrete: dict[str, Any] | None = Field(
         None,
-        description="method by which designs of discrete values were found, and the best of each objective "
-        "with continuous ones",
+        description="method that found designs with discrete values, and the best of each objective with "
+        "continuous ones",
         examples=[{"how": "exact", "combinations": 9720, "judged": 9720, "values": {"crank": "multiples of 0.5 mm"}}],
     )
 

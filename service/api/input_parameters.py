@@ -34,7 +34,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
 def body_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
     """Return the body model for the inputs of a question. more: further fields for `create_model`."""
     fields: dict[str, Any] = {item.name: _field(item) for item in question.inputs if isinstance(item, TypedInput)}
-    description = f"What `{question.name}` is asked with. {question.help.partition(chr(10))[0]}"
+    description = f"Inputs of `{question.name}`. {question.help.partition(chr(10))[0]}"
     return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=description, **fields, **more)
 
 

@@ -65,7 +65,7 @@ class CatalogueText(BaseModel, extra="forbid", strict=True):
 
     table: str = Field(
         max_length=10_000_000,
-        description="CSV, a row an option, with units in the header",
+        description="CSV with one row per option and units in the header",
         examples=["name,peak_torque max (N m)\nGM 40,40\nGM 90,90\n"],
     )
     own: list[str] = Field(default=[], max_length=100, examples=[["clearance"]])
@@ -116,8 +116,8 @@ class Understood(BaseModel):
     degrees_of_freedom: int = Field(examples=[2])
     eliminated: list[str] = Field(examples=[["rod_to_offset"]])
     warnings: list[str] = Field(description="warnings about possible mistakes", examples=[[]])
-    changes: list[ChangeModel] = Field(description="changes that settle warnings", examples=[[]])
-    notes: list[str] = Field(description="notes on what is often forgotten", examples=[[]])
+    changes: list[ChangeModel] = Field(description="changes that resolve warnings", examples=[[]])
+    notes: list[str] = Field(description="notes on common omissions", examples=[[]])
     search: str = Field(examples=["auto, at most 100 designs, seed 1"])
 
 

@@ -73,8 +73,8 @@ class JobProgress(RowProgress):
 
     evaluations: int
     hypervolume: float | None = Field(
-        description="what the feasible designs so far dominate, in boxes that the first of them span; it never falls; "
-        "not comparable between jobs"
+        description="volume that the feasible designs so far dominate, relative to the box that the first of them "
+        "span; it never falls; not comparable between jobs"
     )
     seconds: float | None
     front: FrontProgress | None = Field(

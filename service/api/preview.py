@@ -168,7 +168,7 @@ class SwingPreview(BaseModel):
     to_deg: float | None = Field(description="end of the example's swing; null without one", examples=[101.16])
     closing_share: float = Field(examples=[0.6])
     travel_mm: Ends | None = Field(
-        description="travel of the slider; null where none makes the swing", examples=[[1900.0, 2400.0]]
+        description="travel of the slider; null if no design makes the swing", examples=[[1900.0, 2400.0]]
     )
     feasible_share: float = Field(examples=[0.3])
     sampled: int = Field(examples=[512])
@@ -176,7 +176,7 @@ class SwingPreview(BaseModel):
         description="requirements that each sample meets: exact values and narrow bands", examples=[["stroke"]]
     )
     unchecked: list[str] = Field(examples=[[]])
-    example: SwingExample | None = Field(description="a linkage that makes the swing; null where none does")
+    example: SwingExample | None = Field(description="a linkage that makes the swing; null if none does")
 
 
 class FormulaModel(BaseModel):

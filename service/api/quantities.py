@@ -38,7 +38,7 @@ class QuantityModel(BaseModel):
     source: str
     picture: str = Field(examples=["stroke"])
     better: str = Field(
-        description='its good side, on which requirements usually ask for it, low or high; "" where it has none',
+        description='its good side, which requirements usually ask for: low or high; "" without one',
         examples=["low"],
     )
     allowed_by: str = Field(description='origin of its allowable value; "" without one', examples=[""])

@@ -44,7 +44,7 @@ class TurnQueue:
             self._free.release()
 
     def _busy(self, why: str) -> HTTPException:
-        detail = f"at most {self.most} {self.name} are made at a time; {why}; try again"
+        detail = f"at most {self.most} {self.name} can be made at a time; {why}; try again"
         return HTTPException(503, detail, headers={"Retry-After": "5"})
 
 

@@ -111,8 +111,8 @@ class Connection:
     def unreachable(self, error: Exception) -> ServiceError:
         """Return the error for a service that does not respond."""
         return ServiceError(
-            f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; "
-            "see that `slidercrank serve` runs there"
+            f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; check that "
+            "`slidercrank serve` runs there"
         )
 
 
@@ -182,7 +182,9 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
             tries.wait(error)
         else:
             if tries.made:
-                tries.wait(Away("the events of a job end with the job; the service broke them off; see its log"))
+                tries.wait(
+                    Away("the events of a job must continue until it ends; the service interrupted them; see its log")
+                )
             tries.made += 1
 
 

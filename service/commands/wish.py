@@ -31,8 +31,8 @@ _EXAMPLE = f"--at {QUESTION.inputs[0].example}"
 
 @with_question_help(
     QUESTION,
-    "The exit code is 3 where no design stays within what may worsen. The wish is noted among those of the run, which "
-    "--list shows.",
+    "The exit code is 3 if no design stays within what may worsen. The wish is saved with the run; --list shows "
+    "all its wishes.",
 )
 def wish(
     run: Run,

@@ -92,7 +92,7 @@ def robustness_figure(front: ParetoFront) -> Figure | None:
         PlottedRun("nominal front, without errors", comparison.nominal),
         PlottedRun(f"robust front, within tolerances ({kind})", comparison.robust),
         PlottedRun(
-            f"nominal front's designs within tolerances, {comparison.keeps} keep all requirements",
+            f"nominal front's designs within tolerances, {comparison.keeps} meet all requirements",
             np.where(np.isfinite(comparison.toleranced), comparison.toleranced, np.nan),
         ),
     ]

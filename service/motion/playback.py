@@ -78,14 +78,14 @@ _TURNS = PlayerText(
     times="turns a minute",
     span_name="a turn of the crank",
     note="Dead centres are dashed in the drawing and dotted lines in the curves. "
-    + EXACT_PARTS.format("slider and pins\nare for show"),
+    + EXACT_PARTS.format("slider and pins\nare schematic"),
 )
 _SWING = PlayerText(
     control="Back and forth",
     times="swings a minute",
     span_name="the swing, back and forth",
-    note="Both ends of the swing are dashed in the drawing; a dotted line in the curves is where it turns back. "
-    + EXACT_PARTS.format("slider, pins, the cylinder and the body on the crank are for show"),
+    note="Both ends of the swing are dashed in the drawing; a dotted line in the curves marks the reversal. "
+    + EXACT_PARTS.format("slider, pins, the cylinder and the body on the crank are schematic"),
 )
 _LEFT_OUT = ("crank_angle", "load")
 

@@ -103,7 +103,7 @@ class RecordSchema:
         answers = [handler(type_)["items"] for type_ in cores]  # list items are described once, and referenced
         if self.names:
             return {**handler(core), "properties": dict(zip(self.names, answers, strict=True))}
-        inches = {"type": "object", "description": "in inch units: the same with keys that end in those"}
+        inches = {"type": "object", "description": "in inch units: the same with other key endings"}
         return {"anyOf": [*answers, inches]}
 
 

@@ -84,7 +84,7 @@ def _source_table(record: PositionError, system: System) -> Table:
         for row in record["contributions"]
     )
     return Table(
-        "Where the position error comes from, at the worst crank angle",
+        "Sources of the position error at the worst crank angle",
         ("source", "limit", f"adds, {unit}", "of worst case, %", "of variance, %"),
         rows,
         (0.32, 0.17, 0.15, 0.18, 0.18),

@@ -97,7 +97,7 @@ def front_section(subject: Subject) -> Section:
         title = "Dimensions and objectives of every design"
         blocks.append(Picture(title, partial(parallel_coordinates, subject.front, subject.system), raster))
     else:
-        blocks.append(Paragraph("The front is this one design.", "note"))
+        blocks.append(Paragraph("The front consists of this one design.", "note"))
     return Section("The front", tuple(blocks))
 
 

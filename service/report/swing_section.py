@@ -71,7 +71,7 @@ class SwingOfSubject:
             "order."
         )
         table = Table(
-            f"Where the error of the {driven_quantity} comes from there",
+            f"Sources of the error of the {driven_quantity} there",
             ("source", "limit", f"adds, {unit}", "share, %"),
             rows,
             (0.4, 0.2, 0.2, 0.2),

@@ -89,8 +89,8 @@ def is_there(file: Path) -> bool:
         size = 0
     except OSError as error:
         raise StoreError(
-            f"a store must be in a folder that can be read; {path_text(file)} gave: {error.strerror}; name "
-            "another file, or permit it"
+            f"a store must be in a readable folder; {path_text(file)} gave: {error.strerror}; name another file, "
+            "or change its permissions"
         ) from None
     if file.exists() and not file.is_file():
         kind = "a folder" if file.is_dir() else "no regular file"

@@ -291,6 +291,6 @@ class Claim:
 
     def _lost(self) -> LeaseLost:
         return LeaseLost(
-            f"only the holder of a lease may write to a job; claim {self.job.fence} of job {self.job.id} has lost it; "
-            "leave the job: another worker goes on from what was committed"
+            f"only the holder of a lease may write to a job; claim {self.job.fence} of job {self.job.id} has lost "
+            "it; leave the job: another worker continues from what was committed"
         )

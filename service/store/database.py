@@ -177,8 +177,8 @@ class Database:
             kind = Unavailable if _may_pass(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
-                f"{self._without_secrets(_reason(error))}; see that it runs, that the disk has room and that you may "
-                "write there"
+                f"{self._without_secrets(_reason(error))}; check that it runs, that the disk has space and that "
+                "you may write there"
             ) from None
 
     def _without_secrets(self, text: str) -> str:

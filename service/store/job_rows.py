@@ -42,7 +42,7 @@ def become(connection: Connection, job: Job, state: State, reason: str, **change
 def require_resumable(job: Job) -> None:
     """Raise `InputError` for a job that cannot be resumed."""
     if job.state not in RESUMABLE:
-        raise InputError(f"only a cancelled or failed job can continue; job {job.id} is {job.state}; submit it anew")
+        raise InputError(f"only a cancelled or failed job can continue; job {job.id} is {job.state}; submit it again")
 
 
 def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:

@@ -97,7 +97,7 @@ def keep_design(
         if known is None:
             if len(stored) >= MOST_BOOKMARKS:
                 raise InputError(
-                    f"at most {MOST_BOOKMARKS} designs can be kept for a job; job {job} has as many; delete some"
+                    f"a job may have at most {MOST_BOOKMARKS} bookmarks; job {job} has that many; delete some"
                 )
             fixed = {"design": design, "variant": variant, "dimensions": json.dumps(dimensions), "at": now()}
             empty = {"name": f"Kept {number}", "note": "", "star": False, "decided": False, "reason": ""}
@@ -142,7 +142,7 @@ def _is_bookmark(job: int, number: int) -> Any:
 def _the_bookmark(connection: Connection, job: int, number: int) -> Bookmark:
     row = connection.execute(select(bookmarks).where(_is_bookmark(job, number))).first()
     if row is None:
-        raise NotFound(f"job {job} has no kept design {number}; see the kept designs of the job")
+        raise NotFound(f"job {job} has no bookmark {number}; see the bookmarks of the job")
     return _bookmark_from(row)
 
 

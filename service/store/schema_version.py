@@ -38,8 +38,8 @@ def upgrade(database: Database) -> None:
         foreign = _foreign_tables(connection, scripts)
         if foreign:
             raise StoreError(
-                f"a store must be a database of its own; {database.name} has tables of something else ({foreign}), and "
-                "gets none; name another one with --store"
+                f"a store must be a database of its own; {database.name} has tables of another program "
+                f"({foreign}); name another one with --store"
             )
         if not _knows_version(scripts, version):
             raise StoreError(

@@ -106,7 +106,7 @@ def _jobs_with_miscounts(connection: Connection) -> list[str]:
             ("designs", designs_in_summary, row.has_designs),
         ):
             if expected != counted:
-                miscounts.append(f"job {row.id} says that it has {expected} {kind}, {counted} are there")
+                miscounts.append(f"job {row.id} should have {expected} {kind} but has {counted}")
     return miscounts[:_MOST]
 
 
@@ -161,8 +161,8 @@ def back_up(database: Database, target: Path) -> None:
     except (sqlite3.Error, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise StoreError(
-            f"a backup must go to a writable place; {target} gave: {reason}; see that the folder is there and "
-            "the disk has room"
+            f"a backup must go to a writable place; {target} gave: {reason}; check that the folder exists and the "
+            "disk has space"
         ) from error
     finally:
         with contextlib.suppress(OSError):

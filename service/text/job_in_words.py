@@ -45,7 +45,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
-    samples = f", {counted(settings.samples, 'sample')} a round" if settings.samples else ""
+    samples = f", {counted(settings.samples, 'sample')} per round" if settings.samples else ""
     warnings = [
         *problem.warnings,
         *driving_load_warnings(problem),

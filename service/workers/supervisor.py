@@ -142,7 +142,7 @@ class Supervisor:
             try:
                 process.wait(max(0.0, end - time.monotonic()))
             except subprocess.TimeoutExpired:
-                _log.warning("worker process %d did not stop within its time and is killed", process.pid)
+                _log.warning("worker process %d did not stop in time and is killed", process.pid)
                 process.kill()
                 process.wait()
 

@@ -136,7 +136,7 @@ def _is_out_of_memory(claim: Claim, memory: Memory, terms: Terms) -> bool:
     if terms.grace is None or allowed is None or memory.left_by_earlier_jobs <= TOLERATED * allowed:
         return False
     with contextlib.suppress(LeaseLost, StoreError):  # otherwise its lease expires
-        claim.hand_back("a new worker takes it: earlier jobs left too little memory in this one")
+        claim.hand_back("a new worker continues it: earlier jobs left too little memory in this one")
     return True
 
 

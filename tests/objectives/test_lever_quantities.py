@@ -244,7 +244,7 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
         (lambda: replace(SLOW, end=3.0), "must swing its lever less than 180 deg"),
         (
             lambda: replace(SLOW, actuator_tolerance=1e-3),
-            "a law with a name; got a tolerance of the actuator; give from",
+            "a named law; got a tolerance of the actuator; give from",
         ),
     ],
 )

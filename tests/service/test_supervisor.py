@@ -123,7 +123,7 @@ def test_a_worker_that_cannot_stop_is_killed(
         until(supervisor.processes, "process")
         (process,) = supervisor.processes()
     assert gone(process)
-    assert f"worker process {process} did not stop within its time and is killed" in caplog.messages
+    assert f"worker process {process} did not stop in time and is killed" in caplog.messages
 
 
 @pytest.mark.slow
@@ -152,7 +152,7 @@ def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> No
         until(lambda: store.job(greedy.id).state == "failed", "end of the jobs")
     assert (store.job(leaves.id).state, store.job(fits.id).state) == ("done", "done")
     told = [event.data.get("reason") for event in store.events(fits.id)]
-    assert "a new worker takes it: earlier jobs left too little memory in this one" in told
+    assert "a new worker continues it: earlier jobs left too little memory in this one" in told
     assert re.search(r"it may use 350 MB of memory; its worker used \d{3} MB", store.job(greedy.id).reason)
 
 

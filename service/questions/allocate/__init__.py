@@ -8,7 +8,7 @@ from ..inputs import Input
 QUESTION = DesignQuestion(
     __name__,
     1,
-    shows="tolerances of least cost within a limit of the position error",
+    shows="least-cost tolerances within a limit on the position error",
     inputs=(
         Input(
             "limit",

@@ -18,7 +18,7 @@ from ...render.blocks import Block, Table, Text, Unit, column, dimensions, headi
 from ...render.numerals import format_number
 from ..record_types import Note, Record
 
-Share = Annotated[float | None, Note("null where the exact value is zero all over")]
+Share = Annotated[float | None, Note("null where the exact value is zero everywhere")]
 
 
 class Approximation(Record):

@@ -157,7 +157,7 @@ def _statistics_lines(summary: ClearanceSummary) -> list[Text]:
     """Return the summary in lines."""
     lines: list[Text] = [f"means over {summary.turns} turns, ± 99 % confidence:"]
     for title, estimate, kind in (
-        ("peak acceleration over the ideal one", summary.acceleration_ratio, RATIO),
+        ("peak acceleration divided by the ideal one", summary.acceleration_ratio, RATIO),
         ("impacts per turn", summary.impacts, RATIO),
         ("time in contact", summary.contact_share, PERCENT),
         ("peak contact force", summary.peak_contact_force, FORCE),

@@ -12,8 +12,8 @@ QUESTION = FrontOrJobQuestion(
     key="comparison",
     help="""Compare the fronts of several runs: hypervolume, coverage, epsilon, dominance, effort.
 
-    The runs must have the same objectives; their constraints and machines may differ. Also says which run is better
-    where, and what differs between the jobs.""",
+    The runs must have the same objectives; their constraints and machines may differ. Also reports
+    where each run is better, and how the jobs differ.""",
     inputs=(
         TypedInput(
             "tolerance",

@@ -80,7 +80,7 @@ def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[st
         return []
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
     jobs = "the two jobs" if count == 2 else "the jobs"
-    return [f"{jobs} ask different things: {', '.join(names[:_MOST_NAMES])}{more}; the comparison is of numbers only"]
+    return [f"{jobs} state different problems: {', '.join(names[:_MOST_NAMES])}{more}; only the numbers are compared"]
 
 
 def _given_name(place: str) -> str:
@@ -254,7 +254,7 @@ def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence
     if len(names) < 2:
         return []
     if not places:
-        return [title, sentence("The jobs are the same but for their names.")]
+        return [title, sentence("The jobs differ only in their names.")]
     columns = (column(head, left=True) for head in ("Place in the job", *names))
     rows = ((place, *(value or "–" for value in values)) for place, values in places)
     return [title, Table(tuple(columns), tuple(rows))]

@@ -8,7 +8,7 @@ from ..inputs import Input
 QUESTION = DesignQuestion(
     __name__,
     2,
-    shows="counterweight, and a balance mass on the rod, of least shaking force",
+    shows="counterweight, and balance mass on the rod, for the least shaking force",
     inputs=(
         Input(
             "measure",
@@ -58,8 +58,8 @@ QUESTION = DesignQuestion(
     command=QuestionCommand(
         help="""Find the counterweight, and a balance mass on the rod, that minimise the shaking force.
 
-    The counterweight replaces the one in JOB. Counts inertia forces at constant crank speed over all crank angles,
-    without gravity and loads.""",
+    The counterweight replaces the one in JOB. Considers inertia forces at constant crank speed over all crank
+    angles, without gravity and loads.""",
         endpoint="balance_by_counterweight",
         job="Job file that supplies speed and masses.",
         sizes=True,

@@ -37,7 +37,7 @@ class FrictionNumbers(Record):
     speed."""
     verdict: Verdict
     self_locking_margin_deg: Annotated[
-        float | None, Note("least transmission angle less angles of friction; null where there is none")
+        float | None, Note("least transmission angle minus the friction angles; null where there is none")
     ]
     least_transmission_angle_deg: float
     guide_friction_angle_deg: float

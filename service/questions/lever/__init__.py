@@ -28,11 +28,23 @@ QUESTION = DesignQuestion(
         Input("end", ANGLE, "To", "Lever angle at the end. [default: of the job]", option="to", example="50 deg"),
         Input("pin_angle", ANGLE, "Angle of the pin", "Angle from the lever's own line to its pin B.", usual="0 deg"),
         Input("law", help="Law of the cylinder's length over time; slow ignores inertia.", words=LeverLaw),
-        Input("duration", TIME, help="Duration of one way, for a law other than slow.", sign="positive", example="4 s"),
-        Input("mass", MASS, "Carried mass", "Mass that the lever carries.", sign="zero or more", example="80 kg"),
-        Input("centre", LENGTH, "Its place along the lever", "Its distance from O along the lever.", example="0.7 m"),
         Input(
-            "centre_across", LENGTH, "Its place across", "Its distance from the lever's own line, to the left.", "0 mm"
+            "duration", TIME, help="Duration of one stroke, for a law other than slow.", sign="positive", example="4 s"
+        ),
+        Input("mass", MASS, "Carried mass", "Mass that the lever carries.", sign="zero or more", example="80 kg"),
+        Input(
+            "centre",
+            LENGTH,
+            "Place of the carried mass along the lever",
+            "Distance of the carried mass from O along the lever.",
+            example="0.7 m",
+        ),
+        Input(
+            "centre_across",
+            LENGTH,
+            "Its place across",
+            "Distance of the carried mass from the lever's own line, to the left.",
+            "0 mm",
         ),
         Input(
             "gravity",
@@ -46,7 +58,7 @@ QUESTION = DesignQuestion(
             "closed_length",
             LENGTH,
             "Closed length",
-            "Least length of the cylinder between its pins; with it its stroke.",
+            "Least length of the cylinder between its pins; needs its stroke.",
             sign="positive",
             example="650 mm",
         ),
@@ -56,7 +68,7 @@ QUESTION = DesignQuestion(
             "piston_rod",
             LENGTH,
             "Piston rod",
-            "Diameter of its piston rod, of steel; gives the margin against buckling.",
+            "Diameter of the steel piston rod; gives the margin against buckling.",
             sign="positive",
             example="25 mm",
         ),
@@ -72,7 +84,7 @@ QUESTION = DesignQuestion(
             "seal_friction",
             FORCE,
             "Friction of the seal",
-            "Force of the seal against the motion of the cylinder.",
+            "Friction force of the seal against the motion of the cylinder.",
             "0 N",
             sign="zero or more",
         ),
@@ -95,7 +107,7 @@ QUESTION = DesignQuestion(
         Input(
             "length_tolerance",
             LENGTH,
-            "Tolerance of its length",
+            "Tolerance of the cylinder length",
             "Tolerance of the cylinder's length, for the error of the lever angle. [default: of the job's actuator]",
             sign="zero or more",
             example="1 mm",
@@ -112,7 +124,7 @@ QUESTION = DesignQuestion(
         endpoint="analyse_lever",
         job="Job file that supplies mass and centre of the crank, gravity, tolerances, and the swing in [motion]; with "
         "--design, a run.",
-        alone="Without JOB the lever weighs what it carries.",
+        alone="Without JOB the lever only has the carried mass.",
         curves="the curves from start to end",
         figure=("lever", "the lever at both ends, force and length"),
     ),

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     from ....objectives.kinds import System
 
 _TELESCOPIC = (
-    "no single-stage cylinder is {longest:.6g} mm long open and {shortest:.6g} mm closed: its stroke is less than its "
-    "closed length; move a pivot, swing less far, or take a telescopic cylinder"
+    "no single-stage cylinder is {longest:.6g} mm long open and {shortest:.6g} mm closed: its stroke is less than "
+    "its closed length; move a pivot, swing less far, or use a telescopic cylinder"
 )
-_IDLE = "the cylinder never has to push or pull: nothing weighs and nothing is accelerated; give a mass, or gravity"
+_IDLE = "the cylinder never has to push or pull: nothing has weight or is accelerated; give a mass, or gravity"
 _BUCKLING = "buckling: Euler, both ends pinned, the whole length as slender as the piston rod, of steel"
 _FULL_BORE = "pull pressure and retracting flow take the full bore: no piston rod was given"
 _POINTS = {
@@ -54,8 +54,8 @@ _LACKS = {
     "extending_flow": "null without a bore, and for a slow swing",
     "retracting_flow": "null without a bore, and for a slow swing",
     "time_ratio": "null where the lever cannot turn fully",
-    "fitting_lesser": "null without closed length and stroke, and where no linkage takes them",
-    "fitting_greater": "null without closed length and stroke, and where no linkage takes them",
+    "fitting_lesser": "null without closed length and stroke, and if no linkage fits them",
+    "fitting_greater": "null without closed length and stroke, and if no linkage fits them",
     "duration": "null for a slow swing",
 }
 
@@ -213,7 +213,7 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
         crank, frame = ("lesser", "greater") if record["crank_mm"] < record["frame_mm"] else ("greater", "lesser")
         found.append(
             sentence(
-                "The swing takes the whole stroke of the cylinder if crank and frame are {crank} and {frame}.",
+                "The swing uses the whole stroke of the cylinder if crank and frame are {crank} and {frame}.",
                 crank=recorded(record, f"fitting_{crank}_mm"),
                 frame=recorded(record, f"fitting_{frame}_mm"),
             )

@@ -128,7 +128,7 @@ def _swing(
     if law is None and swing is not None:
         if swing.law == "table":
             raise InputError(
-                "a lever moves slowly or by a law with a name; got a table in [motion] of the job; give "
+                "a lever must move slowly or with a named law; got a table in [motion] of the job; give "
                 f"{labels.get('law', 'law')} slow, or another law"
             )
         law = swing.law

@@ -116,7 +116,7 @@ def _moving_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
 def blocks(numbers: Motor) -> list[Block]:
     """Return the answer for people."""
     remarks = {
-        "rms_torque_Nm": "over time; it heats the motor",
+        "rms_torque_Nm": "over time; determines motor heating",
         "mean_torque_Nm": "over the crank angle",
         "mean_power_W": "over time",
         "mean_reflected_inertia_kg_m2": "over the crank angle",

@@ -14,10 +14,10 @@ QUESTION = FrontOrJobQuestion(
     help="""Find the best round-number designs near a given one, with the loss of each.
 
     Evaluates every combination of multiples of the steps around the design exactly. Lists the non-dominated designs
-    that meet every requirement, or miss it by no more than --allow, smallest loss first. The loss is the greatest over
-    the objectives, each relative to its range over the front. If the best design loses much, designs follow that miss
-    a little and lose clearly less. If no design meets every requirement, lists the nearest ones with what each misses
-    and by how much.""",
+    that meet every requirement, or miss it by no more than --allow, smallest loss first. The loss is the greatest
+    over the objectives, each relative to its range over the front. If the best design loses much, the list
+    continues with designs that miss slightly but lose clearly less. If no design meets every requirement, lists the
+    nearest ones with what each misses and by how much.""",
     inputs=(
         TypedInput(
             "to",

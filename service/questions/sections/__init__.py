@@ -5,7 +5,7 @@ from ..design_question import DesignQuestion, QuestionCommand
 QUESTION = DesignQuestion(
     __name__,
     3,
-    shows="crank and rod as bars of least mass within the limits of stress",
+    shows="crank and rod as bars with the least mass within the stress limits",
     command=QuestionCommand(
         help="""Size crank and rod of one design as rectangular bars with least mass.
 

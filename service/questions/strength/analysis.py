@@ -30,14 +30,14 @@ from ..peaks import row_of
 from ..record_types import Keys, Note, PossiblyInfinite
 
 _SIGNS = ("tension", "compression")
-_OfEye = Annotated[float | None, Note("null where a pin as wide as the bar leaves nothing of it")]
-_OfSign = Annotated[float | None, Note("null of a sign that it never has")]
+_OfEye = Annotated[float | None, Note("null where a pin as wide as the bar leaves no material")]
+_OfSign = Annotated[float | None, Note("null for a sign that never occurs")]
 
 
 def _bar_keys(name: str) -> Any:
     stress_keys = {f"greatest_{sign}_{suffix}": _OfSign for sign in _SIGNS for suffix in _ALONG}
     eyes = {f"eye_at_{pin}_{suffix}": _OfEye for pin in (NEAR, LINKS[name].far) for suffix in _ALONG[:2]}
-    text = "Greatest stresses along a bar, its eyes apart, and in each eye: where and at which crank angle."
+    text = "Greatest stresses along a bar outside its eyes, and in each eye, with place and crank angle."
     return NotRequired[Annotated[dict[str, Any], Keys(f"StressOf{name.capitalize()}", text, stress_keys | eyes)]]
 
 
@@ -51,7 +51,7 @@ StrengthNumbers = Annotated[
     dict[str, Any],
     Keys(
         "StrengthNumbers",
-        "Quantities of strength that the machine has, by how much it goes beyond allowable values, and its bars.",
+        "Strength quantities of the machine, their excess over allowable values, and its bars.",
         {
             **_QUANTITIES,
             "violated": dict[str, float],

@@ -60,7 +60,7 @@ class MonteCarlo(Record):
     standard_deviation_greatest_mm: Turning
     percentiles_greatest_mm: dict[str, float]
     """By percentage of machines; empty if at most one machine rotates fully."""
-    histogram: Annotated[Histogram | None, Note("null where no machine turns, and where none errs")]
+    histogram: Annotated[Histogram | None, Note("null if no machine rotates, or none has an error")]
 
 
 class Yield(Record):

@@ -46,7 +46,7 @@ UnevenSpeed = Annotated[
             "greatest_speed_rpm": float,
             "greatest_speed_angle_deg": float,
             "mean_speed_over_time_rpm": float,
-            "speed_fluctuation": Annotated[float, Note("greatest less least speed over the mean over time")],
+            "speed_fluctuation": Annotated[float, Note("(greatest - least speed) / mean speed over time")],
             "period_s": float,
             "peak_crank_acceleration_rad_s2": float,
             "mean_torque_Nm": Annotated[NullIfLocked, Note("over the crank angle; null where friction locks")],

@@ -101,11 +101,11 @@ def test_a_comparison_of_different_jobs_begins_by_saying_so(client: httpx.Client
     found = client.get(f"{API}/comparison", params={"job": numbers}).json()
     first, *rest = found["sentences"]
     subject, _, names = first.partition(": ")
-    assert subject == "the two jobs ask different things"
+    assert subject == "the two jobs state different problems"
     different = {"speed", "stroke", "load", "rod / (2.5 * crank)"}
-    assert set(names.removesuffix("; the comparison is of numbers only").split(", ")) == different
+    assert set(names.removesuffix("; only the numbers are compared").split(", ")) == different
     assert any("matches or beats every design" in one for one in rest)
-    assert "The two jobs ask different things" in str(found["blocks"][1])
+    assert "The two jobs state different problems" in str(found["blocks"][1])
 
 
 def test_fronts_of_nested_ranges_are_said_to_be_samples(client: httpx.Client, store: Store, solved: Solved) -> None:

@@ -94,7 +94,9 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
         assert client.get("/quick/process").text not in processes
         monkeypatch.setattr(throttle, "_PATIENCE", 0.05)
         answer = client.get("/long/process")
-        assert "at most 2 long analyses are made at a time; all were busy for 0.05 s; try again" in refused(answer, 503)
+        assert "at most 2 long analyses can be made at a time; all were busy for 0.05 s; try again" in refused(
+            answer, 503
+        )
         assert answer.headers["retry-after"] == "5"
 
 

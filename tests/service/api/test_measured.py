@@ -49,7 +49,7 @@ def test_the_record_is_that_of_the_command_line(
     ("body", "words"),
     [
         ({"csv": ""}, "must begin with a line of column names; got an empty file"),
-        ({"csv": "crank_angle_deg,torque_mm\n0,1\n"}, "torque is a torque"),
+        ({"csv": "crank_angle_deg,torque_mm\n0,1\n"}, "torque must be a torque"),
         ({"csv": 5}, "csv"),
         ({}, "csv"),
         ({"csv": CSV, "file": "/etc/passwd"}, "file"),

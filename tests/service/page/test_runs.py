@@ -325,7 +325,7 @@ def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) ->
     expect(page.locator(".compare")).to_contain_text(
         "Run 2 matches or beats every design of run 1, to 2 % of each range."
     )
-    expect(page.locator(".compare")).to_contain_text("The jobs are the same but for their names.")
+    expect(page.locator(".compare")).to_contain_text("The jobs differ only in their names.")
     require_accessible(page)
     picture.locator(".series-1 circle").first.hover()
     expect(page.locator(".readout")).to_contain_text("Run 1, design")

@@ -56,9 +56,9 @@ def test_rows_that_are_missing_or_too_many_are_named(used: str) -> None:
         connection.execute(update(jobs).where(jobs.c.id == 4).values(records=3))
     database.close()
     assert found(used) == [
-        "job 1 says that it has 2 designs, 1 are there",
-        "job 2 says that it has 4 events, 5 are there",
-        "job 4 says that it has 3 records, 1 are there",
+        "job 1 should have 2 designs but has 1",
+        "job 2 should have 4 events but has 5",
+        "job 4 should have 3 records but has 1",
     ]
 
 
