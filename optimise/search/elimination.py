@@ -28,6 +28,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.restatement import restate
 from .elimination_rule import Rule
+from .lever_rules import lever_rules
 from .linear_rules import NOTHING, Block, blocks, evaluate_linear_rule, linear_equations, solve_for_target
 from .swing_rules import swing_rules
 
@@ -178,6 +179,7 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
     rules = [
         *_closed_rules(unsolved, steady=problem.mechanism.speed_profile is None),
         *swing_rules(problem, unsolved, sign),
+        *lever_rules(problem, unsolved),
     ]
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first, because a crank computed from the stroke is the best-conditioned direction of that relation.

@@ -1,0 +1,121 @@
+"""Dimensions that give the cylinder of a lever its exact lengths at the ends of a swing, in closed form.
+
+With the angles psi at both ends, L^2 + e^2 = r^2 + f^2 - 2 r f cos(psi) is quadratic in the lever r and the frame f.
+The least length is at the end with the greater cosine. Two requirements give both lengths, hence r f and r^2 + f^2.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...objectives.lever_geometry import (
+    CYLINDER_TRAVEL,
+    EXTENSION_RATIO,
+    GREATEST_CYLINDER_LENGTH,
+    LEAST_CYLINDER_LENGTH,
+)
+from ..problem.problem import Problem
+from .elimination_rule import Rule
+
+_LEAST, _GREATEST = LEAST_CYLINDER_LENGTH.name, GREATEST_CYLINDER_LENGTH.name
+_TRAVEL, _RATIO = CYLINDER_TRAVEL.name, EXTENSION_RATIO.name
+_ANGLES = ("lever.frame_angle", "lever.pin_angle", "start.angle")
+
+
+@dataclass(frozen=True)
+class LeverRule(Rule):
+    """A rule of a lever's swing. angles: frame angle, pin angle, start and end, rad. follows: whether the end follows.
+
+    free: indices of the angles that are the last sources. root: index of its solution.
+    """
+
+    angles: tuple[float, float, float, float]
+    follows: bool
+    free: tuple[int, ...]
+    root: int = 0
+
+    @property
+    def solutions(self) -> tuple[Rule, ...]:
+        """The rule for each of its roots; an offset has one."""
+        return (self,) if self.target == "offset" else tuple(replace(self, root=root) for root in range(2))
+
+    def formula(self, *known: Any) -> Any:
+        """Return the target for the sources."""
+        lengths = len(known) - len(self.free)
+        near, far = self._cosines(known[lengths:])
+        side = (1.0, -1.0)[self.root]
+        if "+" in self.origin:
+            (offset,) = known[:lengths]
+            first, last = self.values
+            product = 0.5 * (last * last - first * first) / (near - far)
+            total = first * first + offset * offset + 2.0 * product * near
+            return np.sqrt(0.5 * (total + side * np.sqrt(total * total - 4.0 * product * product)))
+        (wanted,), (first, second) = self.values, known[:lengths]
+        if self.target == "offset":
+            cosine = near if self.origin == _LEAST else far
+            return np.sqrt(first * first + second * second - 2.0 * first * second * cosine - wanted * wanted)
+        link, offset = first, second
+        if self.origin == _RATIO:
+            square = wanted * wanted
+            half, rest = link * (far - square * near) / (1.0 - square), link * link - offset * offset
+        else:
+            half = link * (near if self.origin == _LEAST else far)
+            rest = link * link - offset * offset - wanted * wanted
+        return half + side * np.sqrt(half * half - rest)
+
+    def _cosines(self, free: tuple[Any, ...]) -> tuple[Any, Any]:
+        """Return the cosines of psi at the least and at the greatest length."""
+        angles: list[Any] = list(self.angles)
+        for place, angle in zip(self.free, free, strict=True):
+            angles[place] = angle
+        frame, pin, start, end = angles
+        if self.follows:
+            end = start + (self.angles[3] - self.angles[2])
+        first, last = np.cos(start + pin - frame), np.cos(end + pin - frame)
+        is_first = np.real(first) > np.real(last)
+        return np.where(is_first, first, last), np.where(is_first, last, first)
+
+
+def lever_rules(problem: Problem, required: Mapping[str, float]) -> Iterator[Rule]:
+    """Yield the rules for the equalities of a lever's swing. required: their values."""
+    motion, lever = problem.motion, problem.mechanism.nominal.lever
+    if motion is None or lever is None:
+        return
+    varying = {item.sets: item.name for item in problem.mechanism.varying}
+    if any(path in _ANGLES and ((path, 1.0),) not in varying for sets in varying for path, _ in sets):
+        return  # an angle that is not a variable itself
+    free = tuple(place for place, path in enumerate(_ANGLES) if ((path, 1.0),) in varying)
+    names = tuple(varying[(_ANGLES[place], 1.0),] for place in free)
+    swing = ((lever.frame_angle, lever.pin_angle, motion.start, motion.end), motion.follows, free)
+    for origin in (_LEAST, _GREATEST, _RATIO):
+        if origin in required:
+            values = (required[origin],)
+            yield LeverRule(origin, "rod", ("crank", "offset", *names), values, *swing)
+            yield LeverRule(origin, "crank", ("rod", "offset", *names), values, *swing)
+            if origin != _RATIO:
+                yield LeverRule(origin, "offset", ("crank", "rod", *names), values, *swing)
+    for pair in itertools.combinations((_LEAST, _GREATEST, _RATIO, _TRAVEL), 2):
+        if all(name in required for name in pair):
+            lengths = _lengths({name: required[name] for name in pair})
+            yield LeverRule("+".join(pair), "crank", ("offset", *names), lengths, *swing)
+
+
+def _lengths(required: Mapping[str, float]) -> tuple[float, float]:
+    """Return the least and the greatest length, m, from two requirements."""
+    least, greatest = required.get(_LEAST), required.get(_GREATEST)
+    ratio, travel = required.get(_RATIO), required.get(_TRAVEL)
+    if least is None:
+        if greatest is None:
+            assert ratio is not None
+            assert travel is not None
+            least = travel / (ratio - 1.0)
+        else:
+            least = greatest / ratio if ratio is not None else greatest - (travel or 0.0)
+    if greatest is None:
+        greatest = least * ratio if ratio is not None else least + (travel or 0.0)
+    return least, greatest
