@@ -302,7 +302,7 @@ def test_everything_is_reached_by_keyboard(open_page: Open, solved: Solved) -> N
     page.get_by_role("application", name="Parallel coordinates").focus()
     for key in ("ArrowDown", "ArrowRight", "ArrowUp"):
         page.keyboard.press(key)
-    expect(page.locator(".lines").get_by_role("status")).to_contain_text("along the axis of rod")
+    expect(page.locator(".lines").get_by_role("status")).to_contain_text("follow the axis of rod")
     page.locator(".axis-head summary", has_text="rod").press("Enter")
     page.get_by_role("button", name="Logarithmic: rod").press("Enter")
     page.wait_for_url(re.compile("log=rod_mm"))

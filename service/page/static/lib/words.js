@@ -47,6 +47,7 @@ const SAID = [
   ],
   [/ unless cycle_time or strokes_per_minute is given/g, ""],
   [/\bcycle_time\b/g, "cycle time"],
+  [/(?:\bdrive\.)?\b(rated|greatest)_torque\b/g, "$1 torque"],
   [/\bstrokes_per_minute\b/g, "strokes per minute"],
   [/\bdirection = "([a-z-]+)"/g, (_, way) => `the direction ${way}`],
   [

@@ -17,6 +17,10 @@ const SAID = [
     "it is at most 1.2; got min 1.5 and max 1.6; lower it",
     "it is at most 1.2; got at least 1.5 and at most 1.6; lower it",
   ],
+  [
+    "drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got 20 N m, more than 10 N m; swap the two, or correct one",
+    "rated torque: a motor gives it continuously, and greatest torque briefly; got 20 N m, more than 10 N m; swap the two, or correct one",
+  ],
   ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
   [
     "a quantity with a fixed value cannot also be an objective; got constraints.time_ratio with equals; leave out one of the two",
