@@ -38,11 +38,11 @@ const SAID = [
     " belong under $1; move them there",
   ],
   [
-    /each [\w.]+ begins with \S+ in double brackets; got a single one; write [^;]+/g,
+    /each [\w.]+ must begin with \S+ in double brackets; got a single one; write [^;]+/g,
     "must be a list; got a single entry; put it in a list",
   ],
   [
-    /there is one \S+ only, in single brackets; got (a list of \d+); write [^;]+/g,
+    /there must be only one \S+ in single brackets; got (a list of \d+); write [^;]+/g,
     "must be a single entry; got $1; keep one of them",
   ],
   [/ unless cycle_time or strokes_per_minute is given/g, ""],
