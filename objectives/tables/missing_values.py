@@ -30,7 +30,7 @@ _LOCKED_SWING = (
     "reduce the swing, the offset or the friction"
 )
 _TOLERANCES = (
-    "it needs every machine within the tolerances to run; got some that do not turn fully, or that friction locks; "
+    "it needs every machine within the tolerances to run; got some that do not rotate fully, or that friction locks; "
     "lengthen the rod, or tighten the tolerances"
 )
 _FORMULA = "a formula must have a finite value; got an infinite one; change the design or the formula"

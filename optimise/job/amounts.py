@@ -84,7 +84,7 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Col
             amounts[name] = Amount(
                 name=name,
                 kind=kind,
-                sentence=f"{name.replace('_', ' ')} of what is chosen for {choice}, from its catalogue.".capitalize(),
+                sentence=f"{name.replace('_', ' ')} of the option of {choice}, from its catalogue.".capitalize(),
                 source="this job",
                 choice=choice,
                 signed=any(

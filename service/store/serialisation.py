@@ -53,7 +53,7 @@ def unpacked(content: bytes) -> Record:
             return Record(identity, number, rounds, float(file["seconds"]), words)
     except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise RunError(
-            f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job anew"
+            f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job again"
         ) from error
 
 

@@ -53,7 +53,7 @@ _LACKS = {
     "pull_pressure": "null without a bore",
     "extending_flow": "null without a bore, and for a slow swing",
     "retracting_flow": "null without a bore, and for a slow swing",
-    "time_ratio": "null where the lever cannot turn fully",
+    "time_ratio": "null where the lever cannot rotate fully",
     "fitting_lesser": "null without closed length and stroke, and if no linkage fits them",
     "fitting_greater": "null without closed length and stroke, and if no linkage fits them",
     "duration": "null for a slow swing",

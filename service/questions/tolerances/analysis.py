@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Turning = Annotated[float | None, Note("null where all but one of the machines are stuck")]
-Exact = Annotated[float | None, Note("null where a linkage within the tolerances does not turn fully")]
+Exact = Annotated[float | None, Note("null where a linkage within the tolerances does not rotate fully")]
 SAMPLES = 20_000
 BINS = 40  # of the histogram
 
