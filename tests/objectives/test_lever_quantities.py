@@ -84,6 +84,7 @@ def test_a_lever_that_lifts_80_kg_has_the_numbers_of_the_law_of_cosines(
 SLOW = Swing(**ANGLES, driver="cylinder")
 
 
+@pytest.mark.slow
 def test_quantities_are_those_of_dense_curves_in_both_directions() -> None:
     random = np.random.default_rng(31)
     jumps = [third + side for third in (1.0 / 3.0, 2.0 / 3.0) for side in (-1e-9, 0.0, 1e-9)]  # of a trapezoid
@@ -146,6 +147,7 @@ def _varied(case: Case) -> Case:
     return replace(mechanism, varying=VARYING), swing, np.array([[*design[0], *numbers]])
 
 
+@pytest.mark.slow
 def test_gradients_are_those_of_extrapolated_differences() -> None:
     """Also by numbers of the cylinder, the mass of the lever, and the start of the swing."""
     random, misses, compared = np.random.default_rng(32), [], 0

@@ -51,6 +51,7 @@ def test_a_job_has_the_numbers_of_the_law_of_cosines() -> None:
     assert asked["frame_angle_deg"] == pytest.approx(-60.0)
 
 
+@pytest.mark.slow
 def test_the_job_of_the_guide_has_a_front_of_levers(pytestconfig: pytest.Config) -> None:
     guide = (pytestconfig.rootpath / "docs" / "levers.md").read_text(encoding="utf-8")
     (text,) = re.findall(r"^```toml\n(.*?)^```$", guide, re.MULTILINE | re.DOTALL)
@@ -76,6 +77,7 @@ def test_the_cylinder_of_a_job_must_be_long_strong_and_stiff_enough() -> None:
     assert {c.quantity: c.lower for c in constraints_of(stated)}["buckling_margin"] == 3.5
 
 
+@pytest.mark.slow
 def test_numbers_of_the_cylinder_and_the_frame_may_vary_and_be_chosen() -> None:
     variables = {"mechanism.frame_angle": ["-80 deg", "-40 deg"], "cylinder.bore": {"choices": ["32 mm", "40 mm"]}}
     front = sc.solve(sc.problem(lever(variables=variables)))
@@ -123,6 +125,7 @@ def assert_unbeaten(problem: Problem, random: np.random.Generator, count: int) -
     assert not beaten.any()
 
 
+@pytest.mark.slow
 def test_no_design_of_a_front_is_beaten_by_random_designs() -> None:
     random = np.random.default_rng(51)
     assert_unbeaten(random_job(random), random, 2000)
@@ -170,6 +173,7 @@ def test_what_a_lever_does_not_have_is_refused_in_one_sentence(tables: dict[str,
         sc.problem(tables)
 
 
+@pytest.mark.slow
 def test_a_cylinder_that_is_too_weak_for_every_design_is_said_to_be() -> None:
     front = sc.solve(sc.problem(lever(cylinder={"supply_pressure": "2 bar"})))
     assert front.status == "infeasible"

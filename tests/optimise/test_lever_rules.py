@@ -75,6 +75,7 @@ def test_lengths_that_are_required_hold_exactly(names: tuple[str, ...], variable
     assert met
 
 
+@pytest.mark.slow
 def test_a_front_of_exact_lengths_has_them_and_is_as_good_as_without_elimination() -> None:
     names = ("least_cylinder_length", "greatest_cylinder_length")
     problem = job(names, VARIABLES[1])

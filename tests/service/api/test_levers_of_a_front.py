@@ -1,0 +1,37 @@
+"""Designs of levers over the API: each address answers, or refuses in one sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from slidercrank.service.store import Store
+from tests.optimise.problems import LEVER
+from tests.service.api.fixed_front import API, client_of
+from tests.service.api.swinging import solved_at_once
+
+ANSWERED = ("", "/analysis", "/cycle.csv", "/lever", "/lever.svg", "/linkage.dxf", "/linkage.svg", "/requirements")
+REFUSED = {
+    **dict.fromkeys(("/curves", "/motion.gif", "/motion.html", "/swing"), "needs a crank with rod and slider"),
+    **dict.fromkeys(("/counterweight", "/law", "/sections"), "needs a rotating crank; the lever of this job swings"),
+}
+
+
+@pytest.mark.slow
+def test_designs_of_levers_are_answered_or_refused_in_one_sentence(tmp_path: Path) -> None:
+    variables = LEVER["variables"] | {"mechanism.frame_angle": ["-75 deg", "-50 deg"]}
+    with Store(tmp_path / "store.db") as store:
+        number = solved_at_once(store, LEVER | {"variables": variables})
+        with client_of(store) as client:
+            design = f"{API}/jobs/{number}/designs/1"
+            for path in ANSWERED:
+                answer = client.get(design + path)
+                assert answer.status_code == 200, (path, answer.text)
+            for path, part in REFUSED.items():
+                answer = client.get(design + path)
+                assert answer.status_code == 422, (path, answer.text)
+                assert part in answer.json()["detail"]
+            preview = client.post(f"{API}/preview", json={"job": LEVER})
+            assert preview.status_code == 200, preview.text
+            assert (preview.json()["wrong"], preview.json()["example"]) == ([], None)
