@@ -27,15 +27,23 @@ def require_no_mechanism(page: Page) -> None:
         expect(page.locator(part).first).to_be_hidden()
 
 
-def drag(page: Page, grip: Locator, right: float, down: float) -> None:
-    handle = grip.element_handle()
-    handle.wait_for_element_state("stable")  # charts that have just been drawn may move it
-    box = handle.bounding_box()
+def place_of(grip: Locator) -> tuple[float, float]:
+    """Return where to take a grip: the guide near its outer end, where nothing lies over it."""
+    box = grip.bounding_box()
     assert box is not None
-    # Where nothing lies over the guide: near its outer end.
-    x = box["x"] + box["width"] * (0.98 if "guide" in (grip.get_attribute("aria-label") or "").lower() else 0.5)
-    y = box["y"] + box["height"] / 2
+    outer = "guide" in (grip.get_attribute("aria-label") or "").lower()
+    return box["x"] + box["width"] * (0.98 if outer else 0.5), box["y"] + box["height"] / 2
+
+
+def drag(page: Page, grip: Locator, right: float, down: float) -> None:
+    """Drag a grip once nothing moves it any more, as the answer to what came before does on a busy machine."""
+    page.wait_for_load_state("networkidle")
+    place = (0.0, 0.0)
+    while place != (place := place_of(grip)):
+        page.wait_for_timeout(250)
+    x, y = place
     page.mouse.move(x, y)
+    assert grip.evaluate("(grip, [x, y]) => document.elementFromPoint(x, y) === grip", [x, y])
     page.mouse.down()
     page.mouse.move(x + right / 2, y + down / 2)
     page.mouse.move(x + right, y + down)
