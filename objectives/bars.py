@@ -205,7 +205,7 @@ def stresses(
     piece_count: int,
     gradients: bool,
 ) -> list[Part]:
-    """Return the maximum of p sigma - q sigma at each location, for each (p, q) in the criteria; see `stress_peaks`."""
+    """Return the maximum of p sigma - q sigma at each location for each criterion; see `stress_peaks`."""
     peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, limit=piece_count)
     return [Part(each.values, each.gradients, each.labels) for each in peaks]
 

@@ -57,6 +57,6 @@ def kind_of_amount(unit: str) -> Kind:
 
 
 def amount_of(text: str | float) -> tuple[float, str] | None:
-    """Return the number and the unit of an amount such as "280 EUR"; None if the text is not an amount."""
+    """Return number and unit of an amount such as "280 EUR"; None for other text."""
     parts = number_and_unit(text) if isinstance(text, str) else (str(text), "")
     return None if parts is None else (float(parts[0]), parts[1])

@@ -40,7 +40,7 @@ def split_unit(key: str) -> tuple[str, str, float]:
 
 
 def kind_of_key(key: str) -> tuple[str, Kind]:
-    """Return the name and the kind of a metric key; the kind is a ratio if the key has no unit."""
+    """Return name and kind of a metric key; without a unit, the kind is a ratio."""
     unit = _display_unit_of(key)
     if unit is None:
         return key, RATIO

@@ -29,7 +29,7 @@ class LinkStress(BarPeak):
         return tuple(location for _, location in _locations(mechanism))
 
     def demands(self, mechanism: Mechanism) -> list[Demand]:
-        """Return the stress along the bars and in the eye at the pivot, and the force on all eyes; see `BarPeak`."""
+        """Return the stress along bars and in the pivot's eye, and the force on all eyes; see `BarPeak`."""
         strength, bars = strength_of(mechanism), self.bars(mechanism)
         limit = strength.material.yield_strength if self.least else 1.0
         raised = strength.eye_concentration

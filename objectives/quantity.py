@@ -223,7 +223,7 @@ class Quantity(ABC):
 
     @property
     def required(self) -> str:
-        """What it requires of a job, in words; empty if every job meets it."""
+        """Requirements on a job, in words; empty if every job meets them."""
         table = [f"it needs the table [{self.table}]"] if self.table else []
         return "; ".join(dict.fromkeys([*table, *(need.rule for need in self.needs)]))
 

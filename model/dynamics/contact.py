@@ -49,7 +49,7 @@ def _touch(theta: Any, d: Any, segment: Segment, grip: Any, swing: Any) -> Any:
 
 @analytic
 def _senses(probe: Any, d: Any) -> Any:
-    """Signs of the rotation of the crank, of the rod, and of the crank relative to the rod, 1 or -1."""
+    """Rotation signs of crank, rod, and crank relative to rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
     return turn, 1.0 if m.rod_1 * turn > 0.0 else -1.0, turn if m.rod_1 < 1.0 else -turn

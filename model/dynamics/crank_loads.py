@@ -19,7 +19,7 @@ _CRANK_TORQUE = int(Enters.CRANK_TORQUE)
 
 @analytic
 def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Segment) -> Any:
-    """Return a torque minus the torques of the loads on the crank, N m, at a crank angle within a segment.
+    """Return a torque minus the crank loads' torques, N m, at a crank angle within a segment.
 
     way: 1 if the crank turns counter-clockwise, -1 clockwise.
     """

@@ -30,13 +30,13 @@ _NEAR = 1e-12
 
 @analytic
 def expanded_at(h: Any, ratio: Any, exponent: Any) -> Any:
-    """Return z_e, m, for a ratio p_h / p_l: the position at which the gas has expanded to the low pressure."""
+    """Return z_e, m, for a ratio p_h / p_l: where the gas has expanded to low pressure."""
     return h * (power(ratio, inverse(exponent)) - 1.0)
 
 
 @analytic
 def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
-    """Return z_c, m, for a ratio p_h / p_l: the position at which the gas has been compressed to the high pressure."""
+    """Return z_c, m, for a ratio p_h / p_l: where the gas has been compressed to high pressure."""
     return (h + stroke) * inverse(power(ratio, inverse(exponent))) - h
 
 

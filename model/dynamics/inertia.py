@@ -33,7 +33,7 @@ def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
 
 @analytic
 def shaking(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
-    """Return the shaking force along x and y, N, and the shaking moment about the crank pivot, N m, on the frame.
+    """Return shaking force along x and y, N, and shaking moment about the crank pivot, N m.
 
     Counter-clockwise moments are positive. Force -[m a]: from the crank C_tt, from the rod m_rod a_A + S_tt, from the
     slider m_s a_B. Moment -[r x m a]: I_O alpha, A x (m_rod a_A + S_tt) + S x a_A + I_A phi_tt, and -e m_s a_B.

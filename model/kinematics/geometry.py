@@ -42,7 +42,7 @@ def outer_crank_angle(r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def inner_crank_angle(r: Any, l: Any, e: Any) -> Any:
-    """Return the crank angle of the inner dead centre on the open branch, pi + asin(e / (l - r)), rad."""
+    """Return the inner dead centre's crank angle, open branch, pi + asin(e / (l - r)), rad."""
     return math.pi + arcsine(e * inverse(l - r))
 
 
@@ -54,7 +54,7 @@ def excess_angle(r: Any, l: Any, e: Any) -> Any:
 
 @analytic
 def time_ratio(r: Any, l: Any, e: Any) -> Any:
-    """Return the slower stroke's duration divided by the faster's, (pi + b) / (pi - b), for offset e >= 0."""
+    """Return slower over faster stroke duration, (pi + b) / (pi - b), for offset e >= 0."""
     b = excess_angle(r, l, e)
     return (math.pi + b) * inverse(math.pi - b)
 
@@ -109,7 +109,7 @@ def offset_from_stroke(stroke: Any, r: Any, l: Any) -> Any:
 
 @analytic
 def offset_from_excess_angle(r: Any, l: Any, sine: Any, cosine: Any) -> Any:
-    """Return the offset, m, for which the directions of the dead centres differ by b (sine and cosine of b given).
+    """Return the offset, m, for dead-centre directions that differ by b (given by sine and cosine).
 
     In the triangle formed by the crank pivot and the two dead centres, the sides l - r and l + r enclose b, and the
     stroke lies opposite. The offset is the height: e = (l^2 - r^2) sin(b) / S.

@@ -233,7 +233,7 @@ class Linkage:
         speed: float = 0.0,
         acceleration: float = 0.0,
     ) -> PointMotion:
-        """Return the motion of a point on the rod, `along` it from the crank pin and `across` to its left, m."""
+        """Return the motion of a rod point, `along` from the crank pin and `across` to the left, m."""
         theta = numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)

@@ -169,7 +169,7 @@ def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: flo
 def formula_of_numbers(
     mechanism: Mechanism, designs: Array, formula: Callable[[Callable[[int], Any]], Any], *, gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return a formula's values (n,) for designs (n, 3 + k), and its derivatives (n, 3 + k) by complex steps.
+    """Return a formula for designs (n, 3 + k): values (n,) and complex-step derivatives (n, 3 + k).
 
     formula: smooth formula that accepts real or complex numbers. Its argument is a function that returns the raw number
     at a slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.

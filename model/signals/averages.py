@@ -26,7 +26,7 @@ from .two_turns import averaged
 
 @dataclass(frozen=True)
 class Averages:
-    """Averages (3, n) of curves of n designs over the cycle, and their gradients (3, n, 3 + k) or None.
+    """Averages (3, n) of curves over the cycle, and their gradients (3, n, 3 + k) or None.
 
     Rows: mean over the crank angle, which is work per angle; RMS value over the crank angle, which matters for a
     flywheel; RMS value over time, which matters for heating. At constant speed the last two are the same. If friction

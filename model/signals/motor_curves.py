@@ -1,4 +1,4 @@
-"""Curves of a motor over the cycle: torque, power and the energy that it draws, with a gear that has losses.
+"""Curves of a motor over the cycle: torque, power and energy drawn, with a lossy gear.
 
 In the direction of rotation, let T be the crank torque, J_f the flywheel inertia, J_m the rotor inertia, i the gear
 ratio, and w and a the crank's speed and acceleration:
@@ -61,7 +61,7 @@ _KINKS = {GEAR: MotorCurve.THROUGH_GEAR, SUPPLY: MotorCurve.SUPPLIED}
 
 
 class _Numbers(NamedTuple):
-    """Numbers of the drive train, (n, 1 + v): complex, stepped in the place and in each number of a design."""
+    """Drive train numbers, (n, 1 + v): complex, stepped in the place and each design number."""
 
     speed: _Stepped
     acceleration: _Stepped

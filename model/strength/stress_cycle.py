@@ -269,7 +269,7 @@ def stress_peaks(
     gradients: bool = False,
     limit: int = STORED_MAXIMA,
 ) -> list[StressPeaks]:
-    """Return the maximum of p sigma - q sigma for designs (n, 3 + k) at each location; `StressLocation` defines sigma.
+    """Return the maximum of p sigma - q sigma for designs (n, 3 + k) at each `StressLocation`.
 
     criteria: (m, 2), p and q of each, none negative. limit: maxima returned per design; if 1, only the highest ones are
     followed. The links at the locations must be `Bar`.

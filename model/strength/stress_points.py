@@ -78,7 +78,7 @@ class Samples(NamedTuple):
 
 
 class Bars(NamedTuple):
-    """Width, depth and density of rod and crank (n, 6), derivatives (v, 6) by raw numbers; 0 for a link without bar."""
+    """Width, depth, density of rod and crank (n, 6), derivatives (v, 6); 0 without a bar."""
 
     sizes: Table
     rates: Table

@@ -36,7 +36,7 @@ class PinSides(NamedTuple):
 
 @analytic
 def toggle_distance(sine: Any, cosine: Any, m: Motion) -> Any:
-    """Distance of the slider pin from the crank line, l sin(theta - phi), m; zero if both links are in line."""
+    """Distance of the slider pin from the crank line, l sin(theta - phi), m."""
     return sine * m.l_cos - cosine * m.l_sin
 
 

@@ -82,7 +82,7 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 
 @analytic
 def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool) -> Any:
-    """Return the force on the slider that turns a free crank, along +x or NaN, and the force in the guide.
+    """Return the slider force that turns a free crank, along +x or NaN, and the guide force.
 
     on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts at a cut.
     """

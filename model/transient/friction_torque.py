@@ -49,7 +49,7 @@ _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acc
 
 
 class Senses(NamedTuple):
-    """Signs within a span, each +1 or -1: of the crank speed, of the slider velocity along x, of the rod's rotation."""
+    """Signs of crank speed, slider velocity along x, and rod rotation within a span, +1 or -1."""
 
     turn: float
     slide: float

@@ -75,7 +75,7 @@ def _legendre_sum(series: Array, x: float) -> float:
 
 
 class PeriodicTurn:
-    """Terms of the equation of motion at the nodes of a cycle, in the order in which the crank passes them.
+    """Terms of the equation of motion at the nodes of a cycle, in passing order.
 
     angle: (panels, nodes). width: angle turned in each panel, (panels,), negative clockwise. low: start of each panel.
     cuts: additional crank angles at which panels end, rad; contacts: angles where a guide changes sides, ascending.

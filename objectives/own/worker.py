@@ -161,7 +161,7 @@ class Worker:
         return content
 
     def _next_message(self, limit: float) -> Message:
-        """Return the next message from the process; empty if it has ended, or if it is late and is ended here.
+        """Return the next message from the process; empty if it has ended or is ended for being late.
 
         An interruption ends a slow process. Time during which this process is suspended does not count.
         """

@@ -235,7 +235,7 @@ def _plain_text(text: str) -> str:
 
 
 def _likely_curve(name: str, spoken: Iterable[str]) -> str | None:
-    """Return the curve that a column may mean: one with the same first word, or else one with a similar name."""
+    """Return the curve that a column may mean, by its first word or a similar name."""
     word = _plain_text(name).partition("_")[0]
     return next((curve for curve in spoken if word in curve.split("_")), None) or _likely_word(name, spoken)
 

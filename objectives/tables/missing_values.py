@@ -39,7 +39,7 @@ _FORMULA = "a formula must have a finite value; got an infinite one; change the 
 def missing_value_reason(
     quantity: Quantity, value: float, mechanism: Mechanism, linkage: Linkage, swing: Swing | None = None
 ) -> str:
-    """Return the reason why a design has no value for a quantity that its machine defines; empty if it has one.
+    """Return the reason why a design has no value for a defined quantity; empty if it has one.
 
     value: value from `Quantity.evaluate`, in any unit. mechanism: machine with its variables fixed. swing: motion
     instead of a full turn.

@@ -96,7 +96,7 @@ class AngleTable(Load):
         return 2 if self.cycle == "720 deg" and not self.turn else 1
 
     def on_turn(self, turn: int) -> Load:
-        """Return the table of turn 1 or 2 alone, which need not close; the table itself if all turns are alike."""
+        """Return the table of turn 1 or 2 alone, or itself if all turns are alike."""
         return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
     def numbers(self) -> tuple[float, float, float, float]:

@@ -1,4 +1,4 @@
-"""A torque on the crank besides that of the drive: constant, opposing every motion, or from a spring to the frame."""
+"""A torque on the crank besides the drive's: constant, opposing every motion, or from a spring."""
 
 from __future__ import annotations
 

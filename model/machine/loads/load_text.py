@@ -107,7 +107,7 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
 
 
 def range_of_angles(angles: Sequence[float], datum: str, cycle: str) -> str:
-    """Return the range of a table over the crank angle, rad from its datum, and the cycle after which it repeats."""
+    """Return a table's range over the crank angle, rad from its datum, and its cycle."""
     low, high = (f"{math.degrees(end):.6g}" for end in (angles[0], angles[-1]))
     after = "of crank angle" if datum == "zero crank angle" else f"after the {datum}"
     return f"from {low} to {high} deg {after}; periodic over {cycle}"

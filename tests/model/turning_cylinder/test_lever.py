@@ -30,7 +30,7 @@ def lever(**changes: float) -> TurningCylinder:
 
 
 def test_the_chain_of_300_levers_is_the_slider_crank_with_its_rod_fixed() -> None:
-    """The slider position is the length; the angles from OA are theta + pi - phi to OB, and pi - phi to the line."""
+    """The slider position is the length; from OA, OB is at theta + pi - phi, the line at pi - phi."""
     random = np.random.default_rng(1)
     for _ in range(300):
         sizes = some_sizes(random)
@@ -162,7 +162,7 @@ def test_a_length_out_of_reach_has_no_lever_angle() -> None:
 @pytest.mark.parametrize("lesser", [0.12, 0.3])
 @pytest.mark.parametrize("whitworth", [False, True])
 def test_time_ratios_of_shaper_and_whitworth_are_the_published_closed_forms(lesser: float, whitworth: bool) -> None:
-    """Q = (pi + 2 a) / (pi - 2 a) with sin(a) = crank / frame of the shaper, frame / crank of the Whitworth."""
+    """Q = (pi + 2 a) / (pi - 2 a), sin(a) = shorter / longer of crank and frame."""
     sizes = lever(crank=0.5, frame=lesser) if whitworth else lever(crank=lesser, frame=0.5)
     a = math.asin(lesser / 0.5)
     assert sizes.time_ratio == pytest.approx((math.pi + 2.0 * a) / (math.pi - 2.0 * a), rel=1e-12)
