@@ -21,14 +21,13 @@ from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.turning_cylinder.forces import lever_curves
 from slidercrank.model.turning_cylinder.machine import lever_machine, lever_swing
-from slidercrank.objectives.lever_quantity import LeverQuantity
 from slidercrank.objectives.registry import FACTS
+from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.evaluate import evaluate
 from slidercrank.objectives.tables.swinging import swing_quantities
 from tests.model.turning_cylinder.machines import some_machine
 from tests.objectives.richardson import derivatives
 
-LEVERS = {name: fact for name, fact in FACTS.items() if isinstance(fact, LeverQuantity)}
 CYLINDER = Cylinder(
     **{"closed_length": 0.6, "stroke": 0.5, "bore": 0.08, "rod": 0.04, "supply_pressure": 2e7},
     **{"seal_friction": 35.0, "barrel_mass": 9.0, "piston_rod_mass": 4.0, "length_tolerance": 1e-3},
@@ -162,7 +161,7 @@ def test_gradients_are_those_of_extrapolated_differences() -> None:
             if not found.values[0] or not np.isfinite(found.values[0]):  # it never pulls, or never pushes
                 continue
 
-            def function(displaced: Array, _: object, of: LeverQuantity = of, case: Mechanism = mechanism) -> Array:
+            def function(displaced: Array, _: object, of: SwingQuantity = of, case: Mechanism = mechanism) -> Array:
                 return of.evaluate(case, displaced).values
 
             expected, estimate = derivatives(function, design, step)
