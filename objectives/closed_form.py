@@ -41,7 +41,7 @@ class ClosedFormQuantity(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return its closed forms if they hold for a machine; see `Quantity`."""
-        return [partial(_of_numbers, form) for form in self.forms] if self.is_closed(mechanism) else ()
+        return [partial(_closed_form_value, form) for form in self.forms] if self.is_closed(mechanism) else ()
 
     def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
         """Return its bounds if the closed form holds for a machine."""
@@ -68,7 +68,7 @@ class ClosedFormQuantity(Quantity):
         return Pieces(values, np.stack([slopes for _, slopes in parts if slopes is not None], axis=1), labels)
 
 
-def _of_numbers(form: ClosedForm, number: Number) -> Any:
+def _closed_form_value(form: ClosedForm, number: Number) -> Any:
     return closed_form(int(form), number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET))
 
 

@@ -38,15 +38,15 @@ class Envelope(GreatestOfFormulas):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the extents; see `Quantity`."""
-        return [partial(_of_machine, extent) for extent in self.extents]
+        return [partial(_extent_of_machine, extent) for extent in self.extents]
 
 
-def _of_machine(extent: Extent, number: Callable[[int], Any]) -> Any:
+def _extent_of_machine(extent: Extent, number: Callable[[int], Any]) -> Any:
     halves = 0.5 * number(Raw.CRANK_WIDTH), 0.5 * number(Raw.ROD_WIDTH)
     return extent(number(Raw.CRANK), number(Raw.ROD), magnitude(number(Raw.OFFSET)), *halves)
 
 
-def _outer(r: Any, l: Any, e: Any) -> Any:
+def _outer_dead_centre(r: Any, l: Any, e: Any) -> Any:
     return np.sqrt((l + r + e) * (l + r - e))
 
 
@@ -65,8 +65,8 @@ ENVELOPE_LENGTH = _envelope(
     formula="(r + h) + max(x_out + h_r, r + h_c): half widths h_c and h_r, the greater one h",
     example="400 mm",
     extents=(
-        lambda r, l, e, c, d: (r + d) + (_outer(r, l, e) + d),
-        lambda r, l, e, c, d: (r + c) + (_outer(r, l, e) + d),
+        lambda r, l, e, c, d: (r + d) + (_outer_dead_centre(r, l, e) + d),
+        lambda r, l, e, c, d: (r + c) + (_outer_dead_centre(r, l, e) + d),
         lambda r, l, e, c, d: 2.0 * (r + c),
     ),
 )

@@ -74,7 +74,7 @@ class FlowRipple(Quantity):
     def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
         areas = [formula_of_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps]
-        machine, count = _flow_as_torque(mechanism), cylinder_count(mechanism)
+        machine, count = _machine_with_flow_as_torque(mechanism), cylinder_count(mechanism)
         flow_designs = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
         peaks = find_peaks(machine, Signal.TORQUE, flow_designs, limit=peak_count, gradients=True)
         flow_designs[:, -1] = peaks.values[:, 0] / count
@@ -117,7 +117,7 @@ def _mean_delivery(number: Callable[[int], Any], pumps: Iterable[int], count: in
 
 
 @memoise_by_machine
-def _flow_as_torque(mechanism: Mechanism) -> Mechanism:
+def _machine_with_flow_as_torque(mechanism: Mechanism) -> Mechanism:
     """Return a machine whose drive torque equals the flow.
 
     Its designs end with the pump areas and a torque to subtract.

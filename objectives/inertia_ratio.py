@@ -18,12 +18,12 @@ from .machine_needs import DRIVE_TRAIN, ROTOR
 from .quantity import Array, Group, Number, Pieces, Quantity, Values, undefined
 
 
-def _per_inertia(number: Number) -> Any:
+def _per_rotor_inertia(number: Number) -> Any:
     return 1.0 / (number(DRIVE["gear_ratio"]) ** 2 * number(DRIVE["motor_inertia"]))
 
 
-def _of_flywheel(number: Number) -> Any:
-    return number(DRIVE["flywheel"]) * _per_inertia(number)
+def _flywheel_inertia_ratio(number: Number) -> Any:
+    return number(DRIVE["flywheel"]) * _per_rotor_inertia(number)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,7 +63,7 @@ class InertiaRatio(Quantity):
     def _ratio(self, mechanism: Mechanism, designs: Array, inertia: Array, slopes: Array | None) -> Values:
         scale, flywheel = (
             Values(*formula_of_numbers(mechanism, designs, formula, gradients=slopes is not None))
-            for formula in (_per_inertia, _of_flywheel)
+            for formula in (_per_rotor_inertia, _flywheel_inertia_ratio)
         )
         linkage = Values(inertia, slopes).times(scale)
         if linkage.gradients is None or flywheel.gradients is None:

@@ -26,7 +26,7 @@ class LinkStress(BarPeak):
 
     def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return the stress maxima for both links, even if only one is asked for."""
-        return tuple(location for _, location in _locations(mechanism))
+        return tuple(location for _, location in _links_and_locations(mechanism))
 
     def demands(self, mechanism: Mechanism) -> list[Demand]:
         """Return the stress along bars and in the pivot's eye, and the force on all eyes; see `BarPeak`."""
@@ -38,7 +38,7 @@ class LinkStress(BarPeak):
             Demand(location, net_width(location), limit, pivot)
             if isinstance(location, Eye)
             else Demand(location, None, limit)
-            for name, location in _locations(mechanism)
+            for name, location in _links_and_locations(mechanism)
             if name in bars
         ]
         return bent + [
@@ -63,14 +63,18 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
         name, pin = demand.eye
         value = float(part.values[0, 0])
         # A force is labelled with its crank angle.
-        angle = _angle_of(mechanism, demand.peak, design) if isinstance(demand.peak, Eye) else float(part.labels[0, 0])
+        angle = (
+            _angle_of_greatest_stress(mechanism, demand.peak, design)
+            if isinstance(demand.peak, Eye)
+            else float(part.labels[0, 0])
+        )
         stress = (value, angle if math.isfinite(value) else math.nan)
         eyes = stresses_by_link.setdefault(name, {})
         eyes[pin] = max(eyes.get(pin, stress), stress, key=lambda one: one[0])
     return stresses_by_link
 
 
-def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> float:
+def _angle_of_greatest_stress(mechanism: Mechanism, place: StressLocation, design: Array) -> float:
     """Return the crank angle of the maximum stress at a location, in tension or compression."""
     ends = []
     for column, criterion in enumerate(STATIC):
@@ -79,7 +83,7 @@ def _angle_of(mechanism: Mechanism, place: StressLocation, design: Array) -> flo
     return max(ends)[1]
 
 
-def _locations(mechanism: Mechanism) -> list[tuple[str, StressLocation]]:
+def _links_and_locations(mechanism: Mechanism) -> list[tuple[str, StressLocation]]:
     """Return links and locations with stress over a whole section: along the bars, and in the eye at the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
     bodies: list[tuple[str, StressLocation]] = [(name, LinkBody(LINKS[name].part)) for name in bars]

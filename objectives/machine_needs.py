@@ -213,7 +213,7 @@ A_BAR = _defining(
 )
 
 
-def _weight(part: str) -> Need:
+def _needs_mass_of(part: str) -> Need:
     def weighs(machine: Mechanism) -> bool:
         link = getattr(machine.fullest, part)
         return isinstance(link, Bar) or link.mass > 0.0
@@ -224,4 +224,4 @@ def _weight(part: str) -> Need:
     )
 
 
-CRANK_MASS, ROD_MASS = _weight("crank"), _weight("rod")
+CRANK_MASS, ROD_MASS = _needs_mass_of("crank"), _needs_mass_of("rod")

@@ -107,13 +107,15 @@ class PinRubbing(OfBars):
         factor = self.factor(mechanism)
         return [
             mean.times(
-                formula_of_numbers(mechanism, designs, _per_length(factor, LINKS[name].depth), gradients=gradients)
+                formula_of_numbers(
+                    mechanism, designs, _factor_over_twice_length(factor, LINKS[name].depth), gradients=gradients
+                )
             )
             for name in self.bars(mechanism)
         ]
 
 
-def _per_length(factor: Formula, depth: int) -> Formula:
+def _factor_over_twice_length(factor: Formula, depth: int) -> Formula:
     """Return the formula for a factor divided by twice a length, 1/m. depth: slot of the length."""
     return lambda number: factor(number) / (2.0 * number(depth))
 

@@ -55,7 +55,7 @@ class StrokeTime(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula at constant speed; see `Quantity`."""
-        return _even_formulas(mechanism, self._angle, _per_speed(mechanism))
+        return _constant_speed_formulas(mechanism, self._angle, _over_mean_speed(mechanism))
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -63,18 +63,18 @@ class StrokeTime(Quantity):
         if self.undefined_because([mechanism]):
             return undefined(dimensions, gradients)
         angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._angle, gradients))
-        per_speed = formula_of_numbers(mechanism, dimensions, _per_speed(mechanism), gradients=gradients)
+        per_speed = formula_of_numbers(mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients)
         return angles.times(Values(*per_speed))
 
     def _angle(self, times: ScaledStrokeTimes) -> Any:
         return times.outward if self.outward else times.inward
 
 
-def _per_speed(mechanism: Mechanism) -> Formula:
+def _over_mean_speed(mechanism: Mechanism) -> Formula:
     return lambda number: 1.0 / (mechanism.direction * number(Raw.SPEED))
 
 
-def _even_formulas(
+def _constant_speed_formulas(
     mechanism: Mechanism, function: Callable[[ScaledStrokeTimes], Any], factor: Formula = lambda number: 1.0
 ) -> Sequence[Formula]:
     """Return a factor times a function of the stroke times, as a formula in a machine's numbers.
@@ -104,7 +104,7 @@ class StrokeTimeRatio(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula at constant speed; see `Quantity`."""
-        return _even_formulas(mechanism, self._ratio)
+        return _constant_speed_formulas(mechanism, self._ratio)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""

@@ -47,7 +47,7 @@ class TimeRatio(ClosedFormQuantity):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
         ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
         if slopes is not None:
-            slopes = np.where((ratio >= 1.0 / ratio)[:, None], slopes, _inverse_slopes(ratio, slopes))
+            slopes = np.where((ratio >= 1.0 / ratio)[:, None], slopes, _derivatives_of_inverse(ratio, slopes))
         return Values(np.maximum(ratio, 1.0 / ratio), slopes)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
@@ -58,10 +58,10 @@ class TimeRatio(ClosedFormQuantity):
         assert slopes is not None
         values = np.stack([ratio, 1.0 / ratio], axis=1)
         labels = np.broadcast_to(np.arange(2.0), values.shape)
-        return Pieces(values, np.stack([slopes, _inverse_slopes(ratio, slopes)], axis=1), labels)
+        return Pieces(values, np.stack([slopes, _derivatives_of_inverse(ratio, slopes)], axis=1), labels)
 
 
-def _inverse_slopes(ratio: Array, slopes: Array) -> Array:
+def _derivatives_of_inverse(ratio: Array, slopes: Array) -> Array:
     """Return the derivatives of the inverse of a ratio."""
     return -slopes / np.square(ratio)[:, None]
 

@@ -394,7 +394,7 @@ def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     except InputError as error:
         raise InputError(f"{rule}; got {quote(text)}: {error}; {write}") from None
     if dimension != _parse_unit(kind.unit)[1]:
-        note, remedy = _other_kind(match[1], unit, kind)
+        note, remedy = _kind_of_other_unit(match[1], unit, kind)
         raise InputError(f"{rule}; got {quote(text)}{note}; {remedy or write}")
     for unit_of_kind, symbols, item in _AMBIGUOUS_SYMBOLS:
         if kind.unit == unit_of_kind and re.search(symbols, unit):
@@ -402,7 +402,7 @@ def _read_exact_value(text: str, kind: Kind, rule: str, write: str) -> Fraction:
     return number * factor
 
 
-def _other_kind(number: str, unit: str, kind: Kind) -> tuple[str, str]:
+def _kind_of_other_unit(number: str, unit: str, kind: Kind) -> tuple[str, str]:
     """Return the kind of a unit in words, and what to write instead; each empty if unknown."""
     dimension = _parse_unit(unit)[1]
     kinds = [item for item in (*KINDS, *_OTHERS) if _parse_unit(item.unit)[1] == dimension]

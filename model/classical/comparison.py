@@ -47,7 +47,7 @@ def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> C
     Raises `InputError` if the crank speed is zero, and for a mass centre that is not between the pins.
     """
     linkage = single(mechanism, linkage)
-    inert = _inertia_alone(mechanism)
+    inert = _with_inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed
     rotating, reciprocating = rotating_and_reciprocating(inert, linkage)
@@ -106,7 +106,7 @@ def relative_error(approximate: Array, exact: Array) -> float:
     return float(np.abs(approximate - exact).max()) / peak if peak > 0.0 else math.nan
 
 
-def _inertia_alone(mechanism: Mechanism) -> Mechanism:
+def _with_inertia_alone(mechanism: Mechanism) -> Mechanism:
     if mechanism.speed == 0.0:
         raise InputError("approximate models need a crank speed; got none; add one")
     return replace(mechanism, loads=(), gravity=(0.0, 0.0), acceleration=0.0, friction=Friction())

@@ -78,7 +78,7 @@ def solve_loop(
     moving = np.ones(theta.shape, dtype=np.bool_)
     for _ in range(iteration_limit):
         residual = np.stack([pin[0] + l * np.cos(phi) - x, pin[1] + l * np.sin(phi) - e], axis=-1)
-        step = _solve(_jacobian(l, phi), -residual, moving, theta)
+        step = _solve_linear_system(_jacobian(l, phi), -residual, moving, theta)
         x, phi = x + np.where(moving, step[..., 0], 0.0), phi + np.where(moving, step[..., 1], 0.0)
         iterations += moving
         moving = moving & (np.maximum(np.abs(step[..., 0]) / l, np.abs(step[..., 1])) > _LAST_STEP)
@@ -87,9 +87,9 @@ def solve_loop(
     else:
         raise InputError(
             f"the iteration must converge within {iteration_limit} steps; it did not at crank angle "
-            f"{_first_degrees(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
+            f"{_first_marked_angle_deg(moving, theta):.6g} deg; start nearer to the solution or allow more steps"
         )
-    first, second = _derivatives(theta, pin, l, phi, w, alpha)
+    first, second = _time_derivatives(theta, pin, l, phi, w, alpha)
     return LoopSolution(
         theta,
         x,
@@ -102,16 +102,16 @@ def solve_loop(
     )
 
 
-def _derivatives(theta: Array, pin: Array, l: Array, phi: Array, w: Array, alpha: Array) -> tuple[Array, Array]:
+def _time_derivatives(theta: Array, pin: Array, l: Array, phi: Array, w: Array, alpha: Array) -> tuple[Array, Array]:
     """Return the first and second time derivatives of slider position and rod angle, (..., 2) each."""
     jacobian = _jacobian(l, phi)
     everywhere = np.ones(theta.shape, dtype=np.bool_)
     turned = np.stack([-pin[1], pin[0]], axis=-1)  # d(pin)/dtheta
-    first = _solve(jacobian, -turned * w[..., None], everywhere, theta)
+    first = _solve_linear_system(jacobian, -turned * w[..., None], everywhere, theta)
     # Differentiated again: J (x_tt, phi_tt) = w^2 pin + phi_t^2 rod - alpha d(pin)/dtheta.
     bent = np.stack([pin[0], pin[1]], axis=-1) * (w * w)[..., None]
     rod = np.stack([l * np.cos(phi), l * np.sin(phi)], axis=-1) * (first[..., 1] ** 2)[..., None]
-    return first, _solve(jacobian, bent + rod - turned * alpha[..., None], everywhere, theta)
+    return first, _solve_linear_system(jacobian, bent + rod - turned * alpha[..., None], everywhere, theta)
 
 
 def _jacobian(l: Array, phi: Array) -> Array:
@@ -119,18 +119,18 @@ def _jacobian(l: Array, phi: Array) -> Array:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def _solve(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
+def _solve_linear_system(jacobian: Array, right: Array, active: Mask, theta: Array) -> Array:
     """Solve at the active angles; zero elsewhere."""
     singular = active & (np.abs(jacobian[..., 1, 1]) < np.finfo(np.float64).tiny)
     if np.any(singular):
         raise InputError(
             "the Jacobian must not be singular, with the rod normal to the slider line; it is at crank angle "
-            f"{_first_degrees(singular, theta):.6g} deg; start with another rod angle"
+            f"{_first_marked_angle_deg(singular, theta):.6g} deg; start with another rod angle"
         )
     step = np.zeros_like(right)
     step[active] = np.linalg.solve(jacobian[active], right[active][..., None])[..., 0]
     return step
 
 
-def _first_degrees(marked: Mask, theta: Array) -> Any:
+def _first_marked_angle_deg(marked: Mask, theta: Array) -> Any:
     return math.degrees(float(theta[marked].flat[0]))

@@ -63,12 +63,12 @@ def polygons(
     rod = slider - crank
 
     pin_velocity = _quarter_turned(crank) * w[..., None]
-    slider_velocity, rod_velocity = _meet_slider_line(pin_velocity, rod)
+    slider_velocity, rod_velocity = _rod_normal_on_slider_line(pin_velocity, rod)
 
     normal = -crank * (w * w)[..., None]
     pin_acceleration = normal + _quarter_turned(crank) * alpha[..., None]
     towards_pin = pin_acceleration - rod * (rod_velocity**2)[..., None]
-    slider_acceleration, rod_acceleration = _meet_slider_line(towards_pin, rod)
+    slider_acceleration, rod_acceleration = _rod_normal_on_slider_line(towards_pin, rod)
     return Polygons(
         np.stack([origin, crank, slider], axis=-2),
         np.stack([origin, pin_velocity, slider_velocity], axis=-2),
@@ -83,7 +83,7 @@ def _quarter_turned(vector: Array) -> Array:
     return np.stack([-vector[..., 1], vector[..., 0]], axis=-1)
 
 
-def _meet_slider_line(start: Array, rod: Array) -> tuple[Array, Array]:
+def _rod_normal_on_slider_line(start: Array, rod: Array) -> tuple[Array, Array]:
     """Return where the normal to the rod through `start` meets y = 0, and its signed distance in rod lengths."""
     turns = -start[..., 1] / rod[..., 0]
     x = start[..., 0] - turns * rod[..., 1]

@@ -193,7 +193,7 @@ def load_along_x(
 
 
 @kernel
-def _fill_rates(
+def _fill_state_rates(
     time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads, out: Row
 ) -> None:
     gap, gap_t = complex(y[0], y[1]), complex(y[2], y[3])
@@ -210,12 +210,12 @@ def _fill_rates(
 def rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads) -> Row:
     """Return the time derivative of the state (7,). rate: as in `touch`. outward: whether it is the outward stroke."""
     out = np.empty(STATES)
-    _fill_rates(time, y, rate, outward, s, block, loads, out)
+    _fill_state_rates(time, y, rate, outward, s, block, loads, out)
     return out
 
 
 @kernel
-def _record_observations(
+def _fill_reported_quantities(
     times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads, out: Table
 ) -> None:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
@@ -242,5 +242,5 @@ def observe(times: Row, y: Table, rate: Row, outward: Flags, s: System, block: T
     potential and elastic energy.
     """
     out = np.empty((10, len(times)))
-    _record_observations(times, y, rate, outward, s, block, loads, out)
+    _fill_reported_quantities(times, y, rate, outward, s, block, loads, out)
     return out

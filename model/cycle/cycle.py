@@ -63,7 +63,7 @@ class Cycle:
 
 
 @kernel
-def _fill_curves(
+def _fill_cycle_curves(
     block: Table,
     loads: Loads,
     watch: CycleWindow,
@@ -141,8 +141,8 @@ def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Arr
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = CycleWindow(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(values, np.float64, ["C", "W"]) for values in (angles, speeds, accelerations))
-    block = _design_block(mechanism, linkage).copy()  # the kernel sets the speed at each angle
-    _fill_curves(block, loads, watch, at, w, a, out, rubs(mechanism))
+    block = _derived_block(mechanism, linkage).copy()  # the kernel sets the speed at each angle
+    _fill_cycle_curves(block, loads, watch, at, w, a, out, rubs(mechanism))
     return Cycle(angles, *out)
 
 
@@ -155,7 +155,7 @@ def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds:
 
 def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
     """Return one linkage's numbers for the equations of motion; missing dead centres are NaN."""
-    design: Design = design_at(_design_block(mechanism, linkage), 0)
+    design: Design = design_at(_derived_block(mechanism, linkage), 0)
     return design
 
 
@@ -163,18 +163,18 @@ def kinks_of_loads(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the crank angles (k,) of one fully rotating linkage at which a load has kinks or jumps."""
     require_one_turn(mechanism, "a swing")
     loads = load_structure(mechanism)
-    block = _design_block(mechanism, linkage).copy()
+    block = _derived_block(mechanism, linkage).copy()
     block[_SPEED] = 0.0  # valves open in both senses of rotation
     cuts = breakpoints_of(block[None], loads, cycle_window(mechanism, Signal.TORQUE), rubbing=False)
     return cuts.angle[0, : cuts.many[0]]
 
 
-def _design_block(mechanism: Mechanism, linkage: Linkage) -> Table:
-    return _design_blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
+def _derived_block(mechanism: Mechanism, linkage: Linkage) -> Table:
+    return _derived_blocks(mechanism, np.array([[linkage.crank, linkage.rod, linkage.offset]], dtype=np.float64))
 
 
 @memoise_by_batch  # searches along one linkage's curves call this a thousand times
-def _design_blocks(mechanism: Mechanism, design: Array) -> Table:
+def _derived_blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = design[0]
     block: Table = derived(raw, load_structure(mechanism))[0][0]

@@ -86,21 +86,23 @@ def gas_cycle(
         single = replace(mechanism, arrangement=None)
         return gas_cycle(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
-        sums, rates = _of_two_turns(mechanism, designs, gradients=gradients)
+        sums, rates = _gas_cycle_of_two_turns(mechanism, designs, gradients=gradients)
         return np.asarray(number(sums), dtype=np.float64), None if rates is None else _derivatives_by_design(
             number, sums, rates
         )
     raw, loads = fullest_inputs(mechanism)
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
     blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
-    values = np.asarray(number(_gas_sums(mechanism, blocks[:, :, 0])), dtype=np.float64)
+    values = np.asarray(number(_sum_gas_cycles(mechanism, blocks[:, :, 0])), dtype=np.float64)
     if not gradients:
         return values, None
-    slopes = number(_gas_sums(mechanism, steps[:, :, 0])).imag / STEP
+    slopes = number(_sum_gas_cycles(mechanism, steps[:, :, 0])).imag / STEP
     return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
 
 
-def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> tuple[GasCycle, GasCycle | None]:
+def _gas_cycle_of_two_turns(
+    mechanism: Mechanism, designs: Array, *, gradients: bool
+) -> tuple[GasCycle, GasCycle | None]:
     """Return the sums over a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
     four = [load.cycle_turns > 1 for load in mechanism.loads]
     sums, slopes = [], []
@@ -108,10 +110,10 @@ def _of_two_turns(mechanism: Mechanism, designs: Array, *, gradients: bool) -> t
         raw, loads = fullest_inputs(half)
         numbers = numbers_of(half, designs, limit=len(raw), gradients=gradients)
         blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
-        sums.append(_gas_sums(half, blocks[:, :, 0], four))
+        sums.append(_sum_gas_cycles(half, blocks[:, :, 0], four))
         if gradients:
             shape = len(designs), len(numbers.columns)
-            parts = _gas_sums(half, steps[:, :, 0], four)
+            parts = _sum_gas_cycles(half, steps[:, :, 0], four)
             slopes.append(GasCycle(*(numbers.chain(part.imag.reshape(shape) / STEP) for part in parts)))
     return _sum_of_turns(*sums), _sum_of_turns(*slopes) if gradients else None
 
@@ -126,7 +128,7 @@ def _derivatives_by_design(number: Callable[[GasCycle], Any], values: GasCycle, 
     return np.asarray(number(GasCycle(*stepped)).imag / STEP)
 
 
-def _gas_sums(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
+def _sum_gas_cycles(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> GasCycle:
     """Return the sums for derived blocks (n, rows).
 
     four: for one of two turns, which loads have a cycle of two turns.
@@ -143,7 +145,7 @@ def _gas_sums(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()) -> G
         if load.enters is Enters.BURNING_CYLINDER:
             burnt = blocks[:, q + 7]
             widens = np.log((h + stroke) / (h + burnt))
-            gained = high * (burnt + (h + burnt) * widens * _mean_factor((expansion - 1.0) * widens))
+            gained = high * (burnt + (h + burnt) * widens * _mean_of_decay((expansion - 1.0) * widens))
         swept, clearance, work = swept + area * stroke, clearance + area * h, work + area * (gained - spent)
         cycles = cycles + area * (gained - spent) * (0.5 if four and not four[k] else 1.0)
         if isinstance(load, Compressor):
@@ -161,16 +163,16 @@ def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, exp
     opens, delivers = expanded.real < stroke.real, compressed.real > 0.0
     down = np.where(opens, ratio / expansion, full_stroke)
     up = np.where(delivers, ratio / compression, full_stroke)
-    gained = high * h * np.where(h.real > 0.0, down * _mean_factor((expansion - 1.0) * down), 0.0)
+    gained = high * h * np.where(h.real > 0.0, down * _mean_of_decay((expansion - 1.0) * down), 0.0)
     gained = gained + np.where(opens, low * (stroke - expanded), 0.0)
-    spent = low * (h + stroke) * up * _mean_factor(-(compression - 1.0) * up)
+    spent = low * (h + stroke) * up * _mean_of_decay(-(compression - 1.0) * up)
     spent = spent + np.where(delivers, high * compressed, 0.0)
     share = 1.0 - expanded / stroke
     stuck = compressed / stroke
     return gained, spent, np.where(delivers | (share.real < stuck.real), share, stuck)
 
 
-def _mean_factor(x: Any) -> Any:
+def _mean_of_decay(x: Any) -> Any:
     """Return (1 - exp(-x)) / x, exact to rounding even near zero."""
     near = np.abs(x.real) < _SERIES
     safe = np.where(near, 1.0, x)

@@ -35,7 +35,7 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
     linkage = single(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    stroke, sign, top = _piston_top(linkage, load)
+    stroke, sign, top = _stroke_and_piston_top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
     # The motion just before: at a dead centre, that of the stroke ending there.
     before = linkage.at(theta - _BEFORE * mechanism.direction, speed=mechanism.direction).slider_velocity
@@ -61,7 +61,7 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
     None if there is no such event.
     """
     linkage = single(mechanism, linkage)
-    stroke = _piston_top(linkage, load)[0]
+    stroke = _stroke_and_piston_top(linkage, load)[0]
     if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
         return None, None
     h, ratio = load.clearance * stroke + load.clearance_volume / load.area, load.high / load.low
@@ -80,7 +80,9 @@ def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> floa
     if not isinstance(load, LimitedPressure):
         return None
     linkage = single(mechanism, linkage)
-    angle = _angle_at(mechanism, linkage, load, load.burning_share * _piston_top(linkage, load)[0], away=True)
+    angle = _angle_at(
+        mechanism, linkage, load, load.burning_share * _stroke_and_piston_top(linkage, load)[0], away=True
+    )
     if angle is None or load.cycle_turns == 1:
         return angle
     return float(in_cycle(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
@@ -91,7 +93,7 @@ def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, 
 
     away: whether the piston moves away from its top position. None if z is out of reach.
     """
-    stroke, sign, top = _piston_top(linkage, load)
+    stroke, sign, top = _stroke_and_piston_top(linkage, load)
     outward = away == (sign > 0.0)
     second = outward == (mechanism.direction < 0.0)
     x = linkage.sign * (top + sign * z)
@@ -99,7 +101,7 @@ def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, 
     return angle % (2.0 * math.pi) if 0.0 < z < stroke else None
 
 
-def _piston_top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
+def _stroke_and_piston_top(linkage: Linkage, load: Cylinder) -> tuple[float, float, float]:
     """Return the stroke, the direction in which the piston leaves its top, and the top's distance from the pivot.
 
     The direction is 1 for outward.

@@ -45,7 +45,7 @@ class Verdict:
 def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     """Return whether friction locks one fully rotating linkage, and where."""
     linkage = single(mechanism, linkage)
-    margin = float(locking_margin(mechanism.friction, np.array([_dimensions(linkage)]))[0][0])
+    margin = float(locking_margin(mechanism.friction, np.array([_float_dimensions(linkage)]))[0][0])
     if margin > 0.0:
         return Verdict(margin, (), None)
     cuts = sorted({0.5 * np.pi, 1.5 * np.pi, *map(float, linkage.dead_centre_angles)})
@@ -64,31 +64,31 @@ def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
     """Return whether one linkage "drives", "locks" or "may jam" under its loads at each crank angle (n,), rad."""
     linkage = single(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    design = _design(mechanism, linkage)
+    design = _derived_design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
     states = []
-    for theta, load, excess in zip(angles, loads, _locking_excess(mechanism.friction, linkage, angles), strict=True):
+    for theta, load, excess in zip(angles, loads, _driving_margin(mechanism.friction, linkage, angles), strict=True):
         if excess > 0.0:
             states.append("drives")
         else:
-            states.append("may jam" if _has_balance_between(design, float(theta), float(load)) else "locks")
+            states.append("may jam" if _has_equilibrium_in_between(design, float(theta), float(load)) else "locks")
     return np.array(states, dtype=np.str_)
 
 
-def _dimensions(linkage: Linkage) -> tuple[float, float, float]:
+def _float_dimensions(linkage: Linkage) -> tuple[float, float, float]:
     return float(linkage.crank), float(linkage.rod), float(linkage.offset)
 
 
-def _design(mechanism: Mechanism, linkage: Linkage) -> Design:
+def _derived_design(mechanism: Mechanism, linkage: Linkage) -> Design:
     raw, loads = raw_vector(mechanism)[:, None], load_structure(mechanism)
-    raw[:3, 0] = _dimensions(linkage)
+    raw[:3, 0] = _float_dimensions(linkage)
     block = np.empty((DESIGN + LOAD_ROWS * len(loads.kind), 1))
     derive(raw, loads.kind, loads.datum, block)
     design: Design = design_at(block, 0)
     return design
 
 
-def _locking_excess(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
+def _driving_margin(friction: Friction, linkage: Linkage, theta: Any, probe: Any = None) -> Any:
     """Return |along| - |D| at crank angles, with the signs at the angles `probe` within the segment."""
     probe = theta if probe is None else probe
     arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
@@ -103,7 +103,7 @@ def _locked_spans(friction: Friction, linkage: Linkage, a: float, b: float) -> l
     middle = a + 0.382 * (b - a)
 
     def excess(theta: Any) -> Any:
-        return _locking_excess(friction, linkage, theta, middle)
+        return _driving_margin(friction, linkage, theta, middle)
 
     from scipy.optimize import brentq
 
@@ -131,7 +131,7 @@ def _merge_spans(spans: list[tuple[float, float]]) -> tuple[tuple[float, float],
     return tuple(joined)
 
 
-def _has_balance_between(d: Design, theta: float, load: float) -> bool:
+def _has_equilibrium_in_between(d: Design, theta: float, load: float) -> bool:
     """Return whether h crosses zero in between although both its ends have the same sign."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)

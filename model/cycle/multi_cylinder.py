@@ -114,11 +114,11 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
-    sizes = _uncancelled_sizes(mechanism, linkage)
+    sizes = _magnitudes_without_cancelling(mechanism, linkage)
     panels = panels_of(
         lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
     )
-    least, greatest = (_unless_cancelled(extreme, sizes[_TORQUE], period) for extreme in panels.extremes(_TORQUE))
+    least, greatest = (_zero_if_cancelled(extreme, sizes[_TORQUE], period) for extreme in panels.extremes(_TORQUE))
     moment = peak_of(panels.extremes(_MOMENT), period)
     mean, time = panels.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
     return MultiCylinderCycle(
@@ -131,7 +131,7 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
         energy_change=panels.swing(_TORQUE),
         shaking_force=_force_extreme(panels, _FORCE, sizes, period),
         rms_shaking_force=math.sqrt(max(0.0, panels.mean(_FORCE, time))),
-        shaking_moment=_unless_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
+        shaking_moment=_zero_if_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
         rms_shaking_moment=math.sqrt(panels.mean_square(_MOMENT, time=time)),
         couple=_force_extreme(panels, _COUPLE, sizes, period),
     )
@@ -145,7 +145,7 @@ def _curve_rows(mechanism: Mechanism, curves: MultiCylinderCurves) -> Array:
     return np.stack([curves.torque, x, y, x * x + y * y, curves.moment, couple, time])
 
 
-def _uncancelled_sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
+def _magnitudes_without_cancelling(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the magnitudes that the curves would have if the cylinders did not cancel."""
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)
@@ -159,7 +159,7 @@ def _uncancelled_sizes(mechanism: Mechanism, linkage: Linkage) -> Array:
     return sizes
 
 
-def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
+def _zero_if_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
     """Return an extreme value, or zero if cylinders cancel up to rounding."""
     if not abs(extreme.value) > _NOTHING * size:
         return Extreme(0.0, math.nan)
@@ -169,6 +169,6 @@ def _unless_cancelled(extreme: Extreme, size: float, period: float) -> Extreme:
 def _force_extreme(panels: Panels, curve: int, sizes: Array, period: float) -> Extreme:
     """Return the maximum magnitude of a force from its square."""
     greatest = panels.extremes(curve)[1]
-    return _unless_cancelled(
+    return _zero_if_cancelled(
         Extreme(math.sqrt(max(0.0, greatest.value)), greatest.angle), math.sqrt(sizes[curve]), period
     )

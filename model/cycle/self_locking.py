@@ -71,7 +71,7 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
     friction = mechanism.friction
     guide, circles = friction.guide, friction.crank_pin.circle + friction.slider_pin.circle
     if not mechanism.varying:
-        return _lock_margin(designs, guide, circles, gradients)[:2]
+        return _margin_with_friction_slopes(designs, guide, circles, gradients)[:2]
     slots = (
         (Raw.GUIDE_FRICTION, guide),
         (Raw.CRANK_PIN_RADIUS, friction.crank_pin.radius),
@@ -83,14 +83,16 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
     (a, a_slope), (b, b_slope), (c, c_slope), (d, d_slope) = pins
     sums = a * b + c * d
     slopes = a[:, None] * b_slope + b[:, None] * a_slope + c[:, None] * d_slope + d[:, None] * c_slope
-    values, gradient, rates = _lock_margin(designs[:, :3], mu, sums, gradients)
+    values, gradient, rates = _margin_with_friction_slopes(designs[:, :3], mu, sums, gradients)
     if gradient is None or rates is None:
         return values, None
     gradient = np.pad(gradient, ((0, 0), (0, len(mechanism.varying))))
     return values, gradient + rates[:, :1] * mu_slope + rates[:, 1:] * slopes
 
 
-def _lock_margin(designs: Array, guide: Any, circles: Any, gradients: bool) -> tuple[Array, Array | None, Array | None]:
+def _margin_with_friction_slopes(
+    designs: Array, guide: Any, circles: Any, gradients: bool
+) -> tuple[Array, Array | None, Array | None]:
     """Return the margin (n,), its gradients (n, 3), and its derivatives by guide and pin friction (n, 2)."""
     r, l, a = designs[:, 0], designs[:, 1], np.abs(designs[:, 2])
     turns = circles < l

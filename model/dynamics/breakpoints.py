@@ -31,7 +31,7 @@ class Breakpoints(NamedTuple):
 
 
 @kernel
-def _cut(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoints, rubbing: bool) -> None:
+def _fill_breakpoints(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoints: Breakpoints, rubbing: bool) -> None:
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     for n in range(blocks.shape[0]):
         block = blocks[n]
@@ -56,5 +56,5 @@ def breakpoints_of(blocks: Array, loads: Loads, watch: CycleWindow, *, rubbing: 
         np.empty(shape, np.int64),
         np.empty(len(blocks), np.int64),
     )
-    _cut(blocks, loads, watch, breakpoints, rubbing)
+    _fill_breakpoints(blocks, loads, watch, breakpoints, rubbing)
     return breakpoints

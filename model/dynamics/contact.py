@@ -48,7 +48,7 @@ def _touch(theta: Any, d: Any, segment: Segment, grip: Any, swing: Any) -> Any:
 
 
 @analytic
-def _senses(probe: Any, d: Any) -> Any:
+def _rotation_signs(probe: Any, d: Any) -> Any:
     """Rotation signs of crank, rod, and crank relative to rod, 1 or -1."""
     turn = 1.0 if d.speed >= 0.0 else -1.0
     m = motion(math.sin(probe), math.cos(probe), d.r, d.l, d.e, d.branch)
@@ -60,7 +60,7 @@ def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
     """Return the `Sides` for the segment around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
-    turn, swing, grip = _senses(probe, d)
+    turn, swing, grip = _rotation_signs(probe, d)
     slide = d.branch.real * (1.0 if segment.outward else -1.0)
     guide = _touch(probe, d, segment, grip, swing)
     return Sides(turn, slide, swing, -1.0 if guide > 0.0 else 1.0, grip)
@@ -87,7 +87,7 @@ def cut_contacts(
         probe = angle_within(a, b)
         _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
         segment = Segment(block, loads, outward, piece, shift)
-        _, swing, grip = _senses(probe, d)
+        _, swing, grip = _rotation_signs(probe, d)
         low, high = crowded(a, kappa), crowded(b, kappa)
         points = max(3, int(_SAMPLES * (high - low) / _TURN) + 1)
         left, before, right, after = a, 0.0, a, 0.0

@@ -80,7 +80,9 @@ def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, sw
 
 
 @analytic
-def _moment(y: Any, slope: Any, rest: Any, mu: Any, pull: Any, rod_x: Any, rod_y: Any, p: Any, q: Any) -> Any:
+def _rod_moment_residual(
+    y: Any, slope: Any, rest: Any, mu: Any, pull: Any, rod_x: Any, rod_y: Any, p: Any, q: Any
+) -> Any:
     """Return h(y) and h'(y); `pull` is B_x at y = 0."""
     bx = pull + mu * y
     ax, ay = bx + rod_x, y + rod_y
@@ -109,7 +111,9 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
             sign = 1.0 if steep > 0.0 else -1.0
             low, high = -math.inf, math.inf
             for _ in range(_ITERATIONS):
-                h, rate = _moment(y, steep, still, mu.real, pull.real, b.rod_x.real, b.rod_y.real, p.real, q.real)
+                h, rate = _rod_moment_residual(
+                    y, steep, still, mu.real, pull.real, b.rod_x.real, b.rod_y.real, p.real, q.real
+                )
                 if h * sign > 0.0:
                     high = y
                     low = max(low, y - h * sign / least.real)
@@ -123,7 +127,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
                 y = new
                 if step <= _CONVERGED * (abs(y) + abs(pull.real)):
                     break
-    h, rate = _moment(y, slope, rest, mu, pull, b.rod_x, b.rod_y, p, q)
+    h, rate = _rod_moment_residual(y, slope, rest, mu, pull, b.rod_x, b.rod_y, p, q)
     by = y - h * inverse(rate)
     f = joined(sine, cosine, d, b, pull + mu * by, by)
     pin = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)

@@ -55,7 +55,7 @@ def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
             f"compiled formulas need all the functions that they call; {', '.join(missing)} is missing; reinstall "
             "numba and llvmlite"
         )
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_llvm_entry(code, leaves)), _machine())
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(_llvm_entry(code, leaves)), _target_processor())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
     engine.finalize_object()
     _engines.append(engine)
@@ -111,7 +111,7 @@ define i32 @{_SYMBOL}(ptr %block, ptr %result) {{
 """
 
 
-def _machine() -> Any:
+def _target_processor() -> Any:
     import llvmlite.binding as llvm
 
     return llvm.Target.from_default_triple().create_target_machine(jit=True, codemodel="jitdefault")
@@ -127,7 +127,9 @@ def _register_symbols() -> None:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())  # gives access to the functions in this process
+    llvm.create_mcjit_compiler(
+        llvm.parse_assembly(""), _target_processor()
+    )  # gives access to the functions in this process
     for name, address in _numba_library("_helperlib").c_helpers.items():
         llvm.add_symbol(f"numba_{name}", address)
         llvm.add_symbol(name, address)

@@ -107,7 +107,7 @@ class _Case(NamedTuple):
 
 
 @analytic
-def _deviation_at_phase(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
+def _deviation_and_best_shift(phase: Any, rms: Any, case: _Case) -> tuple[float, float]:
     """Return the deviation at a phase and the best shift, zero where fixed; fills each point's deviation."""
     r, l, e, b, sines, cosines, positions, shifts, d, _, _ = case
     n = positions.shape[0]
@@ -156,7 +156,7 @@ def _golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
     at_p = at_q = 0.0
     left = True
     for step in range(_SECTIONS):
-        value, _ = _deviation_at_phase(p if left else q, rms, case)
+        value, _ = _deviation_and_best_shift(p if left else q, rms, case)
         if left:
             at_p = value
         else:
@@ -240,7 +240,7 @@ def _branch_and_bound(case: _Case, cells: Any) -> float:
 def _least_square(case: _Case, grid: Any) -> float:
     """Return the phase with the minimum root mean square deviation, searched from the best intervals of the grid."""
     for j in range(_PHASES):
-        grid[j], _ = _deviation_at_phase(_TURN * j / _PHASES, True, case)
+        grid[j], _ = _deviation_and_best_shift(_TURN * j / _PHASES, True, case)
     best_phase, least, last, j = 0.0, math.inf, -math.inf, -1
     for _ in range(_STRETCHES):
         best = -1
@@ -256,7 +256,7 @@ def _least_square(case: _Case, grid: Any) -> float:
         low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
         phase = _golden_section(low, high, True, case)
         for turn in range(_NEWTON + 1):
-            value, _ = _deviation_at_phase(phase, True, case)
+            value, _ = _deviation_and_best_shift(phase, True, case)
             step = _newton_step(phase, case)
             if abs(step) > 1e-5 or turn == _NEWTON:  # if the square is convex, golden-section search errs by less
                 break
@@ -280,7 +280,7 @@ def _fit(
             phase = _least_square(case, grid)
         elif turns:
             phase = _branch_and_bound(case, cells)
-        out[row, 0], out[row, 2] = _deviation_at_phase(phase, rms, case)
+        out[row, 0], out[row, 2] = _deviation_and_best_shift(phase, rms, case)
         out[row, 1] = phase
 
 

@@ -47,7 +47,7 @@ def _motion_at_points(target: TargetMotion, branch: float, phase: Array, designs
     return motion(np.sin(theta), np.cos(theta), r, l, e, branch)
 
 
-def _distance_slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
+def _slider_position_slopes(target: TargetMotion, branch: float, phase: Array, designs: Array) -> Array:
     """Return the derivatives (n, points, 3) of the slider's distance at fixed phase, by complex steps."""
     slopes = np.empty((len(designs), len(target.positions), 3))
     for v in range(3):
@@ -67,7 +67,7 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
     if measure == "rms":
         d = branch * _motion_at_points(target, branch, fitted.phase, designs).x - np.array(target.positions)
         d = d + fitted.shift[:, None]
-        slopes = _distance_slopes(target, branch, fitted.phase, designs)
+        slopes = _slider_position_slopes(target, branch, fitted.phase, designs)
         # If the shift is free, the deviations have zero mean, so the means of the derivatives need not be subtracted.
         noise = fitted.values <= 1e-14 * (designs[:, 0] + designs[:, 1])
         per = np.where(noise, 0.0, 1.0 / np.where(noise, 1.0, fitted.values * d.shape[1]))
@@ -104,7 +104,7 @@ class _Sides(NamedTuple):
         """Return the local peaks of both signs over the points; if the shift is free, half-sums of pairs."""
         m = _motion_at_points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
-        slopes = _distance_slopes(target, branch, phase, designs)
+        slopes = _slider_position_slopes(target, branch, phase, designs)
         angles = np.broadcast_to(np.array(target.crank_angles), d.shape)
         curves = (branch * m.x_1, branch * m.x_2)
         positive, negative = (_highest_deviations(sign, d, *curves, slopes, angles) for sign in (1.0, -1.0))

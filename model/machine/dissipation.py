@@ -29,13 +29,14 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     variable two values are tried, neither of them special.
     """
     return any(
-        machine.acceleration != 0.0 or _has_friction(machine) or _load_works(machine) for machine in _trials(mechanism)
+        machine.acceleration != 0.0 or _has_friction(machine) or _load_works(machine)
+        for machine in _trial_machines(mechanism)
     )
 
 
 def load_works_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the loads may absorb or supply net work over a turn for some design; see `works_over_a_turn`."""
-    return any(map(_load_works, _trials(mechanism)))
+    return any(map(_load_works, _trial_machines(mechanism)))
 
 
 @memoise_by_machine
@@ -62,7 +63,7 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
 
 def rubs_under_load(mechanism: Mechanism) -> bool:
     """Return whether friction acts in a joint that carries a force, for some design."""
-    return any(map(_has_friction, _trials(mechanism)))
+    return any(map(_has_friction, _trial_machines(mechanism)))
 
 
 def linkage_loaded(machine: Mechanism) -> bool:
@@ -122,7 +123,7 @@ def _has_friction(machine: Mechanism) -> bool:
     return (past_pivot and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
 
 
-def _trials(mechanism: Mechanism) -> list[Mechanism]:
+def _trial_machines(mechanism: Mechanism) -> list[Mechanism]:
     """Return the machine or, if it has variables, two machines with values that are not special."""
     if not mechanism.varying:
         return [mechanism]

@@ -141,7 +141,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     columns = np.array(list(by_slot), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
-    rates = _rates_of_raw(mechanism.varying)
+    rates = _raw_number_slopes(mechanism.varying)
     if rates is not None:
         by_column = np.array([rates[slot] for slot in by_slot])
         return Numbers(columns, values, np.array(np.broadcast_to(by_column, shape)))
@@ -219,7 +219,7 @@ def require_width(mechanism: Mechanism, designs: Array) -> None:
 
 
 @cache
-def _rates_of_raw(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
+def _raw_number_slopes(varying: tuple[Varying, ...]) -> dict[int, tuple[float, ...]] | None:
     """Return the derivatives (3 + k,) of each raw number that designs set; None if they are not constant."""
     rates = {column: {column: 1.0} for column in range(3)}
     for column, item in enumerate(varying):

@@ -89,12 +89,12 @@ def require_possible(mechanism: Any) -> None:
             )
     for index, load in enumerate(mechanism.loads):
         if load.every_corner:
-            _require_corners(load, f"loads.{index}.", varying)
+            _require_valid_corners(load, f"loads.{index}.", varying)
     for ends in ([item.lower for item in varying], [item.upper for item in varying]):
         mechanism.with_values(ends)
 
 
-def _require_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:
+def _require_valid_corners(load: Any, prefix: str, varying: Sequence[Varying]) -> None:
     """Raise `InputError` unless a load is valid at every combination of the ends of its variables."""
     entries = [
         [(path.removeprefix(prefix), factor * end) for path, factor in item.sets if path.startswith(prefix)]

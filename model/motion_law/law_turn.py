@@ -63,7 +63,7 @@ class LawTurn:
         """
         self.machine = with_drive_inertia(mechanism)
         self.linkage = single(self.machine, linkage)
-        _require_simple(self.machine)
+        _require_torque_from_energy_alone(self.machine)
         equation = CrankEquation(self.machine, self.linkage, marks=marks)
         equation.require_inertia(0.0)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
@@ -146,7 +146,7 @@ def integrals_to(place: Array) -> Array:
     return np.asarray(legendre.legvander(2.0 * place - 1.0, DEGREE + 1) @ INTEGRATED @ FIT)
 
 
-def _require_simple(mechanism: Mechanism) -> None:
+def _require_torque_from_energy_alone(mechanism: Mechanism) -> None:
     """Raise `InputError` for machines whose torque has terms besides T = K' + Q."""
     require_one_cylinder(mechanism.arrangement, "a motion law")
     if cycle_turns(mechanism) > 1:

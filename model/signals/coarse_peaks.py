@@ -101,7 +101,7 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 
 
 @analytic
-def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
+def _torque_and_position_errors(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
     """Torque, worst case and square of the root-sum-square, each at theta and at pi - theta, which share the motion.
 
     Terms marked `odd` change sign between the two, as the cosine does; x_1 and the like belong to theta, y_1 to pi -
@@ -151,19 +151,25 @@ def _curves(b: Any, j: Any, sine: Any, cosine: Any) -> Any:
 
 
 @analytic
-def _sample(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
+def _sample_torque_and_worst_case(
+    sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any
+) -> None:
     """Torque and worst-case position error for all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
-        at_tau[0, j], at_minus_tau[0, j], at_tau[1, j], at_minus_tau[1, j], _, _ = _curves(b, j, sine, cosine)
+        at_tau[0, j], at_minus_tau[0, j], at_tau[1, j], at_minus_tau[1, j], _, _ = _torque_and_position_errors(
+            b, j, sine, cosine
+        )
 
 
 @analytic
-def _sample_squares(sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any) -> None:
+def _sample_squared_rss_error(
+    sine_tau: Any, cosine_tau: Any, crowd: Any, b: Any, at_tau: Any, at_minus_tau: Any
+) -> None:
     """Squares of the root-sum-square for all lanes at tau and -tau."""
     for j in range(LANES):
         sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
-        _, _, _, _, at_tau[2, j], at_minus_tau[2, j] = _curves(b, j, sine, cosine)
+        _, _, _, _, at_tau[2, j], at_minus_tau[2, j] = _torque_and_position_errors(b, j, sine, cosine)
 
 
 @analytic
@@ -189,9 +195,9 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
             # slow.
             w = angles - k + 1 if 2 * k < angles else 0
             if squares:
-                _sample_squares(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
+                _sample_squared_rss_error(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
             else:
-                _sample(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
+                _sample_torque_and_worst_case(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
     for kind in kinds:
         q = row_of(kind)
         for j in range(LANES):
@@ -199,7 +205,7 @@ def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
 
 
 @analytic
-def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) -> Any:
+def _is_rival_maximum(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) -> Any:
     """Return 1 at a local maximum, other than the highest sample, near which the curve may exceed the floor.
 
     A parabola through three samples rises above the middle one by at most a quarter of their half difference.
@@ -209,7 +215,7 @@ def _rival(low: Any, middle: Any, high: Any, floor: Any, place: Any, at: Any) ->
 
 
 @analytic
-def _vertices(samples: Any, i: Any, mark: Any, top: Any) -> None:
+def _fill_parabola_vertex(samples: Any, i: Any, mark: Any, top: Any) -> None:
     """Fill three rows in `top` from the samples around each lane's first (i = 0) or second maximum."""
     for j in range(LANES):
         place = int(mark[2 * i + 1, j])
@@ -257,16 +263,20 @@ def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
         for j in range(LANES):
             floor, place, f_0, f_1 = mark[0, j], mark[1, j], samples[k - 1, j], samples[k, j]
             f_2, f_3, f_4, f_5 = samples[k + 1, j], samples[k + 2, j], samples[k + 3, j], samples[k + 4, j]
-            rivals += _rival(f_0, f_1, f_2, floor, place, k_0) + _rival(f_1, f_2, f_3, floor, place, k_1)
-            rivals += _rival(f_2, f_3, f_4, floor, place, k_2) + _rival(f_3, f_4, f_5, floor, place, k_3)
+            rivals += _is_rival_maximum(f_0, f_1, f_2, floor, place, k_0) + _is_rival_maximum(
+                f_1, f_2, f_3, floor, place, k_1
+            )
+            rivals += _is_rival_maximum(f_2, f_3, f_4, floor, place, k_2) + _is_rival_maximum(
+                f_3, f_4, f_5, floor, place, k_3
+            )
         if rivals > _ZERO:
             any_rival = True
             for i in range(k, k + 4):
                 for j in range(LANES):
                     low, middle, high = samples[i - 1, j], samples[i, j], samples[i + 1, j]
-                    if _rival(low, middle, high, mark[0, j], mark[1, j], i) > _ZERO and middle > mark[2, j]:
+                    if _is_rival_maximum(low, middle, high, mark[0, j], mark[1, j], i) > _ZERO and middle > mark[2, j]:
                         mark[2, j], mark[3, j] = middle, i
-    _vertices(samples, 0, mark, top)
+    _fill_parabola_vertex(samples, 0, mark, top)
     if any_rival:
-        _vertices(samples, 1, mark, top)
+        _fill_parabola_vertex(samples, 1, mark, top)
     return any_rival

@@ -81,7 +81,7 @@ class MotorShaft(Shaft):
         members = tuple(range(cylinder_count(mechanism)))
         super().__init__(mechanism, int(Signal.TORQUE), designs, members=members, gradients=gradients)
         self.curve, self._direction = curve, mechanism.direction
-        drive = _drive_of(mechanism)
+        drive = _required_drive(mechanism)
         self._lossy = drive.is_lossy or any(_EFFICIENCIES & {*item.paths} for item in mechanism.varying)
         self._train = _numbers_of(mechanism, drive, designs)
 
@@ -162,7 +162,7 @@ class MotorShaft(Shaft):
         return speed * stepped_ratio, self._direction * train.speed * train.speed * stepped_ratio * stepped_slope
 
 
-def _drive_of(mechanism: Mechanism) -> Drive:
+def _required_drive(mechanism: Mechanism) -> Drive:
     if mechanism.drive is None:
         raise InputError("motor curves need a drive; got none; add for example [drive] gear_ratio = 5")
     return mechanism.drive

@@ -119,7 +119,7 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
 
 
 @analytic
-def _value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
+def _signal_value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
     """Value of a signal, with the load for the stroke that the slider is in."""
     outward = d.branch.real * m.x_1.real * direction > 0.0
     load = smooth_load(m, d, d.outward_force if outward else d.inward_force)
@@ -140,54 +140,54 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
     """Value at one tau, real or complex."""
     sine, cosine = _turned(sine_tau, cosine_tau, True, kappa)
-    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
+    return _signal_value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
 
 
 @analytic
-def _step(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any) -> Any:
+def _value_and_slope(kind: Any, sine: Any, cosine: Any, kappa: Any, d: Any, direction: Any) -> Any:
     """Value and slope over the crowded angle."""
     z = _curve(kind, complex(sine, cosine * STEP), complex(cosine, -sine * STEP), kappa, d, direction)
     return z.real, z.imag * (1.0 / STEP)
 
 
 @analytic
-def _slopes(kind: Any, sine: Any, cosine: Any, lanes: _Lanes, value: Any, slope: Any) -> Any:
+def _fill_values_and_slopes(kind: Any, sine: Any, cosine: Any, lanes: _Lanes, value: Any, slope: Any) -> Any:
     """Value and slope for every lane at its own angle."""
     block, kappa, direction = lanes
     if kind == _TORQUE:
         for j in range(LANES):
-            value[j], slope[j] = _step(_TORQUE, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+            value[j], slope[j] = _value_and_slope(_TORQUE, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
     elif kind == _WORST:
         for j in range(LANES):
-            value[j], slope[j] = _step(_WORST, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+            value[j], slope[j] = _value_and_slope(_WORST, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
     else:
         for j in range(LANES):
-            value[j], slope[j] = _step(_RSS, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
+            value[j], slope[j] = _value_and_slope(_RSS, sine[j], cosine[j], kappa[j], design_at(block, j), direction)
 
 
 @analytic
-def _partial(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
+def _design_derivative(kind: Any, sine: Any, cosine: Any, d: Any, direction: Any) -> Any:
     """Derivative along the imaginary step that the design carries, at a fixed crank angle."""
-    return _value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction).imag * (1.0 / STEP)
+    return _signal_value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction).imag * (1.0 / STEP)
 
 
 @analytic
-def _partials(kind: Any, tops: _Tops, block: Any, direction: Any, slope: Any) -> Any:
+def _fill_design_derivatives(kind: Any, tops: _Tops, block: Any, direction: Any, slope: Any) -> Any:
     """Derivatives for all lanes, each at the crank angle of its maximum."""
     sine, cosine = tops.sine, tops.cosine
     if kind == _TORQUE:
         for j in range(LANES):
-            slope[j] = _partial(_TORQUE, sine[j], cosine[j], design_at(block, j), direction)
+            slope[j] = _design_derivative(_TORQUE, sine[j], cosine[j], design_at(block, j), direction)
     elif kind == _WORST:
         for j in range(LANES):
-            slope[j] = _partial(_WORST, sine[j], cosine[j], design_at(block, j), direction)
+            slope[j] = _design_derivative(_WORST, sine[j], cosine[j], design_at(block, j), direction)
     else:
         for j in range(LANES):
-            slope[j] = _partial(_RSS, sine[j], cosine[j], design_at(block, j), direction)
+            slope[j] = _design_derivative(_RSS, sine[j], cosine[j], design_at(block, j), direction)
 
 
 @analytic
-def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops) -> Any:
+def _refine_maxima(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops) -> Any:
     """Move every lane to its local maximum within one angle on either side, starting at the vertex of the parabola.
 
     top: place, vertex and curvature of `coarse_peaks.two_highest`. work: workspace (12, lanes). A lane that has settled
@@ -212,7 +212,7 @@ def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops
             )
             work[0, j] = work[4, j] * c + work[5, j] * s
             work[1, j] = work[5, j] * c - work[4, j] * s
-        _slopes(kind, work[0], work[1], lanes, work[2], work[3])
+        _fill_values_and_slopes(kind, work[0], work[1], lanes, work[2], work[3])
         moving = 0.0
         for j in range(LANES):
             t, value_here, rise, peak = work[6, j], work[2, j], work[3, j], best[j]
@@ -242,7 +242,7 @@ def _refine(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops
 
 
 @analytic
-def _still(d: Any) -> Any:
+def _torque_at_dead_centres(d: Any) -> Any:
     """Larger magnitude of the torque at the two dead centres, where loads along the stroke need no torque."""
     outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
     sine, cosine = outer, d.branch * root(1.0 - outer * outer)
@@ -253,7 +253,9 @@ def _still(d: Any) -> Any:
 
 
 @analytic
-def _higher(kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: Any, found: Any, peak: _Tops) -> None:
+def _fill_higher_maximum(
+    kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: Any, found: Any, peak: _Tops
+) -> None:
     """Fill in the higher of each lane's two refined maxima.
 
     tops: `top` from `coarse_peaks.two_highest`; rivals: whether any lane has a second maximum. found: workspace (2, 3,
@@ -261,7 +263,7 @@ def _higher(kind: Any, tau: Any, tops: Any, rivals: Any, lanes: _Lanes, work: An
     """
     kappa = lanes.kappa
     for i in range(2 if rivals else 1):
-        _refine(kind, tau, tops[3 * i : 3 * i + 3], lanes, work, _Tops(found[i, 0], found[i, 1], found[i, 2]))
+        _refine_maxima(kind, tau, tops[3 * i : 3 * i + 3], lanes, work, _Tops(found[i, 0], found[i, 1], found[i, 2]))
     for j in range(LANES):
         first, second = found[0, 0, j], (found[1, 0, j] if rivals else -1.0)
         x, x_2, y, y_2 = found[0, 2, j], found[1, 2, j], found[0, 1, j], found[1, 1, j]
@@ -291,7 +293,9 @@ def _fill_gradients(task: Screening, lanes: _Lanes, raw: Any, peaks: Any, worksp
                 block[i, j] = lanes.block[i, j]
         derive(stepped, task.load_kind, task.load_datum, block, column)
         for q in range(task.kinds.shape[0]):
-            _partials(task.kinds[q], _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2]), block, lanes.direction, slope)
+            _fill_design_derivatives(
+                task.kinds[q], _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2]), block, lanes.direction, slope
+            )
             for j in range(out.shape[1]):
                 out[q, j, v] = slope[j]
         for j in range(LANES):
@@ -326,13 +330,13 @@ def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) ->
         sweep(task.kinds, coarse, task.crowd, scaled, samples)
         last, here = min(LANES, n - begin), first + begin
         for j in range(LANES if out.still.shape[0] else 0):
-            slope[j] = _still(design_at(lanes.block, j))
+            slope[j] = _torque_at_dead_centres(design_at(lanes.block, j))
         for j in range(last if out.still.shape[0] else 0):
             out.still[here + j] = slope[j]
         for q in range(signals):
             rivals = two_highest(samples[row_of(task.kinds[q])], scaled, mark, tops)
             peak = _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2])
-            _higher(task.kinds[q], tau, tops, rivals, lanes, work, found, peak)
+            _fill_higher_maximum(task.kinds[q], tau, tops, rivals, lanes, work, found, peak)
             for j in range(last):
                 out.values[q, here + j] = peak.value[j]
             for j in range(last if out.angles.shape[1] else 0):

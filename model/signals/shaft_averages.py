@@ -62,7 +62,7 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
             rate = row_weights if index == MEAN else 2.0 * row_weights * value
             np.add.at(slopes[index], row, np.einsum("pk,pkv->pv", rate, slope))
     if shaft.gradients:
-        _add_jumps(shaft, segments, slopes)
+        _add_jumps_at_moving_breakpoints(shaft, segments, slopes)
     sums[:, ~shaft.drives] = np.nan
     nothing = np.sqrt(sums[SQUARE]) <= NOTHING * sizes[0]
     mean_rows = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
@@ -84,7 +84,7 @@ def _is_rough(value: Array, size: Array, sizes: Array, row: IntArray, width: Arr
     return rough
 
 
-def _add_jumps(shaft: Shaft, segments: Segments, slopes: Array) -> None:
+def _add_jumps_at_moving_breakpoints(shaft: Shaft, segments: Segments, slopes: Array) -> None:
     """Add to derivatives (rows, n, v) the effect of moving breakpoints at which the curve jumps."""
     ends = np.stack([segments.low, segments.high], axis=1)
     edge = shaft.evaluate(segments.row, segments.probe, ends)[0][:, :, 0]

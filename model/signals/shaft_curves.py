@@ -186,7 +186,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _fill_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: Any) -> None:
+def _fill_cylinder_numbers(source: Any, ratio: Any, slope: Any, axes: Axes, k: int, out: Any) -> None:
     """Fill `out` with the numbers of cylinder k: speed, acceleration (p = ratio, p' = slope), gravity in its axes."""
     for row in range(out.shape[0]):
         out[row, 0] = source[row, 0]
@@ -208,7 +208,9 @@ def _enter_segment(
         k = curve.members[i]
         half = items.half[p, k]
         loads = shaft.first_turn if half == 0 else shaft.second_turn
-        _fill_numbers(shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real)
+        _fill_cylinder_numbers(
+            shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real
+        )
         d, local = design_at(space.real, 0), items.probe[p] + shaft.axes.lead[k]
         _, outward = enter(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
         segment = Segment(space.real, loads, outward, space.piece[i], space.shift[i])
@@ -236,7 +238,7 @@ def _sum_members(
         half = items.half[p, k]
         loads = shaft.first_turn if half == 0 else shaft.second_turn
         source = shaft.blocks.stepped[(items.row[p] * shaft.turns + half) * numbers + v]
-        _fill_numbers(source, ratio, slope, axes, k, space.stepped)
+        _fill_cylinder_numbers(source, ratio, slope, axes, k, space.stepped)
         speed = source[_ROW_SPEED, 0]
         rate = speed * speed * (slope * slope + ratio * bend)
         z, local = design_at(space.stepped, 0), theta + axes.lead[k]

@@ -4,9 +4,9 @@ Smooth curves are integrated with the trapezoidal rule in the crowded angle, whi
 analytic functions. Piecewise curves are integrated on Gauss-Legendre panels between breakpoints. The closer a linkage
 is to locking, the closer are the curves' singularities, at the distance atanh(kappa) in the crowded angle
 (`segments.crowding`). The number of nodes therefore grows with 1 / kappa. The rod's direction would lose digits in the
-same way; `_square_along` keeps them. Loads that jump at a dead centre do so while the slider stands still. Without
-friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump times its own motion
-to the derivatives.
+same way; `_squared_rod_along_line` keeps them. Loads that jump at a dead centre do so while the slider stands still.
+Without friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump times its own
+motion to the derivatives.
 
 Magnitudes of joint forces, such as |A|, have sharp bends where a force is close to zero. Friction transfers these bends
 to the torque. There, panels are halved until the last Legendre coefficients of curve and derivatives have died out, or
@@ -128,7 +128,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _square_along(theta: Any, d: Any, gap: Any) -> Any:
+def _squared_rod_along_line(theta: Any, d: Any, gap: Any) -> Any:
     """Return l^2 cos^2(phi), m^2, exact to rounding however close to locking; gap: l - r - |e|, m, equally exact.
 
     l^2 - across^2 = (l - |across|) (l + |across|) loses digits where the rod is nearly normal to the slider line. With
@@ -141,7 +141,7 @@ def _square_along(theta: Any, d: Any, gap: Any) -> Any:
 
 
 @analytic
-def _fill_curves(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, sides: Sides, out: Any) -> None:
+def _fill_signal_or_work(kind: Any, theta: Any, square: Any, d: Any, segment: Segment, sides: Sides, out: Any) -> None:
     """Fill `out` with a signal, the torque with its sign, or the curves of the work; square: real l^2 cos^2(phi)."""
     sine, cosine = math.sin(theta), math.cos(theta)
     l_sin = d.e - d.r * sine
@@ -177,14 +177,14 @@ def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspac
         c, y = math.cos(tau), math.sin(tau)
         share = 1.0 / points if is_even else workspace.weights[i]
         workspace.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
-        square = _square_along(theta, curve.d, curve.gap)
-        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
+        square = _squared_rod_along_line(theta, curve.d, curve.gap)
+        _fill_signal_or_work(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
         for k in range(workspace.rates.shape[0]):
             workspace.rates[k, 0, i] = workspace.real[k]
         for v in range(curve.stepped.shape[0]):
             stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
             z = design_at(stepped.block, 0)
-            _fill_curves(curve.kind, theta, square, z, stepped, curve.sides, workspace.stepped)
+            _fill_signal_or_work(curve.kind, theta, square, z, stepped, curve.sides, workspace.stepped)
             for k in range(workspace.rates.shape[0]):
                 workspace.rates[k, v + 1, i] = workspace.stepped[k].imag / STEP
 
@@ -267,13 +267,15 @@ def _add_segment(
 
 
 @analytic
-def _add_jumps(curve: _Curve, cuts: Cuts, s: int, count: int, n: int, workspace: _Workspace, means: CurveMeans) -> None:
+def _add_moving_segment_ends(
+    curve: _Curve, cuts: Cuts, s: int, count: int, n: int, workspace: _Workspace, means: CurveMeans
+) -> None:
     """Add to derivatives of design n what the moving ends of segment s contribute: the curve there times the motion."""
     own = curve.segment
     for end in range(2):
         i, theta = (s + 1) % count if end else s, cuts.angle[s + 1] if end else cuts.angle[s]
-        square = _square_along(theta, curve.d, curve.gap)
-        _fill_curves(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
+        square = _squared_rod_along_line(theta, curve.d, curve.gap)
+        _fill_signal_or_work(curve.kind, theta, square, curve.d, own, curve.sides, workspace.real)
         sign = (1.0 if end else -1.0) / (STEP * _TURN)
         for v in range(curve.stepped.shape[0]):
             stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
@@ -291,7 +293,7 @@ def fill_means(
     """Fill the means for n designs, whose fields are zero.
 
     blocks: derived numbers (n, rows, 1). steps: (n v, rows, 1), with an imaginary step in each number in turn. gaps:
-    (n,), see `_gaps`.
+    (n,), see `_distance_to_locking`.
     """
     loads, watch, nv = task.loads, task.watch, means.mean_slope.shape[2] if means.mean_slope.shape[0] else 0
     capacity, curves = breakpoint_capacity(loads), means.mean.shape[1]
@@ -333,7 +335,7 @@ def fill_means(
             curve = _Curve(task.kind, d, gap, kappa, segment, sides, steps[n * nv : (n + 1) * nv])
             left = _add_segment(curve, a, b, points, left, n, workspace, means)
             if task.jumps:
-                _add_jumps(curve, cuts, s, count, n, workspace, means)
+                _add_moving_segment_ends(curve, cuts, s, count, n, workspace, means)
 
 
 def turn_means(
@@ -344,7 +346,7 @@ def turn_means(
     raw: the machine's raw numbers. squares: whether mean squares are needed.
     """
     numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
-    count, gaps, curves = len(designs), _gaps(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
+    count, gaps, curves = len(designs), _distance_to_locking(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
     squared, rows, columns = curves if squares else 0, count if gradients else 0, len(numbers.columns)
     means = CurveMeans(
         np.zeros((count, curves)),
@@ -364,7 +366,7 @@ def turn_means(
     return means
 
 
-def _gaps(crank: Array, rod: Array, offset: Array) -> Array:
+def _distance_to_locking(crank: Array, rod: Array, offset: Array) -> Array:
     """Return l - r - |e|, exact to its own rounding: the first difference's error is added (Knuth's two-sum)."""
     first = rod - crank
     back = first - rod

@@ -133,7 +133,7 @@ def _refine(a: Any, b: Any, start: Any, curve: _Curve) -> Any:
 
 
 @analytic
-def _divide(a: Any, b: Any, curve: _Curve) -> Any:
+def _highest_point_between(a: Any, b: Any, curve: _Curve) -> Any:
     """Sample a finer row between a and b; return value and angle of its highest sample, and the spacing."""
     step = (b - a) / _FINER
     best, at = -1.0, a
@@ -251,7 +251,7 @@ def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, worksp
             if finer == 1 or not f[i] > _NEAR * best:
                 break
             left, right = theta[max(i - 2, start)], theta[min(i + 2, end)]
-            finest, angle, step = _divide(left, right, curve)
+            finest, angle, step = _highest_point_between(left, right, curve)
             if not finest > value + _FLAT * value:
                 break
             left, right = max(left, angle - step), min(right, angle + step)

@@ -34,7 +34,8 @@ def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks)
     values = np.concatenate([first.values, second.values], axis=1)
     order = np.argsort(-values, axis=1, kind="stable")[:, :limit]
     angles = np.concatenate(
-        [_angles(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))], axis=1
+        [_angles_within_both_turns(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))],
+        axis=1,
     )
     gradients = None
     if first.gradients is not None and second.gradients is not None:
@@ -57,7 +58,7 @@ def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
     return values, np.concatenate([0.5 * (first.gradients[:1] + second.gradients[:1]), moved])
 
 
-def _angles(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:
+def _angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:
     """Return the crank angles within both turns for peaks of a half (n, k), rad; NaN stays."""
     dimensions = designs[:, :3].T[:, :, None]
     inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)

@@ -104,7 +104,7 @@ class _Maxima:
         return _Maxima(**{name: column[rows] for name, column in vars(self).items()})
 
 
-def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: float, limit: int) -> _Maxima:
+def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: float, limit: int) -> _Maxima:
     """Return the highest maxima of the cubics between the samples of the cycle."""
     start, theta, first, segment, stress = bars.samples
     n = len(start) - 1
@@ -137,7 +137,7 @@ def _of_samples(bars: StressLocations, sides: Array, criteria: Array, margin: fl
     )
 
 
-def _close_in(bars: StressLocations, sides: Array, criteria: Array, maxima: _Maxima) -> None:
+def _refine_maxima(bars: StressLocations, sides: Array, criteria: Array, maxima: _Maxima) -> None:
     """Follow maxima using samples of their own, until these are so close that the cubics are exact."""
     begin, end = bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
@@ -202,12 +202,12 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
         np.zeros((n, limit, width)) if gradients else None,
     )
     # Any of several maxima that are equal to the samples' accuracy may be the highest.
-    maxima = _of_samples(bars, _SIDES, criteria, _NEAR if limit == 1 else _WIDE, max(limit, 3))
+    maxima = _maxima_of_samples(bars, _SIDES, criteria, _NEAR if limit == 1 else _WIDE, max(limit, 3))
     if limit == 1:
         top = np.full(n, -np.inf)
         np.maximum.at(top, maxima.bar, maxima.value)
         maxima = maxima.select(np.flatnonzero(maxima.value >= (top - _EQUAL * np.abs(top))[maxima.bar]))
-    _close_in(bars, _SIDES, criteria, maxima)
+    _refine_maxima(bars, _SIDES, criteria, maxima)
     candidates = Candidates(
         maxima.bar, maxima.side, maxima.pull, np.zeros((len(maxima.bar), 2), np.int64), maxima.share
     )
@@ -232,7 +232,7 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
     return peaks
 
 
-def _require_one_sided(criteria: Array) -> None:
+def _require_one_angle_per_criterion(criteria: Array) -> None:
     """Raise `InputError` for criteria that compare two crank angles, because these may belong to different turns."""
     if (criteria > 0.0).all(axis=1).any():
         raise InputError(
@@ -277,7 +277,7 @@ def stress_peaks(
     designs = turning(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
     if cycle_turns(mechanism) > 1:
-        _require_one_sided(criteria)
+        _require_one_angle_per_criterion(criteria)
         turns = (
             stress_peaks(half, places, designs, criteria, gradients=gradients, limit=limit)
             for half in halves(mechanism)

@@ -94,7 +94,7 @@ class StressLocations:
     def stress_at(self, bars: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives by the crank angle, (p, WIDE)."""
         stress = self.field.stress_at(self._design(bars), segment, angle)
-        return _spread(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
+        return _stress_by_location(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
 
     def slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return the derivatives by the numbers of the design, (p, 3 + k, WIDE / 2).
@@ -108,9 +108,11 @@ class StressLocations:
         p, k = stress.shape[:2]
         place, row = np.repeat(self._place(bars), k), np.repeat(np.arange(p), k)
         factors, rates = np.repeat(self.factors[bars], k, axis=0), self.rates[bars].reshape(p * k, 2)
-        spread = _spread(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[:, _MANY:]
+        spread = _stress_by_location(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[
+            :, _MANY:
+        ]
         eyes = np.array([isinstance(location, Eye) for location in self.places])[place]
-        spread[eyes] += _spread(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
+        spread[eyes] += _stress_by_location(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
         return spread.reshape(p, k, _MANY)
 
     def _place(self, bars: IntArray) -> IntArray:
@@ -120,7 +122,9 @@ class StressLocations:
         return bars % len(self.field.blocks)
 
 
-def _spread(places: Sequence[StressLocation], stress: Array, row: IntArray, place: IntArray, factors: Array) -> Array:
+def _stress_by_location(
+    places: Sequence[StressLocation], stress: Array, row: IntArray, place: IntArray, factors: Array
+) -> Array:
     """Return the stress at locations (p, WIDE) from rows (p,) of the stress in both links (r, 2 WIDE)."""
     codes = np.array(
         [
@@ -135,12 +139,14 @@ def _spread(places: Sequence[StressLocation], stress: Array, row: IntArray, plac
         dtype=np.int64,
     )
     spread = np.empty((len(row), WIDE))
-    _fill(np.ascontiguousarray(stress), row, place, codes, np.ascontiguousarray(factors), spread)
+    _fill_location_stress(np.ascontiguousarray(stress), row, place, codes, np.ascontiguousarray(factors), spread)
     return spread
 
 
 @seldom_kernel
-def _fill(stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table) -> None:
+def _fill_location_stress(
+    stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table
+) -> None:
     """Fill stresses.
 
     codes: (m, 4), link's first column, whether it is an eye, whether far, whether bent. factors: (p, 2).
@@ -177,7 +183,7 @@ def stress_at_locations(
     for number, place in enumerate(places):
         if isinstance(place, Eye):
             mine = slice(n * number, n * number + n)
-            factors[mine], rates[mine] = _factors(mechanism, designs, place)
+            factors[mine], rates[mine] = _eye_stress_factors(mechanism, designs, place)
     count = len(cycle_samples.theta)
     row, of_place = np.tile(np.arange(count), many), np.repeat(np.arange(many), count)
     of_bar = np.tile(np.repeat(np.arange(n), np.diff(cycle_samples.start)), many) + n * of_place
@@ -186,7 +192,7 @@ def stress_at_locations(
         np.tile(cycle_samples.theta, many),
         np.tile(cycle_samples.begins_segment, many),
         np.tile(cycle_samples.segment, many),
-        _spread(places, cycle_samples.stress, row, of_place, factors[of_bar]),
+        _stress_by_location(places, cycle_samples.stress, row, of_place, factors[of_bar]),
     )
     return StressLocations(field, tuple(places), samples, factors, rates)
 
@@ -206,7 +212,7 @@ def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
     return axial, bending
 
 
-def _factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
+def _eye_stress_factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
     """Return the factors of axial stress and bending in the whole section, (n, 2), and their derivatives."""
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
     for number, formula in enumerate(eye_factors(mechanism, eye)):

@@ -104,7 +104,7 @@ class SampledStress(NamedTuple):
 
 
 @analytic
-def _fill_greatest(samples: SampledStress, begin: int, count: int, criteria: Any, best: Any) -> float:
+def _fill_greatest_combinations(samples: SampledStress, begin: int, count: int, criteria: Any, best: Any) -> float:
     """Fill `best` (sides, m, STATIONS) with each criterion's maximum over samples; return the overall maximum."""
     greatest = -math.inf
     for f in range(samples.sides.shape[0]):
@@ -143,7 +143,7 @@ def propose(
         begin, count = start[n], start[n + 1] - start[n]
         if count == 0:
             continue
-        greatest = _fill_greatest(samples, begin, count, criteria, best)
+        greatest = _fill_greatest_combinations(samples, begin, count, criteria, best)
         floor = greatest - margin * abs(greatest)
         for f in range(sides.shape[0]):
             for g in range(criteria.shape[0]):
@@ -177,7 +177,7 @@ def propose(
 
 
 @analytic
-def _climb_angle(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) -> Any:
+def _angle_of_nearby_maximum(samples: SampledStress, side: Any, sign: Any, xi: Any, k: int) -> Any:
     """Return the sample before the maximum of sign times the stress, near sample k, and its values.
 
     The values are the crank angle of the maximum, the stress, and its slope over the location. Stays within the
@@ -235,7 +235,9 @@ def climb(samples: SampledStress, criteria: Table, candidates: Candidates, value
                 if weight == 0.0:
                     continue
                 sign = 1.0 if weight > 0.0 else -1.0
-                k, angles[c, end], height, rise = _climb_angle(samples, side, sign, xi, candidates.samples[c, end])
+                k, angles[c, end], height, rise = _angle_of_nearby_maximum(
+                    samples, side, sign, xi, candidates.samples[c, end]
+                )
                 candidates.samples[c, end] = k
                 value += weight * height
                 slope += weight * rise

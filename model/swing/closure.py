@@ -51,13 +51,18 @@ def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
         sign = _sign(mechanism)
         passing &= ~_has_dead_point(ends, sign, designs)
         passing_ends = ends.select(passing)
-        passing[passing] = _angles(swing, passing_ends, sign, designs[passing], slopes=False).values.min(axis=1) > 0.0
+        passing[passing] = (
+            _transmission_angle_candidates(swing, passing_ends, sign, designs[passing], slopes=False).values.min(axis=1)
+            > 0.0
+        )
     return passing
 
 
 def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
     """Return the transmission angles for designs (n, 3 + k) that close, see `closes`."""
-    return _angles(swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs)
+    return _transmission_angle_candidates(
+        swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs
+    )
 
 
 def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
@@ -105,14 +110,16 @@ def _has_dead_point(ends: Ends, sign: float, designs: Array) -> Mask:
     return dead
 
 
-def _angles(swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bool = True) -> DrivenAngles:
+def _transmission_angle_candidates(
+    swing: Swing, ends: Ends, sign: float, designs: Array, *, slopes: bool = True
+) -> DrivenAngles:
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
         normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.occurrences(angle)]
         places += [(ends.turned_into(angle), None) for angle in normal_angles]
         side = None
     else:
-        places += [(angle, None) for angle in _rod_as_fast(ends, sign, designs)]
+        places += [(angle, None) for angle in _angles_with_slider_at_pivot(ends, sign, designs)]
         middle = _transmission_sine(ends.middle, designs[:, 0], designs[:, 1], designs[:, 2], sign)
         side = np.where(middle < 0.0, -1.0, 1.0)
 
@@ -166,7 +173,7 @@ def _transmission_sine(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
     return toggle_distance(sine, cosine, motion(sine, cosine, r, l, e, sign))
 
 
-def _rod_as_fast(ends: Ends, sign: float, designs: Array) -> list[Array]:
+def _angles_with_slider_at_pivot(ends: Ends, sign: float, designs: Array) -> list[Array]:
     """Return the crank angles (n,) at which the slider is at the pivot; NaN if the swing has none."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     size = np.abs(e)

@@ -133,7 +133,7 @@ def swing_curves(
         drive, joints = _free_crank_forces(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
         angle = np.arcsin(np.clip(np.abs(toggle_distance(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
-        error = _crank_error(theta, m, d, swing.actuator_tolerance)
+        error = _worst_case_crank_error(theta, m, d, swing.actuator_tolerance)
     # Remove values that only come from the negligible crank speed.
     load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
     return SwingCurves(
@@ -206,7 +206,9 @@ def _free_crank_forces(
     with np.errstate(divide="ignore", invalid="ignore"):
         bx, by = free_pin(sine, cosine, m, d, b)
         if any(np.any(side) for side in sides):
-            bx, by = _with_pins(bx, by, partial(pin_rows, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides))
+            bx, by = _pin_force_with_friction(
+                bx, by, partial(pin_rows, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides)
+            )
             sure = np.abs(toggle_distance(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
             bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
@@ -217,7 +219,7 @@ def _free_crank_forces(
     return np.asarray(drive), dict(zip(JOINTS, joints, strict=True))
 
 
-def _with_pins(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) -> tuple[Array, Array]:
+def _pin_force_with_friction(bx: Array, by: Array, rows: Callable[[Array, Array], PinRows]) -> tuple[Array, Array]:
     """Return B with friction in the pins, starting from B without it."""
     for _ in range(_ITERATIONS):
         step_x, step_y = newton_step(rows(bx, by))
@@ -239,7 +241,7 @@ def locking_angle(d: Design) -> Any:
     return np.minimum(0.5 * np.pi, np.arcsin(at_rod) + np.arcsin(at_crank))
 
 
-def _crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:
+def _worst_case_crank_error(theta: Array, m: Motion, d: Design, actuator: float) -> Array:
     """Return the worst case for the crank angle, rad: (sum of |dx/di| T_i + T_x) / |x'|."""
     i = influences(np.sin(theta), np.cos(theta), m, d.l)
     off = np.abs(i.crank) * d.crank_error + np.abs(i.rod) * d.rod_error + np.abs(i.offset) * d.offset_error

@@ -113,7 +113,7 @@ def swing_peaks(
     """
     find = partial(_peaks_of_state, state=state, limit=limit, gradients=gradients)
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, forces=state != ERROR)
-    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
+    return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
 def least_drives(
@@ -138,7 +138,7 @@ def least_drives(
         return _maxima_of_state(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
 
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True)
-    return _peaks_of_passing(mechanism, swing, designs, limit, gradients, find, batch_of)
+    return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
 def holding_peaks(
@@ -150,12 +150,12 @@ def holding_peaks(
     """
     unit_design = np.ones((1, 3 + len(mechanism.varying)))
     ways = 2 if SwingBatch(mechanism, swing, unit_design, slopes=False, slow=True, free=free).ways_differ else 1
-    find = partial(_at_ends, gradients=gradients)
+    find = partial(_drive_at_ends, gradients=gradients)
     batch_of = partial(SwingBatch, mechanism, swing, slopes=gradients, slow=True, free=free)
-    return _peaks_of_passing(mechanism, swing, designs, 2 * ways, gradients, find, batch_of)
+    return _peaks_of_swinging_designs(mechanism, swing, designs, 2 * ways, gradients, find, batch_of)
 
 
-def _peaks_of_passing(
+def _peaks_of_swinging_designs(
     mechanism: Mechanism,
     swing: Swing,
     designs: Array,
@@ -206,7 +206,7 @@ def _maxima_of_state(
     return find_maxima(curve, curve.segments(), np.full(batch.count, _PANELS), limit=limit, signed=toward is not None)
 
 
-def _at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
+def _drive_at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
     for back in batch.ways():
         for share in (0.0, 1.0):

@@ -177,11 +177,11 @@ def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     angles = crank_angles_at(places, linkage.sign, side, np.array([[r, l, e], [r, l, e]])).tolist()
     for place, angle in zip(places.tolist(), angles, strict=True):
         if math.isnan(angle):
-            raise AssemblyError(_missed_place_text(place, linkage, swing))
+            raise AssemblyError(_unreachable_end_text(place, linkage, swing))
     return replace(swing, start=angles[0], end=angles[1], stated_for="crank", follows=False)
 
 
-def _missed_place_text(place: float, linkage: Linkage, swing: Swing) -> str:
+def _unreachable_end_text(place: float, linkage: Linkage, swing: Swing) -> str:
     r, l, e = (1e3 * float(size) for size in (linkage.crank, linkage.rod, linkage.offset))
     near, far = abs(l - r), l + r
     away = math.hypot(1e3 * place, e)
@@ -211,11 +211,11 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
             "a cylinder drives a lever; got one as the driver of a slider-crank; drive the crank or the slider, or set "
             '[mechanism] inversion = "turning cylinder"'
         )
-    _require_passing(mechanism, checked, placed(mechanism, checked, swing))
+    _require_swing_without_dead_point(mechanism, checked, placed(mechanism, checked, swing))
     return checked
 
 
-def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> None:
+def _require_swing_without_dead_point(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> None:
     _require_closing(linkage, swing)
     passed = sorted(angle for dead in dead_points(linkage) for angle in swing.occurrences(dead))
     if swing.driver == "slider" and passed:
@@ -224,7 +224,7 @@ def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> No
             f"the swing from {_degrees(swing.start)} to {_degrees(swing.end)} has one at {_degrees(passed[0])}; "
             "stay on one side of it, change the dimensions, or drive the crank"
         )
-    if swing.driver == "slider" and _is_folded(linkage, swing):
+    if swing.driver == "slider" and _has_overlapping_links(linkage, swing):
         raise InputError(
             "a slider drives the crank only where crank and rod are not in line; got a rod as long as the crank, no "
             f"offset, and both folded at {_degrees(0.5 * (swing.start + swing.end))}, the slider on the crank pivot; "
@@ -239,7 +239,7 @@ def _require_passing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> No
             )
 
 
-def _is_folded(linkage: Linkage, swing: Swing) -> bool:
+def _has_overlapping_links(linkage: Linkage, swing: Swing) -> bool:
     """Return whether crank and rod overlap over a whole swing that has no single dead point."""
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0

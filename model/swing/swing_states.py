@@ -81,7 +81,9 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
 
 
 @analytic
-def _pushed(sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool) -> Any:
+def _slider_drive_and_guide_force(
+    sine: Any, cosine: Any, m: Any, d: Any, load: Any, on_crank: Any, rod_1: float, rubbing: bool
+) -> Any:
     """Return the slider force that turns a free crank, along +x or NaN, and the guide force.
 
     on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts at a cut.
@@ -139,7 +141,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _way_of(path: Path, share: Any, probe: Any, back: Any) -> Any:
+def _forward_travel_and_derivatives(path: Path, share: Any, probe: Any, back: Any) -> Any:
     """Return the fraction of the travel and its three derivatives by the fraction of the time, counted forward."""
     w, w_1, w_2, w_3 = way_at(path.law, path.table, share, probe)
     if back > 0.5:
@@ -165,7 +167,7 @@ def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
 
 
 @analytic
-def _drive(
+def _drive_power_error_guide(
     path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, space: _Workspace
 ) -> tuple[Any, Any, Any, Any]:
     """Return drive, power, error at the driven side and guide force.
@@ -185,7 +187,7 @@ def _drive(
         if path.forces:
             on_crank = torque_without_crank_loads(0j, angle, turning, segment)
             rod_1 = motion(math.sin(probe_angle), math.cos(probe_angle), d.r, d.l, d.e, d.branch).rod_1
-            drive, guide = _pushed(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
+            drive, guide = _slider_drive_and_guide_force(zs, zc, m, z, load, on_crank, rod_1, path.rubbing)
             power = drive * m.x_1 * speed
         off = magnitude(j.crank) * z.crank_error + magnitude(j.rod) * z.rod_error
         off = off + magnitude(j.offset) * z.offset_error + path.tolerance
@@ -209,9 +211,9 @@ def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, spa
     start, end = begin.real, ending.real
     turning = (1.0 if end > start else -1.0) * (1.0 - 2.0 * points.back[p])
     d, z = design_at(space.block, 0), design_at(space.stepped, 0)
-    s, s_1, s_2, _ = _way_of(path, points.probe[p], points.probe[p], points.back[p])
+    s, s_1, s_2, _ = _forward_travel_and_derivatives(path, points.probe[p], points.probe[p], points.back[p])
     probe_angle = _probe_angle(path, d, s, start, end)
-    w, w_1, w_2, w_3 = _way_of(path, points.share[p], points.probe[p], points.back[p])
+    w, w_1, w_2, w_3 = _forward_travel_and_derivatives(path, points.share[p], points.probe[p], points.back[p])
     a, a_1, a_2 = (
         complex(w, w_1 * points.slip[p]),
         complex(w_1, w_2 * points.slip[p]),
@@ -242,7 +244,9 @@ def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, spa
     space.block[_SPEED, 0], space.block[_ACCELERATION, 0] = turning * max(abs(fast), _STILL), faster
     space.stepped[_SPEED, 0], space.stepped[_ACCELERATION, 0] = speed, rise
     z = design_at(space.stepped, 0)
-    drive, power, error, guide = _drive(path, z, (theta, moved, zs, zc, m, speed), probe_angle, turning, loads, space)
+    drive, power, error, guide = _drive_power_error_guide(
+        path, z, (theta, moved, zs, zc, m, speed), probe_angle, turning, loads, space
+    )
     out[p, DRIVE], out[p, POWER], out[p, ERROR], out[p, GUIDE] = drive, power, error, guide
     out[p, PLACE], out[p, PACE], out[p, ANGLE], out[p, RATE] = m.x, m.x_1, complex(theta, moved), rate
 

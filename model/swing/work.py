@@ -42,7 +42,7 @@ class Work:
 
 def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
     """Return the work of the drive on the forward stroke, J, for designs (n, 3 + k)."""
-    return _for_passing_designs(
+    return _evaluate_swinging_designs(
         mechanism, swing, designs, gradients, lambda rows: _forward_work(mechanism, swing, rows, gradients)
     )
 
@@ -59,7 +59,7 @@ def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
         total = np.add(*ways)
         return -np.where(np.abs(total) <= _EVEN * np.abs(ways[0]), 0.0, total), np.empty((len(rows), 0))
 
-    return _for_passing_designs(mechanism, swing, designs, False, both_ways).values
+    return _evaluate_swinging_designs(mechanism, swing, designs, False, both_ways).values
 
 
 def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients: bool = False) -> Work:
@@ -67,12 +67,14 @@ def swing_efficiency(mechanism: Mechanism, swing: Swing, designs: Array, *, grad
 
     Uses the return stroke if only that is driven; NaN if neither is driven.
     """
-    return _for_passing_designs(
+    return _evaluate_swinging_designs(
         mechanism, swing, designs, gradients, lambda rows: _efficiency_and_slopes(mechanism, swing, rows, gradients)
     )
 
 
-def _for_passing_designs(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, evaluate: Any) -> Work:
+def _evaluate_swinging_designs(
+    mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool, evaluate: Any
+) -> Work:
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     values = np.full(len(designs), np.nan)
     slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))

@@ -78,9 +78,13 @@ def extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> 
     ideal = linkage.at(angles).slider_position
     (r, l, e, turn) = limit_box(mechanism, linkage)
     if linkage.branch == "open":
-        return Extremes(angles, _least(r, l[0], e, angles, turn) - ideal, _greatest(r, l[1], e, angles, turn) - ideal)
+        return Extremes(
+            angles,
+            _least_position(r, l[0], e, angles, turn) - ideal,
+            _greatest_position(r, l[1], e, angles, turn) - ideal,
+        )
     mirrored = np.pi - angles
-    least, greatest = -_greatest(r, l[1], e, mirrored, turn), -_least(r, l[0], e, mirrored, turn)
+    least, greatest = -_greatest_position(r, l[1], e, mirrored, turn), -_least_position(r, l[0], e, mirrored, turn)
     return Extremes(angles, least - ideal, greatest - ideal)
 
 
@@ -114,7 +118,7 @@ def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
     return r * np.cos(angles) + np.sqrt(l * l - l_sin * l_sin)
 
 
-def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+def _greatest_position(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
     """Maximum position on the open branch for ranges r, e (2,) and middle + turn (2,) of the crank angle."""
     ends = middle + turn[:, None]
     best = np.full(middle.shape, -np.inf)
@@ -138,8 +142,8 @@ def _greatest(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array
     return best
 
 
-def _least(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
-    """Minimum position on the open branch; arguments as for `_greatest`."""
+def _least_position(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+    """Minimum position on the open branch; arguments as for `_greatest_position`."""
     best = np.full(middle.shape, np.inf)
     for crank, offset in product(r, e):
         dead = _clip_angle(np.pi + np.arcsin(offset / (l - crank)), middle, turn)

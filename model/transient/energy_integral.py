@@ -63,7 +63,7 @@ def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
         load = turn.terms.static + (turn.way * turn.terms.drag + turn.terms.square * pace) * pace
         if turn.equation.rubs:
             load = load + turn.friction(turn.way * pace, rise)
-        guess, stops = _running_under_load(turn, load, inertia, speed)
+        guess, stops = _motion_under_load(turn, load, inertia, speed)
         if stops or not turn.speed_dependent:
             return Coasting(load, guess, stops)
         rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
@@ -92,7 +92,7 @@ def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     return turn.cut((least[:, None] + np.concatenate([-away, away])).ravel())
 
 
-def _running_under_load(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> tuple[Guess, bool]:
+def _motion_under_load(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> tuple[Guess, bool]:
     """Return the motion under a load, N m at the nodes, and whether its crank stops."""
     from scipy.optimize import brentq
 

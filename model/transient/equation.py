@@ -88,13 +88,15 @@ def _cut_cycle(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> in
 
 
 @kernel
-def _enter_piece(block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row) -> bool:
+def _enter_segment_at(
+    block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row
+) -> bool:
     _, outward = enter(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
     return outward
 
 
 @kernel
-def _fill_terms(
+def _fill_equation_terms(
     block: Table, loads: Loads, outward: bool, way: float, piece: Integers, shift: Row, angles: Row, out: Table
 ) -> None:
     still, spin, push, bare = design_at(block, 0), design_at(block, 1), design_at(block, 2), design_at(block, 3)
@@ -209,7 +211,7 @@ class Stretch(Span):
         count = len(equation.loads.kind)
         self._piece, self._shift = np.zeros(count, np.int64), np.zeros(count)
         self._block, self._loads = equation.block, equation.loads
-        counter_clockwise = _enter_piece(
+        counter_clockwise = _enter_segment_at(
             self._block, self._loads, equation.watch, angle_within(low, high), self._piece, self._shift
         )
         self._outward = bool(counter_clockwise == (way > 0.0))
@@ -224,7 +226,9 @@ class Stretch(Span):
     def terms_at(self, crank_angle: Array) -> Terms:
         """Return the terms at crank angles (n,), rad; beyond the ends the loads continue as inside."""
         out = np.empty((6, len(crank_angle)))
-        _fill_terms(self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out)
+        _fill_equation_terms(
+            self._block, self._loads, self._outward, self.way, self._piece, self._shift, crank_angle, out
+        )
         return Terms(*out)
 
     def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:

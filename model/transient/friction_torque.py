@@ -148,7 +148,7 @@ class _Motor(NamedTuple):
 
 
 @analytic
-def _heat_of(f: Any, m: Motion, d: Any) -> float:
+def _friction_heat_per_angle(f: Any, m: Motion, d: Any) -> float:
     """Return the friction heat per crank angle, J, from the forces in all joints."""
     pivot = d.crank_pivot_circle.real * math.hypot(f.pivot_x.real, f.pivot_y.real)
     in_crank = d.crank_pin_circle.real * math.hypot(f.crank_pin_x.real, f.crank_pin_y.real)
@@ -203,7 +203,7 @@ def _fill_friction_states(
             accelerations[i] = a
             out[0, i] = torque.real
             out[3, i] = least
-            out[4, i] = _heat_of(f, m, d) * senses.turn * w
+            out[4, i] = _friction_heat_per_angle(f, m, d) * senses.turn * w
             out[5, i] = f.guide.real
             if not by_speed:
                 break

@@ -140,7 +140,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     panels = panels_of(curve_rows, ends, np.where(sizes > 0.0, sizes, 1.0))
     least, greatest = panels.extremes(0)
     period = TURN * panels.mean(_TIME)
-    peaks = {name: _size(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
+    peaks = {name: _larger_magnitude(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
     for row, name in enumerate(_SQUARES, start=3 + len(_SIZES)):
         top = panels.extremes(row)[1]
         peaks[name] = Extreme(math.sqrt(max(0.0, top.value)), angle_in_cycle(top.angle, turns * TURN))
@@ -149,7 +149,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     return SpeedProfileCycle(
         least_speed=Extreme(least.value, angle_in_cycle(least.angle, TURN)),
         greatest_speed=Extreme(greatest.value, angle_in_cycle(greatest.angle, TURN)),
-        acceleration=_size(panels.extremes(1), 1),
+        acceleration=_larger_magnitude(panels.extremes(1), 1),
         period=period,
         mean_speed=way * TURN / period,
         fluctuation=(greatest.value - least.value) * period / TURN,
@@ -160,7 +160,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     )
 
 
-def _size(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
+def _larger_magnitude(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
     """Return the larger magnitude of both extremes."""
     top = peak_of(extremes, turns * TURN)
     return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))

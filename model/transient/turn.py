@@ -295,7 +295,9 @@ class PeriodicTurn:
             moved = np.linalg.solve(system, sides)  # E at the nodes: residual, by E at the start, by the torque
             passed = self.width[:, None] * np.einsum("n,pn,pnk->pk", WEIGHTS, by_energy, moved)
             jump = start + self.width * (rate @ WEIGHTS) - np.roll(start, -1) + passed[:, 0]
-            chain = _chain_panels(jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS))
+            chain = _energy_changes_at_panel_starts(
+                jump, 1.0 + passed[:, 1], passed[:, 2] + self.width * (by_torque @ WEIGHTS)
+            )
             (offset, by_start, by_added), memory = chain[-1], chain[-1][1]
             if mean_speed is None:
                 change, torque_change = (offset / (1.0 - by_start) if by_start != 1.0 else math.inf), 0.0
@@ -322,7 +324,7 @@ class PeriodicTurn:
         return None
 
 
-def _chain_panels(jump: Array, growth: Array, torque: Array) -> Array:
+def _energy_changes_at_panel_starts(jump: Array, growth: Array, torque: Array) -> Array:
     """Return the change in E at each panel's start and at the end, (panels + 1, 3).
 
     Its constant part, its part due to the change at the first start, and its part due to the added torque.

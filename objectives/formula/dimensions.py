@@ -72,14 +72,16 @@ class _Dimensions:
                         f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of "
                         "one kind can be combined; correct the names, or give numbers their units"
                     )
-            return _Part(first.powers, written, _exponent(function, arguments))
+            return _Part(first.powers, written, _constant_exponent(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
             powers = {base: Fraction(0) for base in (*first.powers, *last.powers)}
             powers |= first.powers
             powers = {base: power + sign * last.powers.get(base, 0) for base, power in powers.items()}
             return _Part(
-                {base: power for base, power in powers.items() if power}, written, _exponent(function, arguments)
+                {base: power for base, power in powers.items() if power},
+                written,
+                _constant_exponent(function, arguments),
             )
         if function == "**":
             return _Part(_raised_to_power(first, last, text), written)
@@ -98,7 +100,7 @@ class _Dimensions:
                     f"{function} needs a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
                 )
             return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
-        return _Part(first.powers, written, _exponent(function, arguments))  # neg, abs
+        return _Part(first.powers, written, _constant_exponent(function, arguments))  # neg, abs
 
 
 def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
@@ -117,7 +119,7 @@ def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
 
 
-def _exponent(function: str, arguments: list[_Part]) -> Fraction | None:
+def _constant_exponent(function: str, arguments: list[_Part]) -> Fraction | None:
     """Return the value of an exponent such as 1/3; None if it is not a number, or is too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]
@@ -136,21 +138,21 @@ def _powers_of(dimension: Dimension) -> Powers:
 
 def _may_be_added(first: Powers, second: Powers) -> bool:
     """Return whether values may be added. An angle times a length counts as a length, like an arc."""
-    return _without_arc(first) == _without_arc(second)
+    return _without_angle_of_arc(first) == _without_angle_of_arc(second)
 
 
-def _without_arc(powers: Powers) -> Powers:
+def _without_angle_of_arc(powers: Powers) -> Powers:
     arc = bool(powers.get(_LENGTH))
     return {base: power for base, power in powers.items() if power and not (arc and base == _ANGLE)}
 
 
 def _kind_of_powers(powers: Powers) -> Kind:
-    return kind_with(frozenset((base, int(power)) for base, power in _without_arc(powers).items()))
+    return kind_with(frozenset((base, int(power)) for base, power in _without_angle_of_arc(powers).items()))
 
 
 def _unit(powers: Powers) -> str:
     """Return the display unit for values with a dimension."""
-    significant = _without_arc(powers)
+    significant = _without_angle_of_arc(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
         return _kind_of_powers(significant).metric.symbol or "no unit"
     return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(significant.items()))

@@ -99,14 +99,14 @@ class Text:
             return f"{function}({', '.join(text for text, _ in arguments)})", _ATOM
         strength = SIGNS[function]
         if function == "neg":
-            return f"-{_bound_text(arguments[0], strength)}", strength
+            return f"-{_bracketed_text(arguments[0], strength)}", strength
         left, right = arguments
         if function == "**":
-            return f"{_bound_text(left, strength + 1)}**{_bound_text(right, strength)}", strength
-        return f"{_bound_text(left, strength)} {function} {_bound_text(right, strength + 1)}", strength
+            return f"{_bracketed_text(left, strength + 1)}**{_bracketed_text(right, strength)}", strength
+        return f"{_bracketed_text(left, strength)} {function} {_bracketed_text(right, strength + 1)}", strength
 
 
-def _bound_text(part: tuple[str, int], least: int) -> str:
+def _bracketed_text(part: tuple[str, int], least: int) -> str:
     text, strength = part
     return text if strength >= least else f"({text})"
 

@@ -134,7 +134,7 @@ class Kinks:
             return _extreme_of_parts(function, arguments)
         active_values = [item.from_above.values[:, 0] for item in arguments]
         slopes = partials(function, active_values, _function_values(function, active_values))
-        signs, sign = _slope_signs(function, arguments)
+        signs, sign = _signs_of_slopes_and_value(function, arguments)
         sides = []
         for from_above in (True, False):
             argument_sides = [
@@ -176,7 +176,7 @@ _RISING = {
 """Signs of the slopes of functions that are monotone everywhere."""
 
 
-def _slope_signs(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
+def _signs_of_slopes_and_value(function: str, arguments: list[TwoSided]) -> tuple[tuple[int, ...], int]:
     """Return the known signs of a function's slopes by its arguments, and the known sign of its value."""
     first, last = arguments[0].sign, arguments[-1].sign
     if function == "*":

@@ -101,7 +101,7 @@ class FormulaQuantity(Quantity):
         n, d = dimensions.shape
         leaves = dict(part_values)
         for name, values, place in self._numbers(mechanism, dimensions):
-            leaves[name] = Values(values, _slope(n, d, place) if gradients else None)
+            leaves[name] = Values(values, _unit_gradient(n, d, place) if gradients else None)
         with np.errstate(all="ignore"):
             return fold(self.expression, Slopes(leaves, n, d, gradients))
 
@@ -133,7 +133,7 @@ class FormulaQuantity(Quantity):
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
         for name, values, column in self._numbers(mechanism, dimensions):
-            piece = smooth(values, _slope(n, d, column))
+            piece = smooth(values, _unit_gradient(n, d, column))
             leaves[name] = TwoSided(piece, piece, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
@@ -154,7 +154,7 @@ class FormulaQuantity(Quantity):
                 yield item.name, np.full(len(designs), math.nan if number is None else number / factor), None
 
 
-def _slope(n: int, d: int, place: int | None) -> Array:
+def _unit_gradient(n: int, d: int, place: int | None) -> Array:
     return np.tile(np.arange(d) == place, (n, 1)).astype(np.float64)
 
 

@@ -208,10 +208,10 @@ def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
         return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")
-    return _interval_of_turn(function, first)
+    return _interval_of_trigonometric(function, first)
 
 
-def _interval_of_turn(function: str, angle: Interval) -> Interval:
+def _interval_of_trigonometric(function: str, angle: Interval) -> Interval:
     """Return the bounds of sine, cosine or tangent between two angles."""
     # Within half a turn of zero, sine and tangent are zero only at zero.
     excludes_zero = angle.excludes_zero and function != "cos" and -math.pi < angle.lower and angle.upper < math.pi

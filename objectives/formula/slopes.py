@@ -63,7 +63,7 @@ class Slopes:
     def call(self, function: str, arguments: list[Values]) -> Values:
         """Return a function of its arguments; at a kink, with the slope for the first active argument."""
         if function in ("min", "max"):
-            return _extreme(function, arguments)
+            return _minimum_or_maximum(function, arguments)
         argument_values = [item.values for item in arguments]
         values = (
             UNARY[function][0](argument_values[0])
@@ -95,7 +95,7 @@ def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
     return total
 
 
-def _extreme(function: str, arguments: list[Values]) -> Values:
+def _minimum_or_maximum(function: str, arguments: list[Values]) -> Values:
     stacked = np.stack([item.values for item in arguments])
     first = (np.argmin if function == "min" else np.argmax)(stacked, axis=0)  # NaN counts as active
     rows = np.arange(stacked.shape[1])

@@ -63,7 +63,7 @@ def _fork_function_process(asking: int, log: str) -> None:
     os.setpgid(function, function)  # if a function kills its own process group, the guard survives
     for pipe in (0, 1, output):  # only the function's process uses requests and results
         os.close(pipe)
-    threading.Thread(target=_end_with, args=(asking,), daemon=True).start()
+    threading.Thread(target=_end_with_caller, args=(asking,), daemon=True).start()
     relay = threading.Thread(target=_relay_output, args=(printed,), daemon=True)
     relay.start()
     family = _Family(function)
@@ -122,7 +122,7 @@ def _descendants(process: int) -> Iterator[int]:
             yield parent
 
 
-def _end_with(asking: int) -> None:
+def _end_with_caller(asking: int) -> None:
     while os.getppid() == asking:
         time.sleep(_LOOK)
     os.kill(os.getpid(), signal.SIGTERM)

@@ -52,7 +52,7 @@ def is_guard(command: Sequence[str]) -> bool:
 _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 
 
-def _forget_all() -> None:
+def _leave_workers_to_parent() -> None:
     """Leave all function processes, in a fork, to the process that started them."""
     for worker in list(_running):
         worker.forget()
@@ -60,7 +60,7 @@ def _forget_all() -> None:
 
 
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget_all)
+    os.register_at_fork(after_in_child=_leave_workers_to_parent)
 
 
 class _Suspended(Exception):

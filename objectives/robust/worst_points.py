@@ -48,13 +48,15 @@ def worst_inner_points(
     limits = limits_of(mechanism, dimensions)
     spanning, points = in_line(columns, dimensions, limits)
     ends = corners(columns)
-    worst, slopes, turns = _losses(at_corners, low)
+    worst, slopes, turns = _signed_as_losses(at_corners, low)
     start = ends[np.argmax(worst, axis=1)]
     inward = (start * _slopes_at_worst(worst, slopes)) * limits
     best = worst.max(axis=1)
     doubtful = (inward[:, columns] < -_FLAT * np.abs(best)[:, None]).any(axis=1)
     if len(spanning):
-        at_zero, zero_slopes, _ = _losses(evaluate_points(quantity, mechanism, dimensions[spanning], points), low)
+        at_zero, zero_slopes, _ = _signed_as_losses(
+            evaluate_points(quantity, mechanism, dimensions[spanning], points), low
+        )
         beaten = at_zero.max(axis=1) >= best[spanning]
         rows, zero_points = spanning[beaten], points[beaten]
         place = np.argmax(at_zero[beaten], axis=1)
@@ -65,7 +67,7 @@ def worst_inner_points(
         next_to_zero = start[rows][:, None, :] + _SIDE_STEP * np.array(
             [[[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]
         ).transpose(1, 0, 2)
-        near, _, _ = _losses(evaluate_points(quantity, mechanism, dimensions[rows], next_to_zero), low)
+        near, _, _ = _signed_as_losses(evaluate_points(quantity, mechanism, dimensions[rows], next_to_zero), low)
         doubtful[rows] |= near.max(axis=1, initial=-np.inf) > best[rows] + _LOST * np.abs(best[rows])
     doubtful &= turns.all(axis=1) & np.isfinite(best)
     sought = {
@@ -84,7 +86,7 @@ def worst_inner_points(
     return InnerPoints(rows, inner_points)
 
 
-def _losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
+def _signed_as_losses(point_values: PointValues, low: bool) -> tuple[Array, Array, Mask]:
     """Return a quantity as a loss at points (n, q), slopes (n, q, 3), and where the linkage rotates fully."""
     values, slopes = point_values.highest(point_values.local)
     sign = -1.0 if low else 1.0

@@ -43,7 +43,7 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
     order counts. Raises `InputError` for values other than real numbers, for other columns, and other widths.
     """
     needed = ", ".join(names)
-    table_or_array = _by_name(designs, names)
+    table_or_array = _in_order_of_names(designs, names)
     try:
         if isinstance(table_or_array, np.ma.MaskedArray):  # masked values are missing
             table_or_array = np.ma.filled(np.ma.asarray(table_or_array, dtype=np.float64), np.nan)
@@ -99,7 +99,7 @@ def shortly(value: object) -> str:
     return text if len(text) <= 60 and "\n" not in text else type(value).__name__
 
 
-def _by_name(designs: object, names: Sequence[str]) -> object:
+def _in_order_of_names(designs: object, names: Sequence[str]) -> object:
     pandas = None if isinstance(designs, np.ndarray) else sys.modules.get("pandas")
     if pandas is None or not isinstance(designs, pandas.DataFrame | pandas.Series):
         return designs

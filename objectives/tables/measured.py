@@ -150,7 +150,7 @@ def measured_from(
     by_time = TIME_OF in values
     theta = mechanism.speed * values.pop(TIME_OF) if by_time else values.pop(CRANK_ANGLE)
     has_angle = np.isfinite(theta)
-    curves = {name: _one_turn(name, samples[has_angle], linkage) for name, samples in values.items()}
+    curves = {name: _rod_angles_in_computed_turn(name, samples[has_angle], linkage) for name, samples in values.items()}
     column_names = {column.name: name for name, column in columns.items()}
     empty = [name for name, samples in curves.items() if not np.isfinite(samples).any()]
     for name in empty:
@@ -168,7 +168,7 @@ def measured_from(
     return Measured(theta[has_angle], curves, left_out, int(len(theta) - has_angle.sum()), by_time)
 
 
-def _one_turn(name: str, values: Array, linkage: Linkage) -> Array:
+def _rod_angles_in_computed_turn(name: str, values: Array, linkage: Linkage) -> Array:
     """Return rod angles in the same turn as the computed ones; other curves are unchanged."""
     if name != "rod_angle":
         return values

@@ -84,7 +84,7 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     rows = []
     ends = None if swing is None else started(mechanism, swing)
     for quantity in QUANTITIES.values() if ends is None else swinging(swing_quantities(ends)):
-        value, slopes_below, slopes_above = _one_sided(quantity, mechanism, design)
+        value, slopes_below, slopes_above = _value_and_one_sided_derivatives(quantity, mechanism, design)
         if quantity.undefined_because([mechanism]):
             value = math.nan
         rows.append(_sensitivity_row(quantity, value, (slopes_below, slopes_above), design, tolerances, True))
@@ -95,14 +95,16 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     return pd.DataFrame(rows)
 
 
-def _one_sided(quantity: Quantity, mechanism: Mechanism, design: Array) -> tuple[float, Array, Array]:
+def _value_and_one_sided_derivatives(
+    quantity: Quantity, mechanism: Mechanism, design: Array
+) -> tuple[float, Array, Array]:
     """Return the value for a design and its derivatives (3,) below and above, SI.
 
     A maximum of pieces changes with its steepest tied piece on either side: the largest slope above, the smallest slope
     below. For a minimum of pieces it is the reverse.
     """
     value = float(quantity.evaluate(mechanism, design[None]).values[0])
-    if design[2] == 0.0 and _is_tip(quantity, mechanism, design, value):
+    if design[2] == 0.0 and _vanishes_at_zero_offset(quantity, mechanism, design, value):
         return (
             value,
             _one_sided_slopes(quantity, mechanism, design, -1.0),
@@ -132,7 +134,7 @@ def _steepest_derivatives(quantity: Quantity, mechanism: Mechanism, at: Array, s
         return np.where(np.abs(steepest) * at[1] <= _ROUNDING * abs(best), 0.0, steepest)
 
 
-def _is_tip(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
+def _vanishes_at_zero_offset(quantity: Quantity, mechanism: Mechanism, design: Array, value: float) -> bool:
     """Whether a quantity vanishes at zero offset: its value and the locations of its peaks are then rounding errors."""
     nearby = design + np.array([0.0, 0.0, _TIP * design[1]])
     return abs(value) <= _TIE * abs(float(quantity.evaluate(mechanism, nearby[None]).values[0]))

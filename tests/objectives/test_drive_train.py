@@ -142,7 +142,7 @@ def test_a_steady_torque_on_the_crank_is_that_of_the_gear_by_hand() -> None:
 
 
 def test_a_rotor_alone_needs_the_torque_of_its_acceleration() -> None:
-    """For p = 1 + 0.2 cos, p p' has its maximum where 0.2 (2 cos^2 - 1) + cos = 0."""
+    """With p = 1 + 0.2 cos, p p' peaks where 0.2 (2 cos^2 - 1) + cos = 0."""
     nothing, profile = RigidLink(mass=0.0), Harmonics(cosines=(0.2,))
     drive = replace(LOSSY, flywheel=0.0, copper_loss=None, recovery=1.0)
     machine = Mechanism(speed=-10.0, crank=nothing, rod=nothing, speed_profile=profile, drive=drive)

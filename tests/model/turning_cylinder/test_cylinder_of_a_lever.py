@@ -97,7 +97,7 @@ def test_sizes_that_take_the_whole_stroke_make_the_swing_with_it() -> None:
 
 @pytest.mark.parametrize("law", ["constant", "harmonic", "cycloidal"])
 def test_the_cylinder_holds_the_lever_at_both_ends_whatever_the_law(law: LeverLaw) -> None:
-    """Moments about O: 80 kg at 0.7 m against the arm r f sin(psi) / L at psi = 40 deg."""
+    """Moments about O: 80 kg at 0.7 m, arm r f sin(psi) / L, psi = 40 deg."""
     arm = 0.35 * 0.9 * math.sin(math.radians(40.0)) / float(TIPPER.sizes.length(LIFT[0]))
     hold = 80.0 * 9.81 * 0.7 * math.cos(LIFT[0]) / arm
     swing, cylinder = LeverSwing(*LIFT, law, 4.0), Cylinder(bore=0.04, rod=0.02)

@@ -30,7 +30,7 @@ def lever(**changes: float) -> TurningCylinder:
 
 
 def test_the_chain_of_300_levers_is_the_slider_crank_with_its_rod_fixed() -> None:
-    """The slider position is the length; from OA, OB is at theta + pi - phi, the line at pi - phi."""
+    """Slider position is length; from OA, OB is at theta + pi - phi, the line at pi - phi."""
     random = np.random.default_rng(1)
     for _ in range(300):
         sizes = some_sizes(random)
