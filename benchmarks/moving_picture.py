@@ -15,15 +15,21 @@ from PIL.Image import Image as Picture
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.service.drawings.linkage_shapes import Look, fixed_shapes, look_of, moving_shapes, pin_positions
-from slidercrank.service.figures.painting import paint, show_rectangle
+from slidercrank.service.drawings.linkage_shapes import (
+    LinkageSizes,
+    fixed_shapes,
+    linkage_sizes,
+    moving_shapes,
+    pin_positions,
+)
+from slidercrank.service.figures.painting import paint_shapes, show_rectangle
 from slidercrank.service.figures.style import (
     INK,
     TEXT,
     TITLE,
     VERMILION,
     add_axes,
-    colours,
+    colour_map,
     new_figure,
     padded_limits,
     style_axes,
@@ -62,7 +68,7 @@ def exploring_front(front: ParetoFront, file: Path) -> None:
     """Write the picture as a GIF, of a front between time ratio, peak torque and least transmission angle."""
     of = _Columns(*(front.columns[key] for key in _LABELS))
     linkages = [Linkage(*dimensions[:3]) for dimensions in front.dimensions]
-    looks = [look_of(front.mechanism(row), linkage) for row, linkage in enumerate(linkages)]
+    looks = [linkage_sizes(front.mechanism(row), linkage) for row, linkage in enumerate(linkages)]
     figure = new_figure(_WIDTH, _HEIGHT)
     figure.set_dpi(_DOTS)
     chart, stage = _chart(figure, of), _stage(figure, looks)
@@ -85,7 +91,7 @@ def exploring_front(front: ParetoFront, file: Path) -> None:
             f"peak torque {of.up[row]:.0f} N m, transmission angle {of.colour[row]:.0f}° or more"
         )
         canvas.restore_region(still)
-        for artist in (reading, dot, *paint(stage, shapes)):
+        for artist in (reading, dot, *paint_shapes(stage, shapes)):
             figure.draw_artist(artist)
             if artist is not reading:
                 artist.remove()
@@ -110,7 +116,7 @@ def _chart(figure: Figure, of: _Columns) -> Axes:
     axes.set_ylim(*padded_limits(of.up.min(), of.up.max()))
     axes.set_xlabel(across, fontsize=TEXT, color=INK)
     axes.set_ylabel(up, fontsize=TEXT, color=INK)
-    dots = axes.scatter(of.across, of.up, c=of.colour, s=20, cmap=colours(), linewidths=0.0)
+    dots = axes.scatter(of.across, of.up, c=of.colour, s=20, cmap=colour_map(), linewidths=0.0)
     bar = figure.colorbar(dots, cax=add_axes(figure, 3.62, 0.6, 0.1, 2.35))
     bar.set_label(colour, fontsize=TEXT, color=INK)
     bar.ax.tick_params(labelsize=TEXT - 1.0, length=2)
@@ -118,7 +124,7 @@ def _chart(figure: Figure, of: _Columns) -> Axes:
     return axes
 
 
-def _stage(figure: Figure, looks: list[Look]) -> Axes:
+def _stage(figure: Figure, looks: list[LinkageSizes]) -> Axes:
     """Return axes that show every linkage of the front at one scale."""
     extents = np.array([look.extent for look in looks])
     left, low = extents[:, :2].min(axis=0)

@@ -152,7 +152,7 @@ def telling(store: Store, count: int, rate: float, events: int) -> Iterator[tupl
             for place_in_turn, claim in enumerate(claims):
                 time.sleep(max(0.0, begin + (number + place_in_turn / len(claims)) / rate - time.monotonic()))
                 before = time.monotonic()
-                claim.say(f"message {number}")
+                claim.add_message(f"message {number}")
                 times.append(time.monotonic() - before)
 
     thread = threading.Thread(target=tell, daemon=True)

@@ -24,7 +24,7 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.app import create_app
-from slidercrank.service.api.server import spare_imports
+from slidercrank.service.api.server import freeze_imported_objects
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
@@ -57,7 +57,7 @@ def measure(address: str, *, runs: int = RUNS, large: int = LARGE, repeats: int 
         filled = Row(f"filling with {runs} runs of {len(found.designs)} designs, s", [time.perf_counter() - begin])
         with store.reading() as connection:
             done = list(connection.execute(select(jobs.c.id).where(jobs.c.state == "done", jobs.c.id < runs)).scalars())
-        spare_imports()  # as the service does
+        freeze_imported_objects()  # as the service does
         with asyncio.Runner() as loop:
             questions = [*_questions(store, tables, done, runs), *_requests(store, loop, done, runs)]
             return [filled, _row(store, loop), *(_timed(what, ask, repeats) for what, ask in questions)]
@@ -78,12 +78,12 @@ def _questions(
     yield "list: by a part of the name", lambda: store.jobs(name="press of line 7")
     yield "list: by a name that none has", lambda: store.jobs(name="loom")
     yield "list: by state and name", lambda: store.jobs(states=["infeasible"], name="sieve")
-    yield "how many are in each state", store.counts
+    yield "how many are in each state", store.count_by_state
     yield "one job", lambda: store.job(some())
     yield "events of a job", lambda: store.events(some())
-    yield "front of a job without designs", lambda: store.record(some())
+    yield "front of a job without designs", lambda: store.result_record(some())
     yield "front of a job with its designs", lambda: store.result(some())
-    yield "front of the large run without designs", lambda: store.record(runs)
+    yield "front of the large run without designs", lambda: store.result_record(runs)
     yield "front of the large run with its designs", lambda: store.result(runs)
     yield "submission", lambda: submit(store, tables)
     yield "claim", lambda: store.claim("bench", lease=60.0)

@@ -25,9 +25,9 @@ import typer
 from typer.core import TyperGroup
 
 from ..model.errors import InfeasibleError, InputWarning, OutputLost, SlidercrankError
-from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, with_infeasible_json
-from .resources.disk import full_places, is_full
-from .text.options import for_typer
+from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, print_infeasible_as_json
+from .resources.disk import full_places_text, is_full
+from .text.options import typer_command
 from .text.screen import print_message, print_output
 from .text.streams import give_up_output, guard_streams
 
@@ -68,14 +68,14 @@ class Commands(TyperGroup):
         if cmd_name in self.commands and self.commands[cmd_name] is None:
             module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
             alone = typer.Typer(rich_markup_mode=None, add_completion=False)
-            alone.command(cmd_name)(for_typer(with_infeasible_json(getattr(module, cmd_name))))
+            alone.command(cmd_name)(typer_command(print_infeasible_as_json(getattr(module, cmd_name))))
             self.commands[cmd_name] = typer.main.get_command(alone)
         return self.commands.get(cmd_name)
 
     def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
         """Run the named command."""
         try:
-            with _input_warnings_said():
+            with _print_input_warnings():
                 return super().invoke(ctx)
         except SlidercrankError as error:
             if os.environ.get(_DEBUG):
@@ -91,21 +91,21 @@ class Commands(TyperGroup):
             if os.environ.get(_DEBUG) or hasattr(error, "exit_code"):  # typer's own: usage errors, Exit
                 _reword_option_error(error)
                 raise
-            if _short_of_memory(error):
+            if _is_resource_shortage(error):
                 print_message(_MORE_MEMORY)
                 raise typer.Exit(WRONG_INPUT) from None
             if isinstance(error, OSError) and is_full(error):
-                print_message(f"slidercrank: Disk full: {full_places(error)}; free some space")
+                print_message(f"slidercrank: Disk full: {full_places_text(error)}; free some space")
                 raise typer.Exit(WRONG_INPUT) from None
             print_message(
                 f"slidercrank: unexpected {type(error).__name__}: {error}; this is a bug in slidercrank, not in "
-                f"the input; see {_log_of(error)}"
+                f"the input; see {_traceback_file(error)}"
             )
             raise typer.Exit(FAULT) from None
 
 
 @contextlib.contextmanager
-def _input_warnings_said() -> Iterator[None]:
+def _print_input_warnings() -> Iterator[None]:
     """Print each input warning once, on its own line, without source file and line."""
     with warnings.catch_warnings():
         show_other, already_said = warnings.showwarning, set[str]()
@@ -135,7 +135,7 @@ def _reword_option_error(error: Exception) -> None:
     error.message = f"{rule_of(details)}; got {quote(details['input'])}"
 
 
-def _short_of_memory(error: BaseException | None) -> bool:
+def _is_resource_shortage(error: BaseException | None) -> bool:
     """Whether an error was caused by lack of memory or threads."""
     while error is not None:
         words = str(error)
@@ -147,7 +147,7 @@ def _short_of_memory(error: BaseException | None) -> bool:
     return False
 
 
-def _log_of(error: Exception) -> str:
+def _traceback_file(error: Exception) -> str:
     """Return the location of the traceback: the log of the run, or a new file if there is none."""
     for note in getattr(error, "__notes__", []):
         if note.startswith("log: "):

@@ -46,10 +46,10 @@ class _Session:
 
     def __init__(self, checked: tuple[Mechanism, ...] = ()) -> None:
         self.call: Call | None = None
-        self.checked = list(checked)
+        self.validated = list(checked)
 
     def __reduce__(self) -> tuple[type[_Session], tuple[tuple[Mechanism, ...]]]:
-        return _Session, (tuple(self.checked),)
+        return _Session, (tuple(self.validated),)
 
     def __deepcopy__(self, _: object) -> _Session:
         return _Session()
@@ -249,7 +249,7 @@ class OwnQuantity(Quantity):
 
         Compares three designs with finite differences. One of them may lie at a kink; two hardly ever do.
         """
-        if self.gradient != "complex step" or mechanism in self._session.checked:
+        if self.gradient != "complex step" or mechanism in self._session.validated:
             return
         rows = np.concatenate([np.zeros(0, np.int64), *self._batches(mechanism, dimensions)])
         if not len(rows):
@@ -272,7 +272,7 @@ class OwnQuantity(Quantity):
                 f"{offset:.6g} mm; write magnitude in place of abs and leave the imaginary parts as they are, "
                 'or set gradient = "finite differences"'
             )
-        self._session.checked.append(mechanism)
+        self._session.validated.append(mechanism)
 
 
 def require_name(name: str) -> None:

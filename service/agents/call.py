@@ -14,7 +14,13 @@ from ...optimise.job import parse_job, read_job, with_files
 from ...optimise.job.file import require_plain_data, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
-from ..jobs.submission import LONGEST_CALL, LONGEST_WAIT, bounded, parse_allowed, require_allowed
+from ..jobs.submission import (
+    LONGEST_CALL,
+    LONGEST_WAIT,
+    parse_with_allowed_functions,
+    require_allowed_functions,
+    with_time_limit_per_call,
+)
 from ..presets.jobs import shipped_jobs
 from ..runs.result import Result
 from ..runs.stored_runs import job_file, problem_of, read_run
@@ -53,7 +59,7 @@ class Call:
     cancelled: Callable[[], bool]
     report: Callable[[Progress], None]
 
-    def folder(self, name: str) -> Path:
+    def run_folder(self, name: str) -> Path:
         """Return the folder of a run.
 
         Raises `InputError` for a folder outside `runs`, or for links that lead outside.
@@ -64,12 +70,12 @@ class Call:
             self._require_inside(path, name)
         return folder
 
-    def run(self, name: str) -> tuple[Path, Result]:
-        """Return the folder of a run, as `folder` does, and its result.
+    def load_run(self, name: str) -> tuple[Path, Result]:
+        """Return the folder of a run, as `run_folder` does, and its result.
 
         Raises `RunError` for a run without a result.
         """
-        folder = self.folder(name)
+        folder = self.run_folder(name)
         return folder, read_run(folder, "optimise with resume =")
 
     def _require_inside(self, path: Path, name: str) -> None:
@@ -83,9 +89,9 @@ class Call:
                 "from the list of runs"
             )
 
-    def front(self, name: str) -> tuple[Path, Result]:
-        """Return a run that has designs, as `run` does. Raises `InfeasibleError` for a run without designs."""
-        folder, result = self.run(name)
+    def load_run_with_designs(self, name: str) -> tuple[Path, Result]:
+        """Return a run that has designs, as `load_run` does. Raises `InfeasibleError` for a run without designs."""
+        folder, result = self.load_run(name)
         if not result.designs:
             raise InfeasibleError(result.message)
         return folder, result
@@ -94,20 +100,22 @@ class Call:
         """Return the problem of a run. Raises `JobError` for functions that are not allowed."""
         file = job_file(folder)
         if file is not None:
-            require_allowed(read_job(file), self.allowed)
-        return bounded(problem_of(folder, result), LONGEST_WAIT)
+            require_allowed_functions(read_job(file), self.allowed)
+        return with_time_limit_per_call(problem_of(folder, result), LONGEST_WAIT)
 
     def problem(self, tables: Mapping[str, Any], *, seconds: float = LONGEST_WAIT, feasible: bool = True) -> Problem:
         """Return the problem of a job. seconds: time limit per function call, s. feasible: whether it must be feasible.
 
         Raises `JobError`.
         """
-        return bounded(parse_allowed(tables, self.allowed, require_feasible=feasible), seconds)
+        return with_time_limit_per_call(
+            parse_with_allowed_functions(tables, self.allowed, require_feasible=feasible), seconds
+        )
 
-    def problem_again(self, tables: Mapping[str, Any], folder: Path) -> Problem:
+    def problem_to_resume(self, tables: Mapping[str, Any], folder: Path) -> Problem:
         """Return the problem of a search that is to continue in a folder. Raises `JobError`."""
-        require_allowed(tables, self.allowed)
-        return bounded(parse_job(tables, folder=folder), LONGEST_CALL)
+        require_allowed_functions(tables, self.allowed)
+        return with_time_limit_per_call(parse_job(tables, folder=folder), LONGEST_CALL)
 
     @contextlib.contextmanager
     def store(self) -> Iterator[Store]:

@@ -96,7 +96,7 @@ class FrontPart:
     ] = None
     units: Units = "metric"
 
-    def keys(self, columns: list[str], usual: list[str]) -> list[str] | None:
+    def requested_keys(self, columns: list[str], usual: list[str]) -> list[str] | None:
         """Return the requested columns, or None for all. Raises `InputError` for unknown columns."""
         if self.columns == [ALL]:
             return None
@@ -144,13 +144,13 @@ class Design:
         """The given lengths."""
         return {name: length for name in DIMENSIONS if (length := getattr(self, name)) is not None}
 
-    def front(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
+    def folder_front_and_row(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
         """Return the folder of the run, its front and the row of the design. Raises `InputError` without a run."""
         if self.run is None or self.job is not None:
             received = "a job" if self.job is not None else "none"
             raise InputError(f"this topic needs the front of a run; got {received}; name a run, without a job")
         self._require_no_lengths()
-        folder, result = call.run(self.run)
+        folder, result = call.load_run(self.run)
         row = None
         if self.design is not None:
             require_single_choice(self.design, result, has_other_choice=False)
@@ -161,7 +161,7 @@ class Design:
         """Return several runs. Raises `InputError` for a single run or a job."""
         if self.run is not None or self.job is not None:
             raise InputError(f"this topic needs runs; got a {'run' if self.run else 'job'}; list the names of all runs")
-        return [compared_run(*call.run(name)) for name in self.runs]
+        return [compared_run(*call.load_run(name)) for name in self.runs]
 
     def _require_no_lengths(self) -> None:
         for name in self.lengths:
@@ -172,7 +172,7 @@ class Design:
 
     def _machine_of_run(self, call: Call, run: str) -> Machine:
         self._require_no_lengths()
-        folder, result = call.front(run)
+        folder, result = call.load_run_with_designs(run)
         number = 1 + (result.knee or 0) if self.design is None else self.design
         require_single_choice(number, result, has_other_choice=False)
         stored = stored_design(call.problem_of_run(folder, result), result, number)
@@ -193,16 +193,16 @@ class TopicRequest:
 
     def __post_init__(self) -> None:
         """Raise `InputError` for unknown topics, topics that exclude each other, and inputs of other topics."""
-        if self.alone is None:
+        if self.separate_command is None:
             chosen_topics(self.topics, job=True, word="topics")
         elif len(self.topics) > 1:
             raise InputError(
-                f"{self.alone} may not be combined with other topics; got {', '.join(self.topics)}; ask for the "
-                "others separately"
+                f"{self.separate_command} may not be combined with other topics; got {', '.join(self.topics)}; "
+                "ask for the others separately"
             )
-        if self.alone in FRONT_OR_JOB_QUESTIONS:
+        if self.separate_command in FRONT_OR_JOB_QUESTIONS:
             return
-        accepted = [item.name for name in self.names for item in QUESTIONS[name].inputs]
+        accepted = [item.name for name in self.topic_names for item in QUESTIONS[name].inputs]
         for name in self.inputs:
             if name not in accepted and name in _INPUTS:
                 (topic, *_) = (topic for topic in QUESTIONS.values() if any(item.name == name for item in topic.inputs))
@@ -213,17 +213,21 @@ class TopicRequest:
                 raise InputError(f"inputs.{name} must be a text; got {quote(self.inputs[name])}; correct it")
 
     @property
-    def alone(self) -> str | None:
+    def separate_command(self) -> str | None:
         """Topic that is a separate command, or None."""
         return next((name for name in self.topics if name in QUESTION_COMMANDS or name in FRONT_OR_JOB_QUESTIONS), None)
 
     @property
-    def names(self) -> tuple[str, ...]:
+    def topic_names(self) -> tuple[str, ...]:
         """Names of the topics."""
-        return chosen_topics(self.topics, job=True, word="topics") if self.alone is None else (self.alone,)
+        return (
+            chosen_topics(self.topics, job=True, word="topics")
+            if self.separate_command is None
+            else (self.separate_command,)
+        )
 
-    def options(self) -> dict[str, dict[str, Any]]:
+    def options_by_topic(self) -> dict[str, dict[str, Any]]:
         """Return the inputs of each topic, in SI. Raises `InputError`."""
-        takes = {name: DESIGN_QUESTIONS[name].inputs for name in self.names}
+        takes = {name: DESIGN_QUESTIONS[name].inputs for name in self.topic_names}
         texts = {name: {item.name: self.inputs.get(item.name) for item in inputs} for name, inputs in takes.items()}
         return {name: read_inputs(takes[name], texts[name], f"the topic {name}") for name in takes}

@@ -23,7 +23,7 @@ from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
-from ..jobs.submission import ending_custom_functions
+from ..jobs.submission import end_custom_processes_on_exit
 from ..presets.jobs import shipped_jobs
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTIONS
@@ -50,7 +50,7 @@ def list_contents(call: Call) -> ToolResult:
     quantities = [
         {key: facts[key] for key in ("name", "title", "column", "unit", "better")} for facts in facts_of_all()
     ]
-    topics, runs = list(map(_topic, QUESTIONS.values())), list(_runs(call))
+    topics, runs = list(map(_topic_record, QUESTIONS.values())), list(_latest_run_records(call))
     lines = [
         *("Included jobs:", *(f"  {job['name']}: {job['sentence'] or job['title']}" for job in jobs)),
         *(
@@ -91,7 +91,7 @@ def describe(
             f"{quantity['formula']}"
         )
     if word in QUESTIONS:
-        record["topic"] = topic = _topic(QUESTIONS[word])
+        record["topic"] = topic = _topic_record(QUESTIONS[word])
         input_lines = "".join(f"\n  {item.name}: {item.remark}" for item in QUESTIONS[word].inputs)
         lines.append(f"topic {word}: {topic['shows']}{input_lines}")
     if word in DESIGN_QUESTIONS:
@@ -102,8 +102,8 @@ def describe(
         record["job"] = {"tables": shipped_jobs()[word], "toml": text}
         lines.append(text)
     with suppress(NotFound):
-        record["key"] = key = _key(word)
-        lines += [f"key {word}: {key['description']}", *_keys_in_words(key)]
+        record["key"] = key = _job_key_record(word)
+        lines += [f"key {word}: {key['description']}", *_job_key_lines(key)]
     if not record:
         near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "call `list` for all names"
@@ -117,14 +117,16 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
     The design comes from a run (its knee by default), or has your own lengths for a job. Some topics concern the front
     of a run (wish), several runs (compare), or a job (sweep).
     """
-    if question.alone in FRONT_OR_JOB_QUESTIONS:
-        return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.alone])
-    options = question.options()
+    if question.separate_command in FRONT_OR_JOB_QUESTIONS:
+        return _ask_front_or_job(call, subject, question, FRONT_OR_JOB_QUESTIONS[question.separate_command])
+    options = question.options_by_topic()
     machine = subject.machine(call)
-    with ending_custom_functions(machine.problem):
-        alone = question.alone or ("swing" if machine.problem.motion is not None and not question.topics else None)
+    with end_custom_processes_on_exit(machine.problem):
+        alone = question.separate_command or (
+            "swing" if machine.problem.motion is not None and not question.topics else None
+        )
         if alone is not None:
-            return _analyse_by_command(alone, machine, question)
+            return _answer_question_command(alone, machine, question)
         require_rotating_crank(machine.problem.motion, f"the topic {next(iter(options), '')}")
         return _analyse_rotating(call, machine, options, question)
 
@@ -132,11 +134,11 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
 def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolResult:  # noqa: B006
     """Check a job before a search: how it was understood, or any mistake or contradiction with its remedy."""
     from ...objectives.own.quantity import OwnQuantity
-    from ..preview.preview import look_at
+    from ..preview.preview import job_preview
     from ..text.job_in_words import freedom_in_words, job_in_words
 
     tables = tables_of(job, files)
-    look = look_at(tables, call.problem)
+    look = job_preview(tables, call.problem)
     record: dict[str, Any] = {
         "valid": look.problem is not None,
         "wrong": [asdict(mistake) for mistake in look.wrong],
@@ -182,16 +184,16 @@ def _analyse_rotating(
     return ToolResult(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
 
 
-def _analyse_by_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
+def _answer_question_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
     """Answer a question about a design, if the question is a separate command."""
-    from ..designs.display_units import record_in
+    from ..designs.display_units import convert_record
 
-    bound_question = DESIGN_QUESTIONS[name].for_problem(
+    bound_question = DESIGN_QUESTIONS[name].bind_to_problem(
         machine.mechanism, machine.linkage, machine.problem, question.inputs
     )
     record = bound_question.numbers(lambda: False)
     text = _plain_text(bound_question.blocks(record), bound_question.notes(record), question.units)
-    return ToolResult(record_in(record, question.units), text)
+    return ToolResult(convert_record(record, question.units), text)
 
 
 def _ask_front_or_job(
@@ -206,9 +208,9 @@ def _ask_front_or_job(
         target = problem = subject.problem(call)
         inputs = subject.lengths | inputs
     else:
-        folder, target, row = subject.front(call)
+        folder, target, row = subject.folder_front_and_row(call)
         problem, place = target.problem, {"run": path_text(folder)}
-    with nullcontext() if problem is None else ending_custom_functions(problem):
+    with nullcontext() if problem is None else end_custom_processes_on_exit(problem):
         result = definition.ask(target, inputs, row=row, listener=SearchListener(cancelled=call.cancelled))
     text = _plain_text(result.blocks, result.notes, question.units)
     return ToolResult(place | result.record(question.units), text, is_error=not result.is_satisfied)
@@ -221,7 +223,7 @@ def _plain_text(blocks: Sequence[Block], notes: Sequence[str], units: System) ->
     return "\n".join((text_of(lambda screen: print_blocks(screen, blocks, units)), *notes))
 
 
-def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
+def _topic_record(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
     inputs = [{key: getattr(item, key) for key in _OF_TOPIC} for item in question.inputs]
     if isinstance(question, FrontOrJobQuestion):
         return {
@@ -234,11 +236,11 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:
     return {"name": question.name, "of": "design", "shows": shows, "inputs": inputs}
 
 
-def _runs(call: Call) -> Iterator[dict[str, Any]]:
+def _latest_run_records(call: Call) -> Iterator[dict[str, Any]]:
     """Yield the latest runs, each with its outcome."""
     for folder in sorted(run_folders(call.runs), key=lambda folder: folder.name, reverse=True)[:_MOST_RUNS]:
         try:
-            _, result = call.run(folder.name)
+            _, result = call.load_run(folder.name)
         except (RunError, InputError) as error:
             yield {"run": folder.name, "name": "", "status": "unfinished", "designs": 0, "message": str(error)}
             continue
@@ -251,7 +253,7 @@ def _runs(call: Call) -> Iterator[dict[str, Any]]:
         yield {"run": folder.name, **summary}
 
 
-def _key(name: str) -> dict[str, Any]:
+def _job_key_record(name: str) -> dict[str, Any]:
     """Return the description of a job-file key and of the keys within it. Raises `NotFound`."""
     schema, path = schema_of(Job), list[str | int]()
     for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):
@@ -279,7 +281,7 @@ def _key(name: str) -> dict[str, Any]:
     }
 
 
-def _keys_in_words(key: Mapping[str, Any]) -> Iterator[str]:
+def _job_key_lines(key: Mapping[str, Any]) -> Iterator[str]:
     for table in key["tables"]:
         if table["description"]:
             yield f"- {table['description']} Needs: {', '.join(table['required']) or 'nothing'}"

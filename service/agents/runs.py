@@ -14,10 +14,10 @@ from ...model.errors import InfeasibleError, InputError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.choice_options import require_single_choice
-from ..designs.display_units import result_in
+from ..designs.display_units import convert_result
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..designs.stored_designs import front_of, stored_design
-from ..jobs.submission import LONGEST_CALL, ending_custom_functions, job_json
+from ..jobs.submission import LONGEST_CALL, end_custom_processes_on_exit, job_json
 from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
 from ..runs.result import Result, csv_text, json_text, unsearched_result
@@ -71,7 +71,7 @@ class Search:
         if self.resume is not None:
             if settings.overrides:
                 raise InputError("a run must continue with its original number of designs and seed; leave them out")
-            return resumed_run(store, call.runs, call.folder(self.resume).name, call.problem_again)
+            return resumed_run(store, call.runs, call.run_folder(self.resume).name, call.problem_to_resume)
         tables = tables_of(self.job or {}, self.files)
         problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.overrides)
         return new_run(store, call.runs, problem, stated, [job_json(stated)])
@@ -99,13 +99,13 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
         entered.enter_context(renewing_claim(claim, again=f"optimise with resume = {claim.job.run}"))
         budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
         engine = entered.enter_context(engine_of(EngineOptions()))
-        entered.enter_context(ending_custom_functions(problem, engine))
+        entered.enter_context(end_custom_processes_on_exit(problem, engine))
         front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
         result = keep_front(opened, front, budget)
-    result_in_units = result_in(result, part.units, problem)
+    result_in_units = convert_result(result, part.units, problem)
     remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
     text = text_of(lambda screen: show_result(screen, result_in_units))
-    record = _record(
+    record = _front_record(
         result_in_units, spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows), part
     )
     return ToolResult(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
@@ -116,21 +116,21 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
 
     numbers: design numbers; knee and extremes: positions in the answer.
     """
-    folder, result = call.front(run)
+    folder, result = call.load_run_with_designs(run)
     chosen = selection.rows(result)
     picked = _chosen_number(result, chosen, pick)
     if not chosen:
         raise InfeasibleError(no_match_message(result, selection.where or []))
-    result_in_units = result_in(
+    result_in_units = convert_result(
         result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result)
     )
     if picked is None:
         rows = spread_rows(result_in_units, chosen, part.rows)
         return ToolResult(
-            _record(result_in_units, rows, part),
+            _front_record(result_in_units, rows, part),
             text_of(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
         )
-    record = _record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
+    record = _front_record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
     record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
     text = text_of(lambda screen: show_design(screen, result_in_units.designs[picked]))
     return ToolResult(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
@@ -156,18 +156,18 @@ def files(
     """
     if design is not None and _OF_RUN.issuperset(write):
         raise InputError(f"{', '.join(write)} cover all designs of a run; got design {design}; leave it out")
-    folder, result = call.front(run)
+    folder, result = call.load_run_with_designs(run)
     picked = _chosen_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
-    stored, result_in_units = stored_design(problem, result, number), result_in(result, units, problem)
+    stored, result_in_units = stored_design(problem, result, number), convert_result(result, units, problem)
     named = {"name": result.name, "design": f"design {number}"}
     written: dict[str, list[str]] = {}
     for kind in dict.fromkeys(write):
         if call.cancelled():
             break
         if kind == "figures":
-            written[kind] = _figures(problem, result, folder, units)
+            written[kind] = _draw_figures(problem, result, folder, units)
             continue
         content: str | bytes
         if kind == "csv":
@@ -188,9 +188,9 @@ def files(
     return ToolResult(record, "\n".join(f"{kind}: {', '.join(paths)}" for kind, paths in written.items()))
 
 
-def _record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
+def _front_record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[str, Any]:
     """Return some designs of a result with their numbers, ready for JSON."""
-    names = part.keys(list(result.designs[0]), usual_keys(result)) if result.designs else None
+    names = part.requested_keys(list(result.designs[0]), usual_keys(result)) if result.designs else None
     return result_part(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
@@ -213,7 +213,7 @@ def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: Syste
         return []
 
 
-def _figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
+def _draw_figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
     from ..figures.front import draw_front
 
     return [path_text(file) for file in draw_front(front_of(problem, result), folder / "figures", units)]

@@ -20,7 +20,7 @@ from ...model.errors import SlidercrankError
 from ...model.extras import NamingExtra
 from ...optimise.front.progress import Progress, stage_text
 from ...optimise.search.fingerprint import version_of
-from ..resources.disk import full_places, is_full
+from ..resources.disk import full_places_text, is_full
 from ..runs.result import json_ready
 from . import questions, runs
 from .call import Call, ToolResult
@@ -157,7 +157,7 @@ def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
         return _error_result("not enough memory for this request; close other programs, or ask for less")
     except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
         if isinstance(error, OSError) and is_full(error):
-            return _error_result(f"Disk full: {full_places(error)}; free some space")
+            return _error_result(f"Disk full: {full_places_text(error)}; free some space")
         _log.exception("the tool %s failed", name)
         return _error_result(
             f"unexpected {type(error).__name__}: {error}; this is a bug in slidercrank, not in the input; see its "

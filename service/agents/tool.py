@@ -36,7 +36,7 @@ class Tool:
         return inspect.cleandoc(self.run.__doc__ or "")
 
     @cached_property
-    def groups(self) -> dict[str, Any]:
+    def input_groups(self) -> dict[str, Any]:
         """Input dataclasses, by parameter."""
         hints = get_type_hints(self.run, include_extras=True)
         return {name: hint for name, hint in hints.items() if is_dataclass(hint) and name not in ("call", "return")}
@@ -46,13 +46,14 @@ class Tool:
         """Pydantic model of the inputs."""
         hints, definitions = get_type_hints(self.run, include_extras=True), dict[str, Any]()
         for name, parameter in inspect.signature(self.run).parameters.items():
-            if name in self.groups:
-                types = get_type_hints(self.groups[name], include_extras=True)
+            if name in self.input_groups:
+                types = get_type_hints(self.input_groups[name], include_extras=True)
                 definitions |= {
-                    item.name: _field(types[item.name], _default_of(item)) for item in fields(self.groups[name])
+                    item.name: _input_field(types[item.name], _field_default(item))
+                    for item in fields(self.input_groups[name])
                 }
             elif parameter.kind is parameter.KEYWORD_ONLY:
-                definitions[name] = _field(hints[name], parameter.default)
+                definitions[name] = _input_field(hints[name], parameter.default)
         return create_model(self.name, __config__=ConfigDict(extra="forbid", strict=True), **definitions)
 
     @cached_property
@@ -65,13 +66,13 @@ class Tool:
         try:
             inputs = self.inputs.model_validate(dict(arguments))
         except ValidationError as error:
-            raise InputError("; ".join(map(self._sentence, error.errors(include_url=False)[:5]))) from None
+            raise InputError("; ".join(map(self._error_sentence, error.errors(include_url=False)[:5]))) from None
         values = {name: getattr(inputs, name) for name in self.inputs.model_fields}
-        for name, group in self.groups.items():
+        for name, group in self.input_groups.items():
             values[name] = group(**{item.name: values.pop(item.name) for item in fields(group)})
         return self.run(call, **values)
 
-    def _sentence(self, details: Any) -> str:
+    def _error_sentence(self, details: Any) -> str:
         """Return the error message for an input: rule, value, remedy."""
         name, accepted = str(details["loc"][0]), list(self.inputs.model_fields)
         if details["type"] == "extra_forbidden":
@@ -85,14 +86,14 @@ class Tool:
         return f"{path} {rule_of(details)}; got {quote(details['input'])}; correct it"
 
 
-def _default_of(item: Any) -> Any:
+def _field_default(item: Any) -> Any:
     """Return the default of a dataclass field as a parameter default."""
     if item.default_factory is not MISSING:
         return item.default_factory()
     return inspect.Parameter.empty if item.default is MISSING else item.default
 
 
-def _field(hint: Any, default: Any) -> tuple[Any, FieldInfo]:
+def _input_field(hint: Any, default: Any) -> tuple[Any, FieldInfo]:
     """Return type and field for a parameter."""
     kind, *annotations = get_args(hint)
     field = next((metadata for metadata in annotations if isinstance(metadata, FieldInfo)), None)

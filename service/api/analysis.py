@@ -16,7 +16,7 @@ from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.trade_offs import trade_offs_of
-from ..designs.violations import violated_by
+from ..designs.violations import violations_of
 from ..questions.design_analysis import analysis_of, quantities_of_design, quantities_of_swing
 from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..questions.record_types import RecordSchema
@@ -93,14 +93,14 @@ def analyse_design(stored_front: FrontDep, design: DesignNumber, show: Show = []
         if topics:
             require_rotating_crank(stored.part.motion, f"the topic {', '.join(topics)}")
         row, undefined = quantities_of_swing(stored)
-        record = json_ready(row | {"violated": violated_by(stored.mechanism, row), "undefined": undefined})
+        record = json_ready(row | {"violated": violations_of(stored.mechanism, row), "undefined": undefined})
         return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=[])
-    record, notes = _with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
+    record, notes = _record_with_topics(stored.mechanism, stored.linkage, topics, stored.part.own, lenient=ALL in show)
     return StoredAnalysisModel(job=stored_front.job.id, number=design, analysis=record, notes=notes)
 
 
 @router.post("/analyse")
-def analyse_any(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
+def analyse_given_dimensions(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
     """Analyse a design that need not be on any front (what-if analysis)."""
     topics = chosen_topics(request.show, job=True, word="show")
     problem = problem_of_tables(request.job, settings.allowed_quantities, request.values, require_feasible=False)
@@ -109,7 +109,7 @@ def analyse_any(request: WhatIf, settings: SettingsDep) -> AnalysisModel:
     if request.speed is not None:
         mechanism = replace(mechanism, speed=speed_option(request.speed, "speed"))
     linkage = Dimensions(request.crank, request.rod, request.offset).linkage(problem, str)
-    record, notes = _with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in request.show)
+    record, notes = _record_with_topics(mechanism, linkage, topics, problem.own, lenient=ALL in request.show)
     return AnalysisModel(analysis=record, notes=notes)
 
 
@@ -127,7 +127,7 @@ def show_trade_offs(stored_front: FrontDep, design: DesignNumber, units: UnitsPa
     )
 
 
-def _with_topics(
+def _record_with_topics(
     mechanism: Mechanism, linkage: Linkage, topics: tuple[str, ...], custom: Sequence[Quantity], *, lenient: bool
 ) -> tuple[dict[str, Any], list[str]]:
     """Return the record of a design with its topics, ready for JSON, and its notes."""

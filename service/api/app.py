@@ -19,7 +19,7 @@ from starlette.routing import BaseRoute
 from ..page import api_reference
 from ..page import router as page
 from ..store import Store
-from ..workers.heartbeat import EXHAUSTED, leave
+from ..workers.heartbeat import EXHAUSTED, end_process_tree
 from ..workers.logs import Format, set_up_logs
 from . import exports
 from .computing import Computing
@@ -83,8 +83,8 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
         openapi_url=f"{PREFIX}/openapi.json",
         docs_url=None,  # its pages load from other sites: see api_reference
         redoc_url=None,
-        routes=_routes(),
-        lifespan=_few_threads,
+        routes=_all_routes(),
+        lifespan=_limit_threads,
         middleware=[
             Middleware(Timed),
             Middleware(Guard, settings=settings),
@@ -104,17 +104,17 @@ def create_app(store: Store, settings: Settings = DEFAULT, computing: Computing 
     handle_expected_errors(app)
     make_schema = app.openapi
 
-    def described() -> dict[str, Any]:
+    def openapi_schema() -> dict[str, Any]:
         if app.openapi_schema is None:
-            app.openapi_schema = _completed(make_schema(), secured=settings.token is not None)
+            app.openapi_schema = _complete_openapi_schema(make_schema(), secured=settings.token is not None)
         return app.openapi_schema
 
-    app.openapi = described  # type: ignore[method-assign]
+    app.openapi = openapi_schema  # type: ignore[method-assign]
     return app
 
 
 @asynccontextmanager
-async def _few_threads(_: FastAPI) -> AsyncIterator[None]:
+async def _limit_threads(_: FastAPI) -> AsyncIterator[None]:
     current_default_thread_limiter().total_tokens = THREADS
     yield
 
@@ -126,24 +126,24 @@ def computing_app(address: str, settings: Settings, *, most_queued: int, log_for
     trusted = replace(settings, token=None, hosts=("*",), submissions_per_minute=0)
     with Store(address, most_queued=most_queued) as store:
         app = create_app(store, trusted)
-        app.add_exception_handler(MemoryError, lambda *_: leave(EXHAUSTED))
+        app.add_exception_handler(MemoryError, lambda *_: end_process_tree(EXHAUSTED))
         yield app
 
 
-async def _prepare(request: Request) -> None:
+async def _start_computing_process(request: Request) -> None:
     """Start a process early, to have it ready when a user of the page needs a computation."""
     if request.app.state.computing is not None:
-        request.app.state.computing.prepare()
+        request.app.state.computing.start_first_process()
 
 
 @cache
-def _routes() -> list[BaseRoute]:
+def _all_routes() -> list[BaseRoute]:
     """Return the endpoints for all applications of a process; cached because FastAPI is slow to inspect signatures."""
     root = APIRouter(generate_unique_id_function=lambda route: route.name)
     for part in _PARTS:
         root.include_router(import_module(f"{__package__}.{part}").router, prefix=PREFIX, responses=_COMMON)
     root.include_router(api_reference.router, prefix=PREFIX)
-    root.include_router(page.router, dependencies=[Depends(_prepare)])
+    root.include_router(page.router, dependencies=[Depends(_start_computing_process)])
     return root.routes
 
 
@@ -154,9 +154,9 @@ def _version() -> str:
         return "0"
 
 
-def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
+def _complete_openapi_schema(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     """Return the OpenAPI 3.1 description of the API, with the facts that FastAPI cannot infer."""
-    if "parquet" not in exports.formats():
+    if "parquet" not in exports.export_formats():
         schema["paths"].pop(f"{_NUMBER}/export.parquet")  # the endpoint reports what to install
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})
@@ -178,7 +178,7 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
         schema["paths"][path]["post"]["requestBody"] = {"required": True, "content": content}
     for path in ("/api/v1/jobs", "/api/v1/jobs/{number}/clone"):
         created = schema["paths"][path]["post"]["responses"]["201"]
-        created["links"] = _links(schema["paths"])
+        created["links"] = _openapi_links(schema["paths"])
         created["headers"] = {"Location": {"schema": {"type": "string"}, "description": "the address of the job"}}
     if secured:
         parts["securitySchemes"] = {"token": {"type": "http", "scheme": "bearer"}}
@@ -186,7 +186,7 @@ def _completed(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     return schema
 
 
-def _links(paths: dict[str, Any]) -> dict[str, Any]:
+def _openapi_links(paths: dict[str, Any]) -> dict[str, Any]:
     """Return the OpenAPI links from a submitted job to the requests that may follow."""
     links = {}
     for path, methods in paths.items():

@@ -11,15 +11,15 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.table_columns import choice_field
-from ..designs.changed_design import Variation, variation_of, with_numbers
+from ..designs.changed_design import Variation, design_with_numbers, variation_of
 from ..designs.columns import all_columns
-from ..designs.display_units import rows_in
+from ..designs.display_units import convert_rows
 from ..designs.judged_requirements import faults_in_words, ranges_of
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
-from ..store.remarks import Bookmark, bookmarks_of, keep_design, remove_bookmark, update_bookmark
+from ..store.remarks import Bookmark, bookmark_design, bookmarks_of, remove_bookmark, update_bookmark
 from .computing import QuickRoute
-from .exports import download, file_responses
+from .exports import download, file_endpoint_options
 from .fronts import Cells, ColumnModel, column_models
 from .models import PLAIN_DIGITS, UnitsParameter
 from .problem_documents import problem_responses
@@ -117,9 +117,9 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
 def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) -> BookmarkedDesign:
     """Bookmark a design with a name, a note and a star."""
     design = _requested_design(stored_front, request)
-    _varied(stored_front, design)  # reject what cannot be computed before it is stored
+    _bookmark_variation(stored_front, design)  # reject what cannot be computed before it is stored
     fields: dict[str, Any] = request.model_dump(exclude={"dimensions"})
-    bookmark = keep_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
+    bookmark = bookmark_design(store, stored_front.job.id, dimensions=design.values, variant=design.variant, **fields)
     return _bookmark_model(stored_front, bookmark)
 
 
@@ -140,15 +140,15 @@ def delete_bookmark(stored_front: FrontDep, kept: BookmarkNumber, store: StoreDe
     remove_bookmark(store, stored_front.job.id, kept)
 
 
-@router.get("/jobs/{number}/kept.csv", **file_responses("text/csv"))
+@router.get("/jobs/{number}/kept.csv", **file_endpoint_options("text/csv"))
 def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
     """Return the bookmarks as a table: names, notes and reasons, then all quantities at full precision."""
     rows: list[Any] = []
     for bookmark in bookmarks_of(store, stored_front.job.id):
-        varied = _varied(stored_front, _design(stored_front, bookmark))
+        varied = _bookmark_variation(stored_front, _design(stored_front, bookmark))
         head = {"number": bookmark.number, "name": bookmark.name, "star": bookmark.star, "decided": bookmark.decided}
         head |= {"note": bookmark.note, "reason": bookmark.reason, "outside_the_job": ", ".join(varied.outside)}
-        rows.append(head | rows_in([varied.row], units)[0])
+        rows.append(head | convert_rows([varied.row], units)[0])
     return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv")
 
 
@@ -176,27 +176,27 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
     design = design_of(stored_front.problem, {**row, **request.dimensions})
     varying = {varying_column(item)[0] for item in design.part.mechanism.varying}
     values = {key: value for key, value in request.dimensions.items() if key in varying and isinstance(value, float)}
-    return with_numbers(design, design.values[:3], values)
+    return design_with_numbers(design, design.values[:3], values)
 
 
 def _design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
     return StoredDesign(stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
 
 
-def _varied(stored_front: StoredFront, design: StoredDesign) -> Variation:
-    return variation_of(design, stored_front.result, stored_front.minimised)
+def _bookmark_variation(stored_front: StoredFront, design: StoredDesign) -> Variation:
+    return variation_of(design, stored_front.result, stored_front.minimised_objectives)
 
 
 def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
     design = _design(stored_front, bookmark)
-    varied = _varied(stored_front, design)
+    varied = _bookmark_variation(stored_front, design)
     origin = stored_design(stored_front.problem, stored_front.result, bookmark.design) if bookmark.design else None
     same = origin is not None and bookmark.is_of(origin.variant, origin.values)
     fields = {name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions")}
     return BookmarkedDesign(
         **fields,
         changed=not same,
-        numbers={} if same else _query(design) if origin and origin.variant == design.variant else None,
+        numbers={} if same else _design_query(design) if origin and origin.variant == design.variant else None,
         decision=bookmark.decision(faults_in_words(varied.row, varied.broken, varied.outside)),
         cells=json_ready(varied.row),
         broken=varied.broken,
@@ -204,7 +204,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
     )
 
 
-def _query(design: StoredDesign) -> dict[str, float | list[str]]:
+def _design_query(design: StoredDesign) -> dict[str, float | list[str]]:
     """Return the query that gives a reference design with the same choices the dimensions of this one."""
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
     pairs = zip(map(varying_column, design.part.mechanism.varying), design.values[3:], strict=True)

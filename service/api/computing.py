@@ -76,11 +76,11 @@ class Computing:
         self._all: set[_Process] = set()
         self._prepared = False
 
-    def prepare(self) -> None:
+    def start_first_process(self) -> None:
         """Start a first process in the background, which takes seconds; later calls have no effect."""
         if not self._prepared:
             self._prepared = True
-            asyncio.get_running_loop().run_in_executor(None, self._start)
+            asyncio.get_running_loop().run_in_executor(None, self._start_process)
 
     async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request in an idle process, and kill the process if the client leaves early."""
@@ -107,20 +107,20 @@ class Computing:
 
     async def _compute(self, turns: str, question: Question, give: Callable[[Message], None]) -> None:
         async with self._turns[turns].turn():
-            while (process := self._free()) is None:
-                await run_sync(self._start, limiter=self._threads)
+            while (process := self._take_idle_process()) is None:
+                await run_sync(self._start_process, limiter=self._threads)
             try:
                 last = await process.stream(question, give)
                 self._idle.append(process)  # before the client can send its next request
                 give(last)
             except (EOFError, OSError):
-                raise self._refusal(await run_sync(process.exit_code, limiter=self._threads)) from None
+                raise self._refusal_for_exit_code(await run_sync(process.exit_code, limiter=self._threads)) from None
             finally:
                 if process not in self._idle:
                     process.end()
                     self._all.discard(process)
 
-    def _free(self) -> _Process | None:
+    def _take_idle_process(self) -> _Process | None:
         while self._idle:
             process = self._idle.pop()
             if process.is_alive():
@@ -128,12 +128,12 @@ class Computing:
             self._all.discard(process)
         return None
 
-    def _start(self) -> None:
+    def _start_process(self) -> None:
         process = _Process(self._context, self._make, self._most, self._threads)
         self._all.add(process)
         self._idle.append(process)
 
-    def _refusal(self, code: int) -> HTTPException:
+    def _refusal_for_exit_code(self, code: int) -> HTTPException:
         limits = f"{size_text(self._most.memory or 0)} of memory and {self._most.seconds:g} s of processor time"
         lacking = {EXHAUSTED: "memory", OUT_OF_TIME: "processor time"}.get(code)
         if lacking:

@@ -16,7 +16,7 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
-from .problem_documents import problem, should_log
+from .problem_documents import problem_response, should_log
 from .security import KNOWN
 
 _log = logging.getLogger(__name__)
@@ -76,12 +76,12 @@ class Gate:
         """Queue a connection with unread requests; each pass of the event loop resumes one connection."""
         self._queue.append(connection)
         if len(self._queue) == 1:
-            connection.loop.call_soon(self._go_on)
+            connection.loop.call_soon(self._resume_next_connection)
 
-    def _go_on(self) -> None:
+    def _resume_next_connection(self) -> None:
         connection = self._queue.popleft()
         if self._queue:
-            connection.loop.call_soon(self._go_on)
+            connection.loop.call_soon(self._resume_next_connection)
         connection.flow.resume_reading()
         connection.read()
 
@@ -93,20 +93,20 @@ class Gate:
             connection for connection in new.connections if isinstance(connection, Connection) and connection is not new
         ]
         waiting = sorted(
-            (connection for connection in established if connection.is_dispensable),
-            key=lambda connection: (connection.is_known, connection.since),
+            (connection for connection in established if connection.may_be_closed),
+            key=lambda connection: (connection.has_token, connection.since),
         )
         if not waiting:
-            self.log(f"refused: {self.most} connections were being answered")
+            self.log_once_per_minute(f"refused: {self.most} connections were being answered")
             return False
         # Close several, so that a flood does not trigger a scan for each connection.
         for least in waiting[: 1 + self.most // _SHARE]:
-            self.log(f"closed because there were more than {self.most}")
+            self.log_once_per_minute(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
 
-    def log(self, event: str) -> None:
+    def log_once_per_minute(self, event: str) -> None:
         """Log a connection event, unless it was logged within the last minute."""
         if should_log(self._log_times, event):
             _log.warning("connections %s", event)
@@ -136,26 +136,26 @@ class Connection(HttpToolsProtocol):
         self._deadline: asyncio.TimerHandle | None = None
 
     @property
-    def is_known(self) -> bool:
+    def has_token(self) -> bool:
         """Whether its last request was accepted with the token."""
         return KNOWN in getattr(self.cycle, "scope", ())  # None before the first request
 
     @property
-    def is_at_rest(self) -> bool:
+    def is_idle(self) -> bool:
         """Whether no request is being answered."""
         return bool(getattr(self.cycle, "response_complete", True))
 
     @property
-    def is_dispensable(self) -> bool:
+    def may_be_closed(self) -> bool:
         """Whether it may be closed to free a slot: without a token, idle, or not reading its answers."""
-        return not self.is_known or self.is_at_rest or bool(self._backlog) or self.flow.write_paused
+        return not self.has_token or self.is_idle or bool(self._backlog) or self.flow.write_paused
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # as in the parent
         """Accept the connection, unless there are too many."""
         super().connection_made(transport)
         transport.set_write_buffer_limits(_WRITE_BUFFER)
         if self._gate.make_way_for(self):
-            self._wait(HEAD_SECONDS)
+            self._set_timeout(HEAD_SECONDS)
         else:
             text = (
                 f"the service may have at most {self._gate.most} connections at a time; all are in use; try again later"
@@ -165,8 +165,8 @@ class Connection(HttpToolsProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
         if isinstance(exc, TimeoutError):
-            self._gate.log("closed: answers were not read")
-        self._wait(None)
+            self._gate.log_once_per_minute("closed: answers were not read")
+        self._set_timeout(None)
         super().connection_lost(exc)
 
     def data_received(self, data: bytes) -> None:
@@ -181,7 +181,7 @@ class Connection(HttpToolsProtocol):
     @property
     def _may_read(self) -> bool:
         """Whether received data can be read now: the client must read earlier answers before its next request."""
-        return not self.pipeline and (self.is_at_rest or self._part != "rest")
+        return not self.pipeline and (self.is_idle or self._part != "rest")
 
     def read(self) -> None:
         """Read received bytes up to the end of a request, with a limit per turn; refuse oversized parts early."""
@@ -206,18 +206,18 @@ class Connection(HttpToolsProtocol):
         if self._backlog or self.pipeline:
             self.flow.pause_reading()
         if not self._may_read:
-            self._wait(None)
+            self._set_timeout(None)
             return
         if self._backlog:
             self._gate.queue(self)
         if self._deadline is None and (self._part != "rest" or self._size):
-            self._wait(BODY_SECONDS if self._part == "body" else HEAD_SECONDS)
+            self._set_timeout(BODY_SECONDS if self._part == "body" else HEAD_SECONDS)
 
     def on_message_begin(self) -> None:
         """Begin a request."""
         super().on_message_begin()
         self._part = "head"
-        self._wait(None)
+        self._set_timeout(None)
 
     def on_header(self, name: bytes, value: bytes) -> None:
         """Accept a header; headers after a body are ignored."""
@@ -228,7 +228,7 @@ class Connection(HttpToolsProtocol):
     def on_headers_complete(self) -> None:
         """Pass the request on to the application."""
         self._part, self._size = "body", 0
-        self._wait(None)
+        self._set_timeout(None)
         super().on_headers_complete()
 
     def on_body(self, body: bytes) -> None:
@@ -239,7 +239,7 @@ class Connection(HttpToolsProtocol):
     def on_message_complete(self) -> None:
         """Record that the whole request has arrived."""
         self._part, self._size = "rest", 0
-        self._wait(None)
+        self._set_timeout(None)
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
@@ -254,17 +254,17 @@ class Connection(HttpToolsProtocol):
         """Reject data that is not HTTP."""
         self._refuse(HTTPStatus.BAD_REQUEST, "a request must be HTTP/1.1; got something else; correct it")
 
-    def _wait(self, seconds: float | None) -> None:
+    def _set_timeout(self, seconds: float | None) -> None:
         """Expect the next data within some seconds; None ends waiting."""
         if self._deadline is not None:
             self._deadline.cancel()
-        self._deadline = None if seconds is None else self.loop.call_later(seconds, self._too_late, seconds)
+        self._deadline = None if seconds is None else self.loop.call_later(seconds, self._refuse_late_request, seconds)
 
-    def _too_late(self, seconds: float) -> None:
+    def _refuse_late_request(self, seconds: float) -> None:
         if self.transport.is_closing():
             return
         if self._part == "rest":  # no client waits for an answer
-            self._gate.log(f"closed: no request within {seconds:g} s")
+            self._gate.log_once_per_minute(f"closed: no request within {seconds:g} s")
             self.transport.close()
             return
         part = "headers" if self._part == "head" else "body"
@@ -272,9 +272,9 @@ class Connection(HttpToolsProtocol):
         self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
-        self._gate.log(f"refused with {status}")
-        if self.is_at_rest or not (self.pipeline or self.cycle.response_started):  # it would corrupt another answer
-            response = problem(status, text, {**(headers or {}), "Connection": "close"})
+        self._gate.log_once_per_minute(f"refused with {status}")
+        if self.is_idle or not (self.pipeline or self.cycle.response_started):  # it would corrupt another answer
+            response = problem_response(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)
             start = f"HTTP/1.1 {status} {status.phrase}\r\n".encode()
             self.transport.write(start + lines + b"\r\n" + bytes(response.body))

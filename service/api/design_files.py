@@ -18,7 +18,7 @@ from ..runs.run_folder import slug
 from ..store import Store
 from ..store.remarks import bookmarks_of
 from .computing import LongRoute
-from .exports import SEALED, download, file_responses
+from .exports import SEALED, download, file_endpoint_options
 from .figures import require_figures
 from .models import UnitsParameter
 from .problem_documents import problem_responses
@@ -60,13 +60,13 @@ def _drawing(request: RequestedDesign, crank_angle_deg: float | None, system: Sy
     return design_drawing(request.design, name=name, design=request.words, crank_angle=angle, system=system)
 
 
-@router.get("/linkage.dxf", **file_responses("image/vnd.dxf"))
+@router.get("/linkage.dxf", **file_endpoint_options("image/vnd.dxf"))
 def draw_dxf(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
     """Return the linkage of a design at true scale for CAD, in millimetres; docs/drawings.md lists its layers."""
     return _file(request, "dxf", "image/vnd.dxf", dxf_file(_drawing(request, crank_angle_deg)))
 
 
-@router.get("/linkage.svg", **file_responses("image/svg+xml"))
+@router.get("/linkage.svg", **file_endpoint_options("image/svg+xml"))
 def draw_linkage(
     request: RequestedDesignDep, crank_angle_deg: CrankAngle = None, units: UnitsParameter = "metric"
 ) -> Response:
@@ -74,8 +74,8 @@ def draw_linkage(
     return _file(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg, units)))
 
 
-@router.get("/motion.html", **file_responses("text/html"))
-def show_motion(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
+@router.get("/motion.html", **file_endpoint_options("text/html"))
+def show_animation(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return an animation of the linkage as one HTML file with its own script; it fetches nothing."""
     from ..motion.player_page import player_page
 
@@ -85,7 +85,7 @@ def show_motion(request: RequestedDesignDep, units: UnitsParameter = "metric") -
     return _file(request, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
-@router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_responses("image/gif"))
+@router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_endpoint_options("image/gif"))
 def animate_linkage(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return an animated GIF of the linkage: one crank revolution, or a swing back and forth."""
     from ..motion.animated_gif import animated_gif
@@ -99,30 +99,30 @@ def animate_linkage(request: RequestedDesignDep, units: UnitsParameter = "metric
     return _file(request, "gif", "image/gif", content, label="-motion")
 
 
-@router.get("/report.html", dependencies=[Depends(require_figures)], **file_responses("text/html"))
+@router.get("/report.html", dependencies=[Depends(require_figures)], **file_endpoint_options("text/html"))
 def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
     """Return a design-review report as one HTML file without scripts; it fetches nothing."""
     from ..report.html import html_file
 
     content = request.cached_file(
-        f"report {units} {_bookmarks_version(request, store)}",
+        f"report {units} {_bookmarks_revision(request, store)}",
         lambda: html_file(_report(request, store, units)),
     )
     return _file(request, "html", "text/html; charset=utf-8", content, label="-report")
 
 
-@router.get("/report.pdf", dependencies=[Depends(require_figures)], **file_responses("application/pdf"))
+@router.get("/report.pdf", dependencies=[Depends(require_figures)], **file_endpoint_options("application/pdf"))
 def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParameter = "metric") -> Response:
     """Return the same report as PDF."""
     from ..report.pdf import pdf_file
 
     content = request.cached_file(
-        f"pdf {units} {_bookmarks_version(request, store)}", lambda: pdf_file(_report(request, store, units))
+        f"pdf {units} {_bookmarks_revision(request, store)}", lambda: pdf_file(_report(request, store, units))
     )
     return _file(request, "pdf", "application/pdf", content, label="-report")
 
 
-@router.get("/cycle.csv", **file_responses("text/csv"))
+@router.get("/cycle.csv", **file_endpoint_options("text/csv"))
 def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return the curves of a design as a table, as `export --cycle`: per degree, or for both directions of a swing."""
     content = design_csv(request.design, units)
@@ -137,7 +137,7 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
 
     stored_front = request.stored_front
     job = stored_front.job.id
-    file_names = set(store.artefacts(job))
+    file_names = set(store.artefact_names(job))
     versions, certificate = (
         json.loads(store.artefact(job, name).content) if name in file_names else None
         for name in ("versions.json", "certificate.json")
@@ -157,6 +157,6 @@ def _report(request: RequestedDesign, store: Store, units: System) -> Report:
     return design_report(subject)
 
 
-def _bookmarks_version(request: RequestedDesign, store: Store) -> int:
+def _bookmarks_revision(request: RequestedDesign, store: Store) -> int:
     """Return a number that changes with each edit of a job's bookmarks, which reports contain."""
     return hash(tuple(bookmarks_of(store, request.stored_front.job.id)))

@@ -14,7 +14,7 @@ from pydantic_core import to_json
 
 from ...model.errors import NotFound
 from ...objectives.kinds import System
-from ..designs.display_units import record_in
+from ..designs.display_units import convert_record
 from ..designs.measured_file import read_measured
 from ..designs.rotating_crank import require_rotating_crank
 from ..questions.design_question import BoundQuestion, QuestionCommand
@@ -25,10 +25,10 @@ from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, block_models
 from .computing import LongRoute, QuickRoute
-from .exports import file_responses
+from .exports import file_endpoint_options
 from .figures import figure_response, require_figures
 from .fronts import OfDesign
-from .input_parameters import inputs_in_address, parameter_of
+from .input_parameters import inputs_from_query, parameter_of
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .stored_fronts import DesignNumber, FrontDep, RequestedDesign, RequestedDesignDep
@@ -41,7 +41,9 @@ router = APIRouter(
 )
 
 
-def _drawn(request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw: Callable[[], Figure]) -> Response:
+def _figure_response(
+    request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw: Callable[[], Figure]
+) -> Response:
     """Return the figure for a question about a design. key: name in the cache."""
 
     def make() -> tuple[tuple[str], bytes]:
@@ -49,7 +51,7 @@ def _drawn(request: RequestedDesign, key: str, kind: Literal["png", "svg"], draw
 
         return (request.key,), figure_bytes(draw(), kind)
 
-    return figure_response(request.stored_front.cached(request.key, key, make), kind)
+    return figure_response(request.stored_front.cached_item(request.key, key, make), kind)
 
 
 TopicName = Annotated[
@@ -81,10 +83,10 @@ class TopicAnswer(OfDesign):
 
 
 _PARAMETERS = (parameter_of(one, f"for the topic {TOPIC_OF_INPUT[name]}: ") for name, one in INPUTS.items())
-TopicInputsDep = Annotated[dict[str, str], inputs_in_address(INPUTS.values(), _PARAMETERS)]
+TopicInputsDep = Annotated[dict[str, str], inputs_from_query(INPUTS.values(), _PARAMETERS)]
 
 
-@router.get("/topics/{topic}.svg", dependencies=[Depends(require_figures)], **file_responses("image/svg+xml"))
+@router.get("/topics/{topic}.svg", dependencies=[Depends(require_figures)], **file_endpoint_options("image/svg+xml"))
 def draw_topic_svg(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
@@ -92,7 +94,7 @@ def draw_topic_svg(
     return _topic_figure(request, topic, inputs, units, "svg")
 
 
-@router.get("/topics/{topic}.png", dependencies=[Depends(require_figures)], **file_responses("image/png"))
+@router.get("/topics/{topic}.png", dependencies=[Depends(require_figures)], **file_endpoint_options("image/png"))
 def draw_topic_png(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
@@ -114,13 +116,15 @@ def show_topic(
             job=request.stored_front.job.id,
             number=request.number,
             name=topic,
-            numbers=bound_question.numbers_in(json_ready(numbers), units),
+            numbers=bound_question.numbers_in_units(json_ready(numbers), units),
             told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, units)],
             blocks=block_models(blocks),
         )
         return (request.key,), to_json(topic_model)
 
-    content = request.stored_front.cached(request.key, f"topic {topic} told {units} {sorted(inputs.items())}", make)
+    content = request.stored_front.cached_item(
+        request.key, f"topic {topic} told {units} {sorted(inputs.items())}", make
+    )
     return Response(content, media_type="application/json")
 
 
@@ -129,7 +133,7 @@ def _topic_figure(
 ) -> Response:
     bound_question = _bind(request, topic, inputs)
     key = f"topic {topic} {kind} {units} {sorted(inputs.items())}"
-    return _drawn(request, key, kind, lambda: bound_question.figure(lambda: False, units))
+    return _figure_response(request, key, kind, lambda: bound_question.figure(lambda: False, units))
 
 
 def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
@@ -137,10 +141,10 @@ def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> Bound
     if topic not in TOPICS:
         raise NotFound(f"there is no topic {topic!r}; choose from {', '.join(TOPICS)}")
     design = request.design
-    return TOPICS[topic].for_problem(design.mechanism, design.linkage, design.part, inputs)
+    return TOPICS[topic].bind_to_problem(design.mechanism, design.linkage, design.part, inputs)
 
 
-def _add(name: str, says: QuestionCommand) -> None:
+def _add_question_endpoints(name: str, says: QuestionCommand) -> None:
     """Add the endpoints of a question that is also a command: its answer and its figure."""
     question = DESIGN_QUESTIONS[name]
     numbers_field: Any = (Annotated[dict[str, Any], RecordSchema(lambda: [question.record_type])], ...)
@@ -152,13 +156,13 @@ def _add(name: str, says: QuestionCommand) -> None:
 
     def bind(request: RequestedDesign, inputs: dict[str, str]) -> BoundQuestion:
         design, words = request.design, {item.name: item.key for item in question.inputs}
-        return question.for_problem(design.mechanism, design.linkage, design.part, inputs, words)
+        return question.bind_to_problem(design.mechanism, design.linkage, design.part, inputs, words)
 
     def show_numbers(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> OfDesign:
         bound_question = bind(request, given)
         numbers = bound_question.numbers()
         blocks = block_models(bound_question.blocks(numbers), bound_question.notes(numbers))
-        record = {name: record_in(json_ready(numbers), units)}
+        record = {name: convert_record(json_ready(numbers), units)}
         return model(job=request.stored_front.job.id, number=request.number, blocks=blocks, **record)
 
     def draw(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> Response:
@@ -167,25 +171,25 @@ def _add(name: str, says: QuestionCommand) -> None:
 
             bound_question = bind(request, given)
             bound_question.numbers()
-            return figure_of(bound_question.written("figure", units), units)
+            return figure_of(bound_question.output_of("figure", units), units)
 
-        return _drawn(request, f"{name} svg {units} {sorted(given.items())}", "svg", figure)
+        return _figure_response(request, f"{name} svg {units} {sorted(given.items())}", "svg", figure)
 
     route = LongRoute if says.sizes else QuickRoute
     show_numbers.__name__, show_numbers.__doc__ = says.endpoint, says.help
     draw.__name__, draw.__doc__ = f"draw_{name}", f"Draw the result of `slidercrank {says.called or name}`."
-    inputs = inputs_in_address(question.inputs, map(parameter_of, question.inputs))
+    inputs = inputs_from_query(question.inputs, map(parameter_of, question.inputs))
     for endpoint in (show_numbers, draw):
         endpoint.__annotations__["given"] = Annotated[dict[str, str], inputs]
     router.add_api_route(f"/{name}", show_numbers, response_model=model, route_class_override=route)
     if says.figure:
-        svg = file_responses("image/svg+xml")
+        svg = file_endpoint_options("image/svg+xml")
         needs = [Depends(require_figures)]
         router.add_api_route(f"/{name}.svg", draw, dependencies=needs, route_class_override=route, **svg)
 
 
 for _name, _says in QUESTION_COMMANDS.items():
-    _add(_name, _says)
+    _add_question_endpoints(_name, _says)
 
 
 class MeasuredCurves(BaseModel, extra="forbid", strict=True):
@@ -214,9 +218,9 @@ def compare_measured(
     stored = stored_front.design(design)
     require_rotating_crank(stored.part.motion, "a comparison with measured curves")
     samples = read_measured(measured_curves.csv, stored.mechanism, stored.linkage)
-    topic = MEASURED.for_design(stored.mechanism, stored.linkage, {"measured": samples})
+    topic = MEASURED.bind_to_design(stored.mechanism, stored.linkage, {"measured": samples})
     record = json_ready(topic.numbers())
-    return MeasuredModel(job=stored_front.job.id, number=design, measured=record_in(record, units))
+    return MeasuredModel(job=stored_front.job.id, number=design, measured=convert_record(record, units))
 
 
 router.add_api_route("/measured", compare_measured, methods=["POST"], route_class_override=QuickRoute)

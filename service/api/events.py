@@ -81,7 +81,7 @@ class Channel:
             return None
         return [event for event in self.recent if event.number > number]
 
-    async def news(self, seconds: float) -> bool:
+    async def wait_for_events(self, seconds: float) -> bool:
         """Wait for new events; return whether any arrived in time."""
         changed = self._changed
         try:
@@ -113,7 +113,7 @@ class Feed:
         last: number of the last event already received. Yields None after `heartbeat` seconds without an event. Also
         ends when the job is deleted.
         """
-        with self._following(number, last) as channel:
+        with self._follow_channel(number, last) as channel:
             position = after
             while True:
                 events = channel.since(position)
@@ -129,11 +129,11 @@ class Feed:
                 if position >= channel.last or not events:
                     if channel.over:
                         return
-                    if not await channel.news(heartbeat):
+                    if not await channel.wait_for_events(heartbeat):
                         yield None
 
     @contextlib.contextmanager
-    def _following(self, number: int, last: int) -> Iterator[Channel]:
+    def _follow_channel(self, number: int, last: int) -> Iterator[Channel]:
         channel = self._channels.get(number)
         if channel is None or channel.over:  # an ended job may have been resumed since
             channel = self._channels[number] = Channel(last)
@@ -141,7 +141,7 @@ class Feed:
         if self._closed:
             channel.over = True
         if self._task is None or self._task.done():
-            self._task = asyncio.create_task(self._look())
+            self._task = asyncio.create_task(self._poll_store())
         try:
             yield channel
         finally:
@@ -149,7 +149,7 @@ class Feed:
             if not channel.followers and self._channels.get(number) is channel:
                 del self._channels[number]
 
-    async def _look(self) -> None:
+    async def _poll_store(self) -> None:
         """Look up new events of followed jobs while there are any."""
         # A separate thread, so that requests that occupy all others do not delay streams.
         self._thread = self._thread or CapacityLimiter(1)

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from pydantic_core import to_json
 
 from ...model.extras import is_installed, required
-from ..designs.display_units import result_in, rows_in
+from ..designs.display_units import convert_result, convert_rows
 from ..designs.selection import numbered_rows
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
@@ -25,12 +25,12 @@ SEALED = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; sandbox"
 """Security policy for a file that a browser may open as a document of this origin: no scripts, no requests."""
 
 
-def formats() -> list[str]:
+def export_formats() -> list[str]:
     """Return the file endings available for a front: Parquet only if pyarrow is installed."""
     return ["csv", "json", *(["parquet"] if is_installed("pyarrow") else [])]
 
 
-def file_responses(media_type: str, *refusals: int) -> dict[str, Any]:
+def file_endpoint_options(media_type: str, *refusals: int) -> dict[str, Any]:
     """Return the options of an endpoint that returns a file. Further statuses are those of its refusals."""
     responses = {200: {"content": {media_type: {}}}, **problem_responses(*refusals)}
     return {"response_class": Response, "responses": responses}
@@ -48,25 +48,25 @@ def _file(stored_front: StoredFront, ending: str, media_type: str, content: str 
     return download(content, media_type, f"{slug(stored_front.result.name)}-{stored_front.job.id}.{ending}")
 
 
-@router.get("/jobs/{number}/export.csv", **file_responses("text/csv"))
+@router.get("/jobs/{number}/export.csv", **file_endpoint_options("text/csv"))
 def export_csv(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Return every design with its number and all its quantities at full precision.
 
     Text cells that a spreadsheet would read as a formula begin with an apostrophe. Infinity is written inf.
     """
-    content = csv_text(numbered_rows(rows_in(stored_front.result.designs, units)), spreadsheet=True)
+    content = csv_text(numbered_rows(convert_rows(stored_front.result.designs, units)), spreadsheet=True)
     return _file(stored_front, "csv", "text/csv; charset=utf-8", content)
 
 
-@router.get("/jobs/{number}/export.json", **file_responses("application/json"))
+@router.get("/jobs/{number}/export.json", **file_endpoint_options("application/json"))
 def export_json(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Return the whole front as `slidercrank export --json` does, but on one line."""
-    result = result_in(stored_front.result, units, None if units == "metric" else stored_front.problem)
+    result = convert_result(stored_front.result, units, None if units == "metric" else stored_front.problem)
     content = to_json(result.record(), inf_nan_mode="null")  # takes a tenth of the time of the `json` module
     return _file(stored_front, "json", "application/json", content)
 
 
-@router.get("/jobs/{number}/export.parquet", **file_responses("application/vnd.apache.parquet", 501))
+@router.get("/jobs/{number}/export.parquet", **file_endpoint_options("application/vnd.apache.parquet", 501))
 def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> Response:
     """Return every design with all its quantities as a column-oriented table; needs pyarrow on the server."""
     import pandas as pd
@@ -74,5 +74,5 @@ def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> 
     required("pyarrow", "fronts as Parquet need")
 
     out = io.BytesIO()
-    pd.DataFrame(rows_in(stored_front.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
+    pd.DataFrame(convert_rows(stored_front.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
     return _file(stored_front, "parquet", "application/vnd.apache.parquet", out.getvalue())

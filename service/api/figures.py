@@ -15,7 +15,7 @@ from ...objectives.kinds import System
 from ..runs.run_folder import slug
 from ..store.remarks import Bookmark, bookmarks_of
 from .computing import LongRoute
-from .exports import SEALED, file_responses
+from .exports import SEALED, file_endpoint_options
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .settings import SettingsDep, StoreDep
@@ -79,7 +79,7 @@ def list_figures(stored_front: FrontDep) -> FiguresModel:
     return FiguresModel(job=stored_front.job.id, figures=listed)
 
 
-@router.get("/jobs/{number}/figures/{name}.png", **file_responses("image/png"))
+@router.get("/jobs/{number}/figures/{name}.png", **file_endpoint_options("image/png"))
 def draw_png(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
@@ -87,7 +87,7 @@ def draw_png(
     return _image(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
-@router.get("/jobs/{number}/figures/{name}.svg", **file_responses("image/svg+xml"))
+@router.get("/jobs/{number}/figures/{name}.svg", **file_endpoint_options("image/svg+xml"))
 def draw_svg(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
@@ -117,7 +117,7 @@ def _image(
         return figure.names, figure_bytes(figure.draw(), kind)
 
     if single is None:
-        return figure_response(stored_front.cached(name, cache_kind, draw), kind)
+        return figure_response(stored_front.cached_item(name, cache_kind, draw), kind)
     request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
     drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
     file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"

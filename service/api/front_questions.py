@@ -24,7 +24,7 @@ from .blocks import AnswerBlock, block_models
 from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
-from .input_parameters import body_of, inputs_in_address, parameter_of
+from .input_parameters import body_model_of, inputs_from_query, parameter_of
 from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
 from .problem_documents import problem_responses
 from .settings import StoreDep
@@ -49,7 +49,9 @@ class LikeModel(OfDesign):
     blocks: list[AnswerBlock]
 
 
-def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric") -> LikeModel:
+def find_similar_design(
+    stored_front: FrontDep, design: DesignNumber, given: Any, units: UnitsParameter = "metric"
+) -> LikeModel:
     """Find the design most similar to one on a front that also meets further conditions; nothing is saved."""
     stored_front.row(design)
     nearest = LIKE.ask(stored_front.front, given.model_dump(), row=design - 1)
@@ -57,10 +59,10 @@ def find_like(stored_front: FrontDep, design: DesignNumber, given: Any, units: U
     return LikeModel(job=stored_front.job.id, number=design, like=record, blocks=blocks)
 
 
-find_like.__annotations__["given"] = body_of(LIKE, "LikeWhere")
-router.add_api_route("/jobs/{number}/designs/{design}/like", find_like, methods=["POST"], tags=["designs"])
+find_similar_design.__annotations__["given"] = body_model_of(LIKE, "LikeWhere")
+router.add_api_route("/jobs/{number}/designs/{design}/like", find_similar_design, methods=["POST"], tags=["designs"])
 
-CertificateInputs = Annotated[dict[str, Any], inputs_in_address(CERTIFY.inputs, map(parameter_of, CERTIFY.inputs))]
+CertificateInputs = Annotated[dict[str, Any], inputs_from_query(CERTIFY.inputs, map(parameter_of, CERTIFY.inputs))]
 _CERTIFY_EXAMPLE = {"status": "proven", "epsilon_asked": 0.01, "epsilon": 0.0098, "boxes": 41_210, "open_boxes": 0}
 
 
@@ -86,7 +88,7 @@ def certify_front(stored_front: FrontDep, given: CertificateInputs) -> Response:
     def make() -> tuple[tuple[str], bytes]:
         return (name,), to_json(_certificate_model(stored_front, given))
 
-    return Response(stored_front.cached(name, "certificate", make), media_type="application/json")
+    return Response(stored_front.cached_item(name, "certificate", make), media_type="application/json")
 
 
 def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> CertificateModel:
@@ -101,7 +103,7 @@ def _certificate_model(stored_front: StoredFront, inputs: dict[str, Any]) -> Cer
     )
 
 
-ComparisonInputs = Annotated[dict[str, Any], inputs_in_address(COMPARE.inputs, map(parameter_of, COMPARE.inputs))]
+ComparisonInputs = Annotated[dict[str, Any], inputs_from_query(COMPARE.inputs, map(parameter_of, COMPARE.inputs))]
 _Number = Annotated[int, Query(ge=1, le=LARGEST), PLAIN_DIGITS]
 _COMPARE_EXAMPLE = {"tolerance": 1e-6, "union_hypervolume": 0.71, "coverage": [[1.0, 0.4], [0.1, 1.0]]}
 
@@ -236,7 +238,7 @@ def round_design(
     return StreamingResponse(_lines(first, events), headers=STREAM_HEADERS, media_type=STREAM)
 
 
-round_design.__annotations__["given"] = body_of(ROUND, "Steps")
+round_design.__annotations__["given"] = body_model_of(ROUND, "Steps")
 router.add_api_route(
     "/jobs/{number}/designs/{design}/rounded",
     round_design,

@@ -22,7 +22,7 @@ from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import response_with_etag
 from ..runs.result import json_ready
 from .models import PLAIN_DIGITS, JobNumber
-from .problem_documents import problem_responses, tagged_json
+from .problem_documents import json_with_etag_options, problem_responses
 from .settings import StoreDep
 from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 
@@ -185,7 +185,7 @@ class ColumnsModel(BaseModel):
 @router.get("/jobs/{number}/front")
 def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontModel:
     """Return how a front was found and its marked designs; all its designs are at `/jobs/{number}/designs`."""
-    record = json_ready(store.record(number))
+    record = json_ready(store.result_record(number))
     columns = column_models(all_columns(record.pop("columns")))
     sentences = front_violations_in_words(fronts.get(number).result) if record.get("violated") else []
     return FrontModel(**record, job=number, columns=columns, violations=sentences)
@@ -278,7 +278,7 @@ def show_design(stored_front: FrontDep, design: DesignNumber) -> DesignModel:
     )
 
 
-@router.get("/jobs/{number}/columns", **tagged_json(ColumnsModel, "The values of every design"))
+@router.get("/jobs/{number}/columns", **json_with_etag_options(ColumnsModel, "The values of every design"))
 def list_columns(
     request: Request,
     stored_front: FrontDep,
@@ -291,8 +291,8 @@ def list_columns(
     def respond() -> Response:
         compressed = "gzip" in accept_encoding and "gzip;q=0" not in accept_encoding.replace(" ", "")
         name, kind = ",".join(column.key for column in chosen_columns), "gzip" if compressed else "plain"
-        content = stored_front.cached(
-            name, kind, lambda: ([name], _content(stored_front, chosen_columns, compressed=compressed))
+        content = stored_front.cached_item(
+            name, kind, lambda: ([name], _columns_json(stored_front, chosen_columns, compressed=compressed))
         )
         headers = {"Content-Encoding": "gzip"} if content.startswith(b"\x1f\x8b") else None
         return Response(content, media_type="application/json", headers=headers)
@@ -309,7 +309,7 @@ def _requested_columns(stored_front: StoredFront, columns: str | None) -> Sequen
     return list({column.key: column for column in find_columns(columns, list(stored_front.result.designs[0]))}.values())
 
 
-def _content(stored_front: StoredFront, chosen_columns: Sequence[Column], *, compressed: bool) -> bytes:
+def _columns_json(stored_front: StoredFront, chosen_columns: Sequence[Column], *, compressed: bool) -> bytes:
     rows = stored_front.result.designs
     values = {column.key: [row[column.key] for row in rows] for column in chosen_columns}
     for key, cells in values.items():

@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..store import State, Store
 from .models import Count, ResponseModel
-from .settings import StoreDep, part_of_app
+from .settings import StoreDep, state_dependency
 
 router = APIRouter(tags=["service"])
 _BOUNDS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
@@ -50,7 +50,7 @@ async def show_live() -> Live:
 def show_ready(store: StoreDep) -> Ready:
     """Report whether the database can be read and written, the number of workers, and the number of waiting jobs."""
     store.require_ready()
-    crew = store.crew()
+    crew = store.count_workers()
     return Ready(takes_jobs=crew.workers > 0, **vars(crew))
 
 
@@ -75,7 +75,7 @@ class Metrics(Collector):
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         """Yield the metrics of the store."""
-        counts = self._store.counts()
+        counts = self._store.count_by_state()
         jobs = GaugeMetricFamily("slidercrank_jobs", "Jobs in each state", labels=["state"])
         for state in get_args(State):
             jobs.add_metric([state], counts.get(state, 0))
@@ -94,7 +94,7 @@ class Metrics(Collector):
     response_class=Response,
     responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
 )
-def show_metrics(metrics: Annotated[Metrics, part_of_app("metrics")]) -> Response:
+def show_metrics(metrics: Annotated[Metrics, state_dependency("metrics")]) -> Response:
     """Return metrics in the Prometheus text format: jobs by state, age of the queue, workers, request times."""
     return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
 
@@ -112,7 +112,7 @@ class Timed:
             return
         start = time.perf_counter()
 
-        async def timed(message: Message) -> None:
+        async def send_timed(message: Message) -> None:
             if message["type"] == "http.response.start":
                 # Labelled with the endpoint name: paths invented by clients must not become time series.
                 operation = getattr(scope.get("route"), "name", "none")
@@ -122,4 +122,4 @@ class Timed:
                 labelled.observe(time.perf_counter() - start)
             await send(message)
 
-        await self.app(scope, receive, timed)
+        await self.app(scope, receive, send_timed)

@@ -31,7 +31,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
     )
 
 
-def body_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
+def body_model_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
     """Return the body model for the inputs of a question. more: further fields for `create_model`."""
     fields: dict[str, Any] = {item.name: _field(item) for item in question.inputs if isinstance(item, TypedInput)}
     description = f"Inputs of `{question.name}`. {question.help.partition(chr(10))[0]}"
@@ -65,13 +65,13 @@ def _limits(item: Input) -> dict[str, Any]:
     )
 
 
-def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Parameter]) -> Any:
+def inputs_from_query(inputs: Collection[Input], parameters: Iterable[inspect.Parameter]) -> Any:
     """Return the dependency that reads the inputs of an address by name, as text with units.
 
     It raises `InputError` for an input without its unit, since the unit would otherwise be lost.
     """
 
-    def named(request: Request, **given: float | str | None) -> dict[str, str]:
+    def texts_by_name(request: Request, **given: float | str | None) -> dict[str, str]:
         for item in inputs:
             if item.name != item.key and item.name in request.query_params:
                 raise InputError(
@@ -80,5 +80,5 @@ def inputs_in_address(inputs: Collection[Input], parameters: Iterable[inspect.Pa
         typed = ((item, given[item.key]) for item in inputs)
         return {item.name: item.with_unit(value) for item, value in typed if value is not None}
 
-    named.__signature__ = inspect.Signature([_REQUEST, *parameters])  # type: ignore[attr-defined]
-    return Depends(named)
+    texts_by_name.__signature__ = inspect.Signature([_REQUEST, *parameters])  # type: ignore[attr-defined]
+    return Depends(texts_by_name)

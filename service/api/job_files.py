@@ -132,14 +132,14 @@ def list_presets() -> PresetList:
                 title=job["name"],
                 sentence=job.get("description", ""),
                 job=job,
-                design=_drawn(job, DESIGNS[name]),
+                design=_preset_design(job, DESIGNS[name]),
             )
             for name, job in shipped_jobs().items()
         ]
     )
 
 
-def _drawn(job: dict[str, Any], design: Design) -> PresetDesign:
+def _preset_design(job: dict[str, Any], design: Design) -> PresetDesign:
     """Return the example design of an included job with its outlines for a drawing."""
     from ...optimise.job import parse_job
 
@@ -189,10 +189,10 @@ def show_schema() -> dict[str, Any]:
 @router.post("/check", responses=problem_responses(415))
 def check_job(request: Annotated[RequestedJob, Depends(requested_job)], settings: SettingsDep) -> Understood:
     """Check a job and return in words how it was understood; nothing is queued. The job is sent as for a submission."""
-    return understood(problem_of_tables(request.tables, settings.allowed_quantities), request.tables)
+    return describe_problem(problem_of_tables(request.tables, settings.allowed_quantities), request.tables)
 
 
-def understood(problem: Problem, tables: Mapping[str, Any]) -> Understood:
+def describe_problem(problem: Problem, tables: Mapping[str, Any]) -> Understood:
     """Return a problem in words, as understood from its tables."""
     from ..text.job_in_words import job_in_words
 

@@ -15,11 +15,11 @@ from starlette.exceptions import HTTPException
 
 from ...model.errors import InputError, JobError
 from ...optimise.problem.problem import Problem
-from ..jobs.submission import LONGEST_WAIT, bounded, parse_allowed
+from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
-from .strict_input import PARSED_BODY, read_in_turn, read_json, require_moderate
+from .strict_input import PARSED_BODY, read_body_in_turn, read_json, require_moderate
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -114,7 +114,7 @@ async def requested_job(request: Request) -> RequestedJob:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        tables = await read_in_turn(request.app, body, tables_of, body, settings.most_depth)
+        tables = await read_body_in_turn(request.app, body, tables_of, body, settings.most_depth)
         return RequestedJob(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
@@ -130,7 +130,7 @@ async def requested_job(request: Request) -> RequestedJob:
         errors = error.errors(include_url=False)
         raise RequestValidationError([{**details, "loc": ("body", *details["loc"])} for details in errors]) from None
     limits = limits_within(stated.limits, settings.limits)
-    tables = await read_in_turn(request.app, body, insert_files, stated) if stated.files else stated.job
+    tables = await read_body_in_turn(request.app, body, insert_files, stated) if stated.files else stated.job
     return RequestedJob(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
@@ -193,7 +193,9 @@ def problem_of_tables(
     job, by path. require_feasible: whether to reject a job that no design can meet. Raises `JobError`, also for a job
     that names a missing file.
     """
-    return bounded(parse_allowed(tables, allowed, values, require_feasible=require_feasible), LONGEST_WAIT)
+    return with_time_limit_per_call(
+        parse_with_allowed_functions(tables, allowed, values, require_feasible=require_feasible), LONGEST_WAIT
+    )
 
 
 def merge_patch(value: Any, changes: Any) -> Any:

@@ -18,9 +18,9 @@ from ...model.errors import InputError, NotFound
 from ..page.router import content_tag, response_with_etag
 from ..store import State
 from ..store.listing import Order
-from .exports import download, formats
+from .exports import download, export_formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobStateModel
-from .problem_documents import problem_responses, tagged_json
+from .problem_documents import json_with_etag_options, problem_responses
 from .settings import StoreDep
 
 router = APIRouter(tags=["jobs"])
@@ -51,10 +51,10 @@ def list_jobs(
     jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1, order=sort)
     page = jobs[:limit]
     rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
-    return {"jobs": rows, "workers": str(store.crew()), "next": page[-1].id if len(jobs) > limit else None}
+    return {"jobs": rows, "workers": str(store.count_workers()), "next": page[-1].id if len(jobs) > limit else None}
 
 
-@router.get("/front-points", **tagged_json(FrontPointsList, "The points"))
+@router.get("/front-points", **json_with_etag_options(FrontPointsList, "The points"))
 def list_front_points(
     request: Request,
     store: StoreDep,
@@ -107,7 +107,7 @@ def show_tables(number: JobNumber, store: StoreDep) -> dict[str, Any]:
 @router.get("/jobs/{number}/files", response_model=JobFiles)
 def list_files(number: JobNumber, store: StoreDep) -> dict[str, Any]:
     """Return the names of a job's files, and the export formats of its front."""
-    return {"files": store.artefacts(number), "exports": formats()}
+    return {"files": store.artefact_names(number), "exports": export_formats()}
 
 
 @router.get("/jobs/{number}/files/{name}", response_class=Response, responses=_FILE)

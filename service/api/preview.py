@@ -20,13 +20,13 @@ from ...objectives.tables.curve_extremes import curve_extremes
 from ...optimise.problem.remark import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
-from .job_files import ChangeModel, Understood, understood
+from .job_files import ChangeModel, Understood, describe_problem
 from .job_requests import Submission, problem_of_tables
-from .problem_documents import rule_and_value
+from .problem_documents import validation_message
 from .settings import SettingsDep
 
 if TYPE_CHECKING:
-    from ..preview.preview import Look
+    from ..preview.preview import JobPreview
     from ..preview.swinging import PossibleSwing
 
 router = APIRouter(route_class=QuickRoute, tags=["jobs"])
@@ -217,17 +217,17 @@ class PreviewModel(BaseModel):
 @router.post("/preview")
 def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Preview a job that may be incomplete: mistakes and their places, values that its ranges allow, and an example."""
-    from ..preview.preview import look_at
+    from ..preview.preview import job_preview
 
-    look = look_at(draft.job, lambda tables: problem_of_tables(tables, settings.allowed_quantities))
+    look = job_preview(draft.job, lambda tables: problem_of_tables(tables, settings.allowed_quantities))
     return PreviewModel(
         wrong=[
             WrongModel(path=wrong.path[:500], sentence=wrong.sentence[:2000], infeasible=wrong.infeasible)
             for wrong in look.wrong
         ]
-        + _wrong_submission(draft.submission),
-        understood=None if look.problem is None else understood(look.problem, draft.job),
-        allowed=_allowed(look),
+        + _submission_mistakes(draft.submission),
+        understood=None if look.problem is None else describe_problem(look.problem, draft.job),
+        allowed=_allowed_model(look),
         example=_example(look),
         swing=_swing(look.swing),
         formulas=[
@@ -238,14 +238,14 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     )
 
 
-def _wrong_submission(submission: dict[str, Any]) -> list[WrongModel]:
+def _submission_mistakes(submission: dict[str, Any]) -> list[WrongModel]:
     priority = {"priority": submission["priority"]} if "priority" in submission else {}
     limits = {key: value for key, value in submission.items() if key != "priority"}
     try:
         Submission.model_validate({"job": {}, "limits": limits, **priority})
     except ValidationError as error:
         return [
-            WrongModel(path=f"submission.{details['loc'][-1]}"[:500], sentence=rule_and_value(details)[:2000])
+            WrongModel(path=f"submission.{details['loc'][-1]}"[:500], sentence=validation_message(details)[:2000])
             for details in error.errors(include_url=False)
         ]
     return []
@@ -255,7 +255,7 @@ def _unit(kind: Kind | None) -> str | None:
     return None if kind is None else kind.metric.symbol
 
 
-def _allowed(look: Look) -> AllowedModel | None:
+def _allowed_model(look: JobPreview) -> AllowedModel | None:
     possible = look.possible
     if possible is None:
         return None
@@ -280,7 +280,7 @@ def _scaled_ends(factor: float, ends: Ends | None) -> Ends | None:
     return None if ends is None else (factor * ends[0], factor * ends[1])
 
 
-def _example(look: Look) -> ExampleModel | None:
+def _example(look: JobPreview) -> ExampleModel | None:
     if look.stated is None or look.possible is None or look.possible.example is None:
         return None
     machine = look.stated.mechanism
@@ -321,7 +321,7 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
 
 
 def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
-    from ..preview.swinging import positions
+    from ..preview.swinging import slider_positions
 
     swing, design = possible.example_swing or possible.swing, np.array([lengths])
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
@@ -329,11 +329,11 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
     angles = range(math.floor(low), math.floor(high) + 2)
     clipped_angles = np.radians(np.clip(angles, low, high))
     places = {
-        angle % 360: float(positions(at, possible.branch, design)[0])
+        angle % 360: float(slider_positions(at, possible.branch, design)[0])
         for angle, at in zip(angles, clipped_angles, strict=True)
     }
     curve = [places.get(angle, math.nan) for angle in range(360)]
-    ends = [float(positions(end, possible.branch, design)[0]) for end in (swing.start, swing.end)]
+    ends = [float(slider_positions(end, possible.branch, design)[0]) for end in (swing.start, swing.end)]
     crank, rod, offset = (1e3 * length for length in lengths)
     return SwingExample(
         crank_mm=crank,

@@ -56,7 +56,7 @@ class Problem(BaseModel):
     detail: str = Field(description="rule; value; remedy", examples=["there is no job 7; list the jobs"])
 
 
-def problem(
+def problem_response(
     status: int,
     detail: str,
     headers: Mapping[str, str] | None = None,
@@ -75,7 +75,7 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
 
 
-def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
+def json_with_etag_options(model: type[BaseModel], description: str) -> dict[str, Any]:
     """Return the options of an endpoint that returns JSON with an ETag, or 304 if the client is up to date."""
     same = {"description": "They are those of the ETag in If-None-Match"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
@@ -83,18 +83,18 @@ def tagged_json(model: type[BaseModel], description: str) -> dict[str, Any]:
 
 def handle_expected_errors(app: FastAPI) -> None:
     """Answer every expected exception of an application with a problem document."""
-    app.add_exception_handler(SlidercrankError, _refused)
-    app.add_exception_handler(RequestValidationError, _not_valid)
-    app.add_exception_handler(HTTPException, _http)
+    app.add_exception_handler(SlidercrankError, _refusal_response)
+    app.add_exception_handler(RequestValidationError, _invalid_request_response)
+    app.add_exception_handler(HTTPException, _http_error_response)
 
 
-async def _refused(request: Request, error: Exception) -> Response:
+async def _refusal_response(request: Request, error: Exception) -> Response:
     assert isinstance(error, SlidercrankError)
     status = next((status for kind, status in _STATUS if isinstance(error, kind)), HTTPStatus.INTERNAL_SERVER_ERROR)
     if status >= HTTPStatus.INTERNAL_SERVER_ERROR and should_log(request.app.state.fault_times, str(error)):
         _log.warning("%s: %s", type(error).__name__, error)
     kind: Literal["about:blank", "infeasible"] = "infeasible" if isinstance(error, InfeasibleError) else "about:blank"
-    return problem(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
+    return problem_response(status, str(error), _RETRY if status == HTTPStatus.SERVICE_UNAVAILABLE else None, kind)
 
 
 def should_log(last_logged: dict[str, float], sentence: str) -> bool:
@@ -108,20 +108,20 @@ def should_log(last_logged: dict[str, float], sentence: str) -> bool:
     return True
 
 
-async def _not_valid(request: Request, error: Exception) -> Response:
+async def _invalid_request_response(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     errors = error.errors()
     if any(isinstance(details["input"], bytes) for details in errors):  # text of other types passes unchanged
         kind = request.headers.get("content-type", "no type")[:100]
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
         sentence = f"body: must be a JSON object of type application/json; got {kind}; send it as such{turned}"
-        return problem(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
-    sentences = [f"{_place(details['loc'])}: {rule_and_value(details)}" for details in errors[:_MOST]]
+        return problem_response(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
+    sentences = [f"{_place(details['loc'])}: {validation_message(details)}" for details in errors[:_MOST]]
     ellipsis = ["... and more"] if len(errors) > _MOST else []
-    return problem(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *ellipsis]))
+    return problem_response(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *ellipsis]))
 
 
-async def _http(request: Request, error: Exception) -> Response:
+async def _http_error_response(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     detail, headers = error.detail, error.headers
     if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
@@ -129,7 +129,7 @@ async def _http(request: Request, error: Exception) -> Response:
     elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         headers = {"Allow": ", ".join(_methods(request))}
         detail = f"this address must be called with another method; got {request.method}; use {headers['Allow']}"
-    return problem(error.status_code, detail, headers)
+    return problem_response(error.status_code, detail, headers)
 
 
 def _methods(request: Request) -> list[str]:
@@ -142,7 +142,7 @@ def _methods(request: Request) -> list[str]:
     return [method for method in ("GET", "POST", "PUT", "PATCH", "DELETE") if is_known(method)]
 
 
-def rule_and_value(details: Mapping[str, Any]) -> str:
+def validation_message(details: Mapping[str, Any]) -> str:
     """Return the message for an error from pydantic: rule, value, remedy."""
     from ...objectives.units import quote
     from ...optimise.job.messages import rule_of

@@ -14,7 +14,7 @@ from starlette.responses import RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ..page.token_page import locked_page
-from .problem_documents import FAULT, problem
+from .problem_documents import FAULT, problem_response
 from .settings import Settings
 
 _log = logging.getLogger(__name__)
@@ -48,8 +48,8 @@ class Guard:
         self.token = None if settings.token is None else settings.token.encode()
         # Cookies are shared by all ports of a machine: two services must not mistake each other's cookies for their
         # own.
-        self.cookie = f"slidercrank-{_made_of(self.token or b'', 'name')[:12]}"
-        self.session = _made_of(self.token or b"", "session")
+        self.cookie = f"slidercrank-{_derived_secret(self.token or b'', 'name')[:12]}"
+        self.session = _derived_secret(self.token or b"", "session")
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Refuse a request, or pass it on."""
@@ -61,7 +61,7 @@ class Guard:
             return
         started = False
 
-        async def protected(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             nonlocal started
             if message["type"] == "http.response.start":
                 started = True
@@ -72,28 +72,28 @@ class Guard:
 
         try:
             response = self._rejection(HTTPConnection(scope)) or self.app
-            await response(scope, receive, protected)
+            await response(scope, receive, send_with_headers)
         except Exception as error:
             _log.exception("%s %s", scope["method"], scope["path"])
             if started:
                 raise  # makes the server close the connection: half a response must not look complete
-            fault = problem(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
-            await fault(scope, receive, protected)
+            fault = problem_response(HTTPStatus.INTERNAL_SERVER_ERROR, f"unexpected {type(error).__name__}; {FAULT}")
+            await fault(scope, receive, send_with_headers)
 
     def _rejection(self, connection: HTTPConnection) -> Response | None:
         """Return the answer to a refused request; None if it is passed on."""
         scope, headers = connection.scope, connection.headers
         host = headers.getlist("host")
-        if "*" not in self.hosts and (len(host) != 1 or _name(host[0]) not in self.hosts):
+        if "*" not in self.hosts and (len(host) != 1 or _host_without_port(host[0]) not in self.hosts):
             names = ", ".join(sorted(self.hosts))
-            return problem(
+            return problem_response(
                 HTTPStatus.FORBIDDEN,
                 f"the service must be called by one of its names, {names}; got Host "
                 f"{host[0][:100] if host else 'missing'!r}; use one, or serve with --host",
             )
         for origin in headers.getlist("origin"):
-            if not _same(origin, host[0] if host else ""):
-                return problem(
+            if not _is_same_origin(origin, host[0] if host else ""):
+                return problem_response(
                     HTTPStatus.FORBIDDEN,
                     f"pages of other sites may not send requests; got Origin {origin[:100]!r}; open the page of the "
                     "service itself",
@@ -102,8 +102,8 @@ class Guard:
             if scope["path"] == OPEN:
                 return None
             if scope["path"] == "/" and scope["method"] == "GET" and b"token=" in scope["query_string"]:
-                return self._let_in(connection)
-            if not self._knows(connection):
+                return self._set_cookie_and_redirect(connection)
+            if not self._has_valid_token(connection):
                 if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
                     return locked_page(connection)
                 return _unauthorised(
@@ -113,7 +113,7 @@ class Guard:
         scope[KNOWN] = True
         return None
 
-    def _let_in(self, connection: HTTPConnection) -> Response:
+    def _set_cookie_and_redirect(self, connection: HTTPConnection) -> Response:
         """Answer an address that contains the token: set a cookie, and redirect to the address without it."""
         scope = connection.scope
         tokens = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
@@ -129,7 +129,7 @@ class Guard:
         response.set_cookie(self.cookie, self.session, httponly=True, samesite="strict", secure=secure, path="/")
         return response
 
-    def _knows(self, connection: HTTPConnection) -> bool:
+    def _has_valid_token(self, connection: HTTPConnection) -> bool:
         scheme, _, token = connection.headers.get("authorization", "").partition(" ")
         if scheme.lower() == "bearer" and self._is_token(token.strip()):
             return True
@@ -143,21 +143,21 @@ class Guard:
 
 
 def _unauthorised(text: str) -> Response:
-    return problem(HTTPStatus.UNAUTHORIZED, text, {"WWW-Authenticate": "Bearer"})
+    return problem_response(HTTPStatus.UNAUTHORIZED, text, {"WWW-Authenticate": "Bearer"})
 
 
-def _made_of(token: bytes, purpose: str) -> str:
+def _derived_secret(token: bytes, purpose: str) -> str:
     """Return a text that only the token can produce and that does not reveal the token."""
     return hmac.new(token, f"slidercrank {purpose}".encode(), hashlib.sha256).hexdigest()
 
 
-def _name(host: str) -> str:
+def _host_without_port(host: str) -> str:
     """Return a Host without its port, in lower case."""
     name, colon, port = host.rpartition(":")
     return (name if colon and port.isdecimal() else host).lower()
 
 
-def _same(origin: str, host: str) -> bool:
+def _is_same_origin(origin: str, host: str) -> bool:
     try:
         parts = urlsplit(origin)
     except ValueError:

@@ -38,7 +38,7 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
-def names_of(host: str) -> tuple[str, ...]:
+def host_names_of(host: str) -> tuple[str, ...]:
     """Return the host names of a service that listens on an address."""
     from .settings import LOOPBACK
 
@@ -53,8 +53,8 @@ def listen(host: str, port: int) -> socket.socket:
         listening = socket.create_server(address[:2], family=family, backlog=_WAITING)
     except (OSError, UnicodeError) as error:
         raise InputError(
-            f"the service needs an address of this machine and a free port; {host} port {port} gave: {_why(error)}; "
-            "choose another one with --port (0 takes any that is free) or --host"
+            f"the service needs an address of this machine and a free port; {host} port {port} gave: "
+            f"{_listen_error_text(error)}; choose another one with --port (0 takes any that is free) or --host"
         ) from None
     # Connections inherit these. Without TCP_NODELAY the second answer on a connection waits 40 ms for a delayed
     # acknowledgement; asyncio sets it only if the listening socket was created with an explicit protocol.
@@ -65,7 +65,7 @@ def listen(host: str, port: int) -> socket.socket:
     return listening
 
 
-def _why(error: OSError | UnicodeError) -> str:
+def _listen_error_text(error: OSError | UnicodeError) -> str:
     if isinstance(error, UnicodeError):
         return str(error)
     has_number = error.errno is not None and error.errno > 0  # negative if a name is not found
@@ -79,7 +79,7 @@ def url_of(host: str, listening: socket.socket, token: str | None) -> str:
     return address if token is None else f"{address}?token={token}"
 
 
-def spare_imports() -> None:
+def freeze_imported_objects() -> None:
     """Exempt imported objects from garbage collection: each scan of them stops all requests for 0.2 s."""
     gc.collect()
     gc.freeze()
@@ -129,7 +129,7 @@ def run_server(
             app.state.feed.close()
             await super().shutdown(sockets)
 
-    spare_imports()
+    freeze_imported_objects()
     Server(config_of(app)).run(sockets=[listening])
 
 

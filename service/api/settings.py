@@ -37,7 +37,7 @@ class Settings:
 DEFAULT = Settings()
 
 
-def part_of_app(name: str) -> Any:
+def state_dependency(name: str) -> Any:
     """Return the dependency that provides a part of the application's state."""
 
     async def part(request: Request) -> Any:  # async, so not run in a separate thread as plain functions are
@@ -46,8 +46,8 @@ def part_of_app(name: str) -> Any:
     return Depends(part)
 
 
-StoreDep = Annotated[Store, part_of_app("store")]
+StoreDep = Annotated[Store, state_dependency("store")]
 """Store; its calls block, so endpoints that use it are plain functions, which run in threads."""
 
-SettingsDep = Annotated[Settings, part_of_app("settings")]
+SettingsDep = Annotated[Settings, state_dependency("settings")]
 """API settings chosen by the operator."""

@@ -19,17 +19,17 @@ from pydantic import Field
 from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
-from ..designs.changed_design import Variation, variation_of, with_numbers
+from ..designs.changed_design import Variation, design_with_numbers, variation_of
 from ..designs.choice_options import minimised_values
 from ..designs.columns import Column, all_columns
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..jobs.submission import LONGEST_WAIT, bounded, parse_allowed
+from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
 from ..store import Job, Store
 from ..store.remarks import Bookmark, bookmarks_of
 from .models import PLAIN_DIGITS, JobNumber
-from .settings import StoreDep, part_of_app
+from .settings import StoreDep, state_dependency
 
 if TYPE_CHECKING:
     from ...optimise.decisions.wish import Wishes
@@ -71,18 +71,18 @@ class StoredFront:
         return front_of(self.problem, self.result)
 
     @cached_property
-    def wishes(self) -> Wishes:
+    def wish_starts(self) -> Wishes:
         """Starting points for wishes on the front. Raises `InputError` if no wish is possible."""
         from ...optimise.decisions.wish import Wishes
 
         return Wishes(self.front)
 
     @cached_property
-    def minimised(self) -> Array:
+    def minimised_objectives(self) -> Array:
         """Objectives of the designs (n, m), all minimised, in display units."""
         return minimised_values(self.result)
 
-    def cached(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
+    def cached_item(self, name: str, kind: str, make: Callable[[], tuple[Sequence[str], bytes]]) -> bytes:
         """Return a cached item derived from the front, or create and cache it.
 
         make: function that returns all names of the item, and its content.
@@ -131,7 +131,9 @@ class StoredFronts:
                 front = StoredFront(
                     job,
                     self._store.result(number),
-                    lambda: bounded(parse_allowed(self._store.tables(number), self._allowed), LONGEST_WAIT),
+                    lambda: with_time_limit_per_call(
+                        parse_with_allowed_functions(self._store.tables(number), self._allowed), LONGEST_WAIT
+                    ),
                 )
                 if job.finished is not None:
                     self._keep(key, front)
@@ -148,7 +150,7 @@ class StoredFronts:
             self._cached.popitem(last=False)
 
 
-FrontsDep = Annotated[StoredFronts, part_of_app("fronts")]
+FrontsDep = Annotated[StoredFronts, state_dependency("fronts")]
 """Fronts of all jobs."""
 
 
@@ -173,7 +175,7 @@ _OTHER = "mm, instead of that of the design; crank_mm, rod_mm and offset_mm must
 _VALUE = "another number that varies, by column, such as slider_mass_kg=1.2; repeatable"
 
 
-def _numbers(
+def _changed_numbers(
     crank_mm: Annotated[Length | None, Query(description=_OTHER, examples=[40.0])] = None,
     rod_mm: Annotated[Length | None, Query(description=_OTHER, examples=[64.0])] = None,
     offset_mm: Annotated[
@@ -185,14 +187,14 @@ def _numbers(
     numbers = {name: length for name, length in lengths.items() if length is not None}
     missing = [name for name in lengths if name not in numbers]
     if len(missing) in (0, 3):
-        return numbers | dict(map(_value, value)) or None
+        return numbers | dict(map(_parse_value, value)) or None
     raise InputError(
         f"other lengths must be given together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
         "give all three, or none for the design as it is"
     )
 
 
-def _value(text: str) -> tuple[str, float]:
+def _parse_value(text: str) -> tuple[str, float]:
     """Return column and number from a text such as "slider_mass_kg=1.2"."""
     column, _, number = text.partition("=")
     try:
@@ -204,7 +206,7 @@ def _value(text: str) -> tuple[str, float]:
     return column, value
 
 
-NumbersDep = Annotated[Numbers | None, Depends(_numbers)]
+NumbersDep = Annotated[Numbers | None, Depends(_changed_numbers)]
 """Numbers that an address sets for a design, None for those of the design itself. Raises `InputError` if it sets only
 one or two lengths."""
 
@@ -242,12 +244,14 @@ class RequestedDesign:
     def cached_file(self, kind: str, make: Callable[[], bytes]) -> bytes:
         """Return a cached file of the design that shows its name, or create and cache it."""
         key = f"{self.key} {self.words}"
-        return self.stored_front.cached(key, kind, lambda: ((key,), make()))
+        return self.stored_front.cached_item(key, kind, lambda: ((key,), make()))
 
     def variation(self) -> Variation | None:
         """Return the variation with other numbers; None for the unchanged design."""
         return (
-            variation_of(self.design, self.stored_front.result, self.stored_front.minimised) if self.changed else None
+            variation_of(self.design, self.stored_front.result, self.stored_front.minimised_objectives)
+            if self.changed
+            else None
         )
 
 
@@ -271,7 +275,7 @@ def requested_design(
         values.pop(name) / 1e3 if name in values else value
         for name, value in zip(_LENGTHS, stored.values[:3], strict=True)
     ]
-    return RequestedDesign(stored_front, number, with_numbers(stored, lengths, values), True, bookmarks)
+    return RequestedDesign(stored_front, number, design_with_numbers(stored, lengths, values), True, bookmarks)
 
 
 def _requested_design(

@@ -17,7 +17,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ...model.errors import InputError
-from .problem_documents import problem
+from .problem_documents import problem_response
 from .security import KNOWN
 
 T = TypeVar("T")
@@ -47,24 +47,26 @@ class StrictInput:
             await self.app(scope, receive, send)
             return
         if "\0" in scope["path"] or b"%00" in scope["query_string"] or b"\0" in scope["query_string"]:
-            refused = problem(HTTPStatus.BAD_REQUEST, "an address must not contain NUL; got one; leave it out")
+            refused = problem_response(HTTPStatus.BAD_REQUEST, "an address must not contain NUL; got one; leave it out")
             await refused(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        body = await self._body(headers, receive)
+        body = await self._read_body(headers, receive)
         if body is None:
             rule = f"a request may have at most {self.most_body} bytes; got more; is it the right file?"
-            await problem(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})(scope, receive, send)
+            await problem_response(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})(
+                scope, receive, send
+            )
             return
         if body and _JSON.fullmatch(headers.get("content-type", "")):
             try:
-                scope[PARSED_BODY] = await read_in_turn(scope["app"], body, read_json, body, self.most_depth)
+                scope[PARSED_BODY] = await read_body_in_turn(scope["app"], body, read_json, body, self.most_depth)
             except InputError as error:
-                await problem(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
+                await problem_response(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
                 return
-        await self.app(scope, _again(body, receive), send)
+        await self.app(scope, _replaying_receive(body, receive), send)
 
-    async def _body(self, headers: Headers, receive: Receive) -> bytes | None:
+    async def _read_body(self, headers: Headers, receive: Receive) -> bytes | None:
         """Return the whole body; None if it is too large.
 
         Bytes are counted on arrival: the stated length may be wrong.
@@ -85,7 +87,7 @@ class StrictInput:
         return b"".join(parts)
 
 
-async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
+async def read_body_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
     """Return the content of a body; large bodies take turns, as parsing one blocks the interpreter for long."""
     if len(body) <= _LARGE:
         return read(*of)
@@ -94,7 +96,7 @@ async def read_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) 
         return await run_in_threadpool(read, *of)
 
 
-def _again(body: bytes, receive: Receive) -> Receive:
+def _replaying_receive(body: bytes, receive: Receive) -> Receive:
     """Return a receive function that replays the body and then passes on further messages."""
     first = True
 
@@ -114,7 +116,9 @@ def read_json(body: bytes, most_depth: int) -> Any:
     Raises `InputError` for values that `require_moderate` rejects, and for duplicate keys.
     """
     try:
-        value = json.loads(body, parse_constant=_no_number, parse_int=_parse_integer, object_pairs_hook=_unique)
+        value = json.loads(
+            body, parse_constant=_reject_constant, parse_int=_parse_integer, object_pairs_hook=_unique_keys
+        )
     except RecursionError:
         raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it") from None
     except InputError:
@@ -155,26 +159,26 @@ def _require_plain(item: object) -> None:
             raise InputError(f"a number must be finite; got {item}; leave it out if there is no bound")
     elif isinstance(item, int):
         if abs(item) > _LARGEST:
-            raise _too_large()
+            raise _body_too_large_error()
     elif item is not None:
         raise InputError(f"a body may only contain numbers and texts; got the date {item}; write it in quotes")
 
 
-def _too_large() -> InputError:
+def _body_too_large_error() -> InputError:
     return InputError("a whole number must be at most 2^53; got a larger one; give a smaller one")
 
 
-def _no_number(text: str) -> None:
+def _reject_constant(text: str) -> None:
     raise InputError(f"a number must be finite; got {text}; leave it out if there is no bound")
 
 
 def _parse_integer(text: str) -> int:
     if len(text) > _DIGITS:  # parsing time grows with the square of the length
-        raise _too_large()
+        raise _body_too_large_error()
     return int(text)
 
 
-def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]

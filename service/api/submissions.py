@@ -117,7 +117,7 @@ def clone_job(number: JobNumber, clone: Clone, queue: QueueDep) -> dict[str, Any
 
 
 @router.post("/jobs/{number}/widened", **_COPIED)
-def run_widened(stored_front: FrontDep, request: Widening, queue: QueueDep) -> dict[str, Any]:
+def submit_with_wider_limits(stored_front: FrontDep, request: Widening, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job with wider limits; the copy records its origin."""
     wider = [(limit.of, limit.side, limit.value) for limit in request.limits]
     return queue.submit_copy(
@@ -126,7 +126,7 @@ def run_widened(stored_front: FrontDep, request: Widening, queue: QueueDep) -> d
 
 
 @router.post("/jobs/{number}/nearby", **_COPIED)
-def run_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDep) -> dict[str, Any]:
+def submit_search_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDep) -> dict[str, Any]:
     """Queue a copy of a job that searches around given lengths, which may lie outside its ranges."""
     lengths = (request.crank_mm, request.rod_mm, request.offset_mm)
     tables = job_near_lengths(

@@ -29,13 +29,13 @@ class TurnQueue:
     async def turn(self) -> AsyncIterator[None]:
         """Wait for a turn; refuse with status 503 and a reason if too many wait or no turn comes soon."""
         if self._waiting >= _MOST:
-            raise self._busy(f"{_MOST} others wait")
+            raise self._busy_error(f"{_MOST} others wait")
         self._waiting += 1
         try:
             async with asyncio.timeout(_PATIENCE):
                 await self._free.acquire()
         except TimeoutError:
-            raise self._busy(f"all were busy for {_PATIENCE:g} s") from None
+            raise self._busy_error(f"all were busy for {_PATIENCE:g} s") from None
         finally:
             self._waiting -= 1
         try:
@@ -58,7 +58,7 @@ class RateLimit:
         self._left = float(per_minute)
         self._at = clock()
 
-    def wait(self) -> float:
+    def seconds_until_admitted(self) -> float:
         """Return 0 for an admitted request, or else the time until one can be admitted, s."""
         if not self.per_minute:
             return 0.0
@@ -74,7 +74,7 @@ class RateLimit:
 def limit_submissions(app: Any) -> None:
     """Refuse a submission above the rate limit per minute."""
     limit: RateLimit = app.state.submissions
-    wait = limit.wait()
+    wait = limit.seconds_until_admitted()
     if wait:
         seconds = math.ceil(wait)
         raise HTTPException(

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ..designs.changed_design import hold_equalities, nearest_holding, variation_of, with_numbers
+from ..designs.changed_design import design_with_numbers, hold_equalities, nearest_holding, variation_of
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
 from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
-from ..designs.violations import violated_by, violations_in_words
+from ..designs.violations import violations_in_words, violations_of
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
 from ..store.remarks import bookmarks_of
@@ -124,7 +124,7 @@ def show_curves(
 def show_requirements(stored_front: FrontDep, design: DesignNumber, store: StoreDep) -> RequirementsModel:
     """Return the ranges and constraints that apply to a design, including default minimum values."""
     stored = stored_front.design(design)
-    requirements = [RequirementModel(**vars(item), slack=item.slack) for item in requirements_of(stored.part)]
+    requirements = [RequirementModel(**vars(item), slack=item.slack_column) for item in requirements_of(stored.part)]
     return RequirementsModel(
         job=stored_front.job.id,
         number=design,
@@ -148,16 +148,16 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
         )
     lengths = (request.crank_mm / 1e3, request.rod_mm / 1e3, request.offset_mm / 1e3)
     stored = stored_front.design(design)
-    stored = with_numbers(stored, stored.values[:3], request.values)
+    stored = design_with_numbers(stored, stored.values[:3], request.values)
     if request.hold is not None:
         lengths = (nearest_holding if request.nearest else hold_equalities)(stored, lengths, request.hold)
-    stored = with_numbers(stored, lengths)
-    changed = variation_of(stored, stored_front.result, stored_front.minimised)
+    stored = design_with_numbers(stored, lengths)
+    changed = variation_of(stored, stored_front.result, stored_front.minimised_objectives)
     row, undefined = with_undefined_values(
         changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion
     )
     cycle = cycle_model(stored, request.angles) if request.angles else None
-    violated = violated_by(stored.mechanism, row)
+    violated = violations_of(stored.mechanism, row)
     return WhatIfModel(
         job=stored_front.job.id,
         number=design,

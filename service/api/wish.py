@@ -10,11 +10,11 @@ from pydantic import BaseModel, Field
 from ..designs.columns import all_columns
 from ..jobs.front_wish_history import stated_wishes
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
-from ..questions.wish.analysis import answered
+from ..questions.wish.analysis import wish_answer
 from ..store.remarks import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
-from .input_parameters import body_of
+from .input_parameters import body_model_of
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .settings import StoreDep
@@ -24,7 +24,7 @@ router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_res
 
 QUESTION = FRONT_OR_JOB_QUESTIONS["wish"]
 _DESIGN = Field(None, ge=1, le=2**31, description="reference for improve, keep and worsen, by its number")
-WishesGiven = body_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
+WishesGiven = body_model_of(QUESTION, "WishesGiven", design=(int | None, _DESIGN))
 
 
 class WishModel(BaseModel):
@@ -98,8 +98,8 @@ def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsP
     """
     if given.design is not None:
         stored_front.row(given.design)
-    solved = answered(
-        stored_front.wishes.wish(given.at, row=None if given.design is None else given.design - 1), given.at
+    solved = wish_answer(
+        stored_front.wish_starts.wish(given.at, row=None if given.design is None else given.design - 1), given.at
     )
     record: dict[str, Any] = solved.record(units)
     note_wish(store, stored_front.job.id, stated_wishes(stored_front.front, solved.search_result.wishes), given.design)

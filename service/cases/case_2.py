@@ -32,7 +32,7 @@ restitution."""
 _KG_MM2 = 1e6
 
 
-def numbers() -> Numbers:
+def values_by_key() -> Numbers:
     """Return the exact values by key."""
     exact: dict[str, float] = {}
     for name, length in (("crank", 0.140), ("rod", 0.310)):

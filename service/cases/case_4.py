@@ -21,7 +21,7 @@ def printed_table() -> dict[str, NDArray[np.float64]]:
     return {name: np.array([float(line[name]) for line in lines]) for name in lines[0]}
 
 
-def contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
+def position_error_contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
     """Return the exact first-order contributions, mm, by `COLUMNS`, at crank angles, rad; the total is signed.
 
     The paper's offset error is positive if its offset, which is the negative of ours, grows.
@@ -37,14 +37,14 @@ def contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
     return parts | {"total": sum(parts.values())}
 
 
-def numbers() -> Numbers:
+def values_by_key() -> Numbers:
     """Return the exact values by key."""
     theta = np.radians(printed_table()["crank_angle_deg"])
     at = LINKAGE.at(theta)
     columns = {
         "rod_angle": -np.degrees(at.rod_angle),
         "position": 1e3 * at.slider_position,
-        **contributions(theta),
+        **position_error_contributions(theta),
     }
     exact = {
         f"{name}_{row}": float(value) for name, values in columns.items() for row, value in enumerate(values, start=1)

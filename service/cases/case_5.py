@@ -58,7 +58,7 @@ def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = 
     return torque
 
 
-def numbers() -> Numbers:
+def values_by_key() -> Numbers:
     """Return the values of the model and those of the paper's formulas, by key."""
     feeder, half = linkage(0.020), linkage(0.010)
     inner, outer = (float(angle) for angle in feeder.dead_centre_angles)
@@ -115,12 +115,12 @@ def numbers() -> Numbers:
         "series_acceleration_0": float(series_acceleration(centred, 0.0, speed=SPEED)),
         "series_acceleration_60": float(series_acceleration(centred, sixty, speed=SPEED)),
         "series_torque_60": float(series_torque(centred, sixty, speed=SPEED, reciprocating_mass=reciprocating)),
-        **formulas(math.radians(30.0), 0.020),
+        **printed_formulas(math.radians(30.0), 0.020),
     }
     return Numbers(exact, printed)
 
 
-def formulas(t: float, e: float) -> dict[str, float]:
+def printed_formulas(t: float, e: float) -> dict[str, float]:
     """Return the values of the paper's equations as printed, in its own notation; lengths in m."""
     k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
     sine, cosine = math.sin(t), math.cos(t)

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 _OF = dict(zip(CASES, (case_1, case_2, case_3, case_4, case_5), strict=True))
 
 
-def collect(numbers: Sequence[int] = CASES) -> list[Case]:
+def collect_cases(numbers: Sequence[int] = CASES) -> list[Case]:
     """Return the cases with these numbers."""
-    return [read_case(number, _OF[number].numbers()) for number in numbers]
+    return [read_case(number, _OF[number].values_by_key()) for number in numbers]
 
 
 def show_case(screen: Console, case: Case, *, full: bool) -> None:
@@ -43,7 +43,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
             name = first.what.partition(" at ")[0]
             rows.add_row(name, f"{len(cells)} rows", "", first.unit, f"{_verdicts_text(cells)}{note}")
         else:
-            exact = "-" if first.exact is None else _digits_as_printed(first)
+            exact = "-" if first.exact is None else _exact_text(first)
             rows.add_row(first.what, first.printed or "-", exact, first.unit, f"{first.verdict}{note}")
     print_table(screen, rows)
     for index, reason in enumerate(reasons, start=1):
@@ -53,7 +53,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     screen.print()
 
 
-def counted(rows: Sequence[Row]) -> str:
+def verdict_counts(rows: Sequence[Row]) -> str:
     """Return the number of rows with each verdict, in words."""
     counts = Counter(row.verdict for row in rows)
     return ", ".join(f"{count} {_PLURAL.get(verdict, verdict)}" for verdict, count in counts.most_common())
@@ -64,10 +64,10 @@ _PLURAL = {"agrees": "agree", "misprint": "misprints", "differs": "differ"}
 
 def _verdicts_text(rows: Sequence[Row]) -> str:
     verdicts = {row.verdict for row in rows}
-    return f"all {len(rows)}: {verdicts.pop()}" if len(verdicts) == 1 else counted(rows)
+    return f"all {len(rows)}: {verdicts.pop()}" if len(verdicts) == 1 else verdict_counts(rows)
 
 
-def _digits_as_printed(row: Row) -> str:
+def _exact_text(row: Row) -> str:
     """Return the exact value with three digits more than printed, nine without a printed value."""
     assert row.exact is not None
     digits = sum(character.isdigit() for character in (row.printed or "").partition("e")[0].lstrip("-+0."))

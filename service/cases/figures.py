@@ -42,7 +42,7 @@ def polygon_figure() -> PanelFigure:
     )
 
 
-def over_turns(
+def labelled_curves_panel(
     title: str, *curves: tuple[str, Array], theta: Array = _TURN, styles: Sequence[int] = (0, 1, 2)
 ) -> Panel:
     """Return a panel of labelled curves over the crank angle, each in its own line style."""
@@ -55,12 +55,12 @@ def sieve_figure() -> PanelFigure:
     """Return rod and slider motion of the sieve over the cycle (Figs. 4 to 6 and 19 of case 2)."""
     at = case_2.SIEVE.at(_TURN, speed=case_2.SPEED)
     panels = (
-        over_turns("slider position, mm", ("", 1e3 * at.slider_position)),
-        over_turns("rod angle, deg", ("", np.degrees(at.rod_angle))),
-        over_turns("slider velocity, m/s", ("", at.slider_velocity)),
-        over_turns("rod angular velocity, rad/s", ("", at.rod_velocity)),
-        over_turns("slider acceleration, m/s²", ("", at.slider_acceleration)),
-        over_turns("rod angular acceleration, rad/s²", ("", at.rod_acceleration)),
+        labelled_curves_panel("slider position, mm", ("", 1e3 * at.slider_position)),
+        labelled_curves_panel("rod angle, deg", ("", np.degrees(at.rod_angle))),
+        labelled_curves_panel("slider velocity, m/s", ("", at.slider_velocity)),
+        labelled_curves_panel("rod angular velocity, rad/s", ("", at.rod_velocity)),
+        labelled_curves_panel("slider acceleration, m/s²", ("", at.slider_acceleration)),
+        labelled_curves_panel("rod angular acceleration, rad/s²", ("", at.rod_acceleration)),
     )
     return PanelFigure(
         "Case 2: vibrating sieve over the cycle (ME748 report, Figs. 4 to 6 and 19)", _SIEVE, panels, columns=2
@@ -72,7 +72,7 @@ def sensitivity_figure() -> PanelFigure:
     designs = (("as designed", case_2.SIEVE), ("crank 150 mm", case_2.LONGER_CRANK), ("rod 320 mm", case_2.LONGER_ROD))
     designed, *changed = ((name, linkage.at(_TURN, speed=case_2.SPEED)) for name, linkage in designs)
     panels = tuple(
-        over_turns(title, *((name, factor * getattr(at, field)) for name, at in (designed, variant)))
+        labelled_curves_panel(title, *((name, factor * getattr(at, field)) for name, at in (designed, variant)))
         for title, field, factor in (
             ("slider position, mm", "slider_position", 1e3),
             ("slider velocity, m/s", "slider_velocity", 1.0),
@@ -95,11 +95,15 @@ def in_line_figure() -> PanelFigure:
     paths = (Line("crank pin", pin[:, 0], pin[:, 1]), Line("slider pin", x, np.zeros_like(x), 1))
     panels = (
         Panel("paths: y, mm", "x, mm", paths, equal=True),
-        over_turns("slider position, mm", ("", x)),
-        over_turns("angular velocities, rad/s", ("crank", np.full_like(x, case_3.SPEED)), ("rod", at.rod_velocity)),
-        over_turns("slider velocity, m/s", ("", at.slider_velocity)),
-        over_turns("static forces, N", ("rod, compression", forces.rod_force), ("guide", forces.guide_reaction)),
-        over_turns("crank torque, N m", ("", forces.crank_torque)),
+        labelled_curves_panel("slider position, mm", ("", x)),
+        labelled_curves_panel(
+            "angular velocities, rad/s", ("crank", np.full_like(x, case_3.SPEED)), ("rod", at.rod_velocity)
+        ),
+        labelled_curves_panel("slider velocity, m/s", ("", at.slider_velocity)),
+        labelled_curves_panel(
+            "static forces, N", ("rod, compression", forces.rod_force), ("guide", forces.guide_reaction)
+        ),
+        labelled_curves_panel("crank torque, N m", ("", forces.crank_torque)),
     )
     return PanelFigure(
         "Case 3: in-line slider-crank, motion and static forces (its formulas for one example)",
@@ -114,7 +118,7 @@ def position_error_figure() -> PanelFigure:
     printed = case_4.printed_table()
     at = printed["crank_angle_deg"]
     fine = np.linspace(at[0], at[-1], 361)
-    exact = case_4.contributions(np.radians(fine))
+    exact = case_4.position_error_contributions(np.radians(fine))
     columns = dict(zip(case_4.COLUMNS, list(printed)[3:], strict=True))
     titles = {
         "crank": "from the crank, 0.1 %",
@@ -143,7 +147,7 @@ def offset_figure() -> PanelFigure:
     """Return acceleration and inertia torque over two cycles for the three offsets (Figs. 15 to 18 of case 5)."""
     theta = np.linspace(0.0, 4.0 * math.pi, 2881)
     exact, formula = (partial(torque, crank_angle=theta) for torque in (case_5.exact_torque, case_5.formula_torque))
-    two_turns = partial(over_turns, theta=theta)
+    two_turns = partial(labelled_curves_panel, theta=theta)
     centred = case_5.linkage(0.0)
     series = series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.masses()[1])
 
@@ -151,18 +155,18 @@ def offset_figure() -> PanelFigure:
         acceleration_m_s2: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration
         return acceleration_m_s2
 
-    def over_offsets(title: str, curve: Callable[[float], Array]) -> Panel:
+    def offsets_panel(title: str, curve: Callable[[float], Array]) -> Panel:
         return two_turns(title, *((f"e = {1e3 * offset:.0f} mm", curve(offset)) for offset in case_5.OFFSETS))
 
     panels = (
-        over_offsets("slider acceleration, exact, m/s²", acceleration),
+        offsets_panel("slider acceleration, exact, m/s²", acceleration),
         two_turns(
             "slider acceleration, e = 0, m/s²",
             ("exact", acceleration(0.0)),
             ("series, Eq. 52", series_acceleration(centred, theta, speed=case_5.SPEED)),
         ),
-        over_offsets("inertia torque, exact, N m", exact),
-        over_offsets("torque by k F tan(alpha), N m", formula),
+        offsets_panel("inertia torque, exact, N m", exact),
+        offsets_panel("torque by k F tan(alpha), N m", formula),
         two_turns(
             "inertia torque, e = 0, N m",
             ("exact", exact(0.0)),

@@ -87,13 +87,13 @@ def _table_rows(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [
         {
             **column,
-            "key": f"{column['key']}_{number}",
+            "key": f"{column['key']}_{parse_printed_number}",
             "what": f"{column['what']} at {line[table['at']]} deg",
-            "where": f"{table['where']}, row {number}",
+            "where": f"{table['where']}, row {parse_printed_number}",
             "printed": line[column["column"]],
         }
         for column in table["columns"]
-        for number, line in enumerate(read_table(table["file"]), start=1)
+        for parse_printed_number, line in enumerate(read_table(table["file"]), start=1)
     ]
 
 
@@ -106,7 +106,7 @@ def _row_of_entry(entry: Mapping[str, Any], numbers: Numbers) -> Row:
         verdict = "not printed"
     elif exact is None:
         verdict = "not checkable"
-    elif math.isclose(numbers.formulas[key], exact, rel_tol=_SAME) if formula else confirmed(entry, exact):
+    elif math.isclose(numbers.formulas[key], exact, rel_tol=_SAME) if formula else is_confirmed(entry, exact):
         verdict, why = "agrees", ""
     else:
         verdict = "misprint" if why.startswith("misprint") else "differs"
@@ -123,7 +123,7 @@ def _row_of_entry(entry: Mapping[str, Any], numbers: Numbers) -> Row:
     )
 
 
-def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
+def is_confirmed(entry: Mapping[str, Any], exact: float) -> bool:
     """Return whether a printed number equals the exact one to its printed accuracy.
 
     tolerance: allowed difference; by default one unit of the last printed digit, because sources truncate as well as
@@ -131,13 +131,13 @@ def confirmed(entry: Mapping[str, Any], exact: float) -> bool:
     """
     printed = str(entry["printed"])
     if printed.startswith("< "):
-        return exact < number(printed)
+        return exact < parse_printed_number(printed)
     decimals = int(entry.get("decimals", len(printed.partition(".")[2])))
     tolerance = float(entry.get("within", 10.0**-decimals))
     # Rounding errors in the difference itself must not decide the verdict.
-    return abs(exact - number(printed)) <= tolerance * (1.0 + 1e-9) + 1e-9 * abs(exact)
+    return abs(exact - parse_printed_number(printed)) <= tolerance * (1.0 + 1e-9) + 1e-9 * abs(exact)
 
 
-def number(printed: str) -> float:
+def parse_printed_number(printed: str) -> float:
     """Return the number in a printed text such as "about 80" or "< 50"."""
     return float(printed.removeprefix("about ").removeprefix("< ").replace("−", "-"))

@@ -71,10 +71,10 @@ class Connection:
                 response = self._http.request(method, path, **content)
             except httpx.TransportError as error:
                 if not (again or isinstance(error, _NEVER_SENT)):
-                    raise self.unreachable(error) from error
-                tries.wait(error)
+                    raise self.unreachable_error(error) from error
+                tries.wait_after_error(error)
                 continue
-            if response.status_code == _AWAY and again and tries.has_patience:
+            if response.status_code == _AWAY and again and tries.may_try_again:
                 tries.pause()
             elif response.status_code == 404 and method == "DELETE" and tries.made:
                 return response  # done by an earlier attempt whose answer was lost
@@ -108,7 +108,7 @@ class Connection:
                 raise refusal(response)
             yield response
 
-    def unreachable(self, error: Exception) -> ServiceError:
+    def unreachable_error(self, error: Exception) -> ServiceError:
         """Return the error for a service that does not respond."""
         return ServiceError(
             f"the service must answer; {self.url} gave: {str(error) or type(error).__name__}; check that "
@@ -125,7 +125,7 @@ class Tries:
         self._end = time.monotonic() + connection.patience
 
     @property
-    def has_patience(self) -> bool:
+    def may_try_again(self) -> bool:
         """Whether another attempt is allowed."""
         return time.monotonic() < self._end
 
@@ -134,10 +134,10 @@ class Tries:
         time.sleep(min(_LONGEST_PAUSE, _FIRST_PAUSE * 2.0**self.made, max(0.0, self._end - time.monotonic())))
         self.made += 1
 
-    def wait(self, error: Exception) -> None:
+    def wait_after_error(self, error: Exception) -> None:
         """Wait before the next attempt after an error. Raises `ServiceError` if patience has run out."""
-        if not self.has_patience:
-            raise error if isinstance(error, Away) else self._connection.unreachable(error) from error
+        if not self.may_try_again:
+            raise error if isinstance(error, Away) else self._connection.unreachable_error(error) from error
         self.pause()
 
 
@@ -179,7 +179,7 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
                         after = int(event["number"])
                         yield event
         except (httpx.TransportError, Away) as error:
-            tries.wait(error)
+            tries.wait_after_error(error)
         else:
             if tries.made:
                 tries.wait(

@@ -15,7 +15,7 @@ from ..questions.design_analysis import analysis_of, judge_design, quantities_of
 from ..questions.design_question import BoundQuestion
 from ..questions.discovery import ALL, INPUTS, TOPIC_OF_INPUT, TOPICS, chosen_topics
 from ..runs.result import Row, json_text
-from ..runs.run_folder import disk, write_file
+from ..runs.run_folder import translate_disk_errors, write_file
 from ..text.options import (
     DesignOfRun,
     Dimensions,
@@ -100,14 +100,14 @@ def analyse(
         mechanism = replace(mechanism, speed=speed_option(setting.speed))
     custom = () if problem is None else problem.own
     row, undefined = quantities_of_design(mechanism, linkage, custom)
-    notes = _leave_out(row, mechanism, alone=problem is None)
+    notes = _remove_undefined(row, mechanism, alone=problem is None)
     with Interruption() as interruption:
         analysis = analysis_of(
             row,
             mechanism,
             linkage,
             topics,
-            further_topics=() if files.measured is None else (_measured(files.measured, mechanism, linkage),),
+            further_topics=() if files.measured is None else (_measured_question(files.measured, mechanism, linkage),),
             options=options,
             notes=notes,
             cancelled=interruption.requested,
@@ -136,11 +136,13 @@ def analyse(
         raise InputError("; ".join(analysis.refused))
 
 
-def _measured(file: Path, mechanism: Mechanism, linkage: Linkage) -> BoundQuestion:
+def _measured_question(file: Path, mechanism: Mechanism, linkage: Linkage) -> BoundQuestion:
     from ..designs.measured_file import measured_text, read_measured
     from ..questions.measured import MEASURED
 
-    return MEASURED.for_design(mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)})
+    return MEASURED.bind_to_design(
+        mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)}
+    )
 
 
 def _topic_options(texts: Mapping[str, str | None], topics: tuple[str, ...]) -> dict[str, dict[str, Any]]:
@@ -170,7 +172,7 @@ def _draw(
     from ..figures.style import save
 
     title = "Design" if problem is None else problem.name
-    with disk(folder), show_activity("drawing the figures"):
+    with translate_disk_errors(folder), show_activity("drawing the figures"):
         folder.mkdir(parents=True, exist_ok=True)
         datasheet = design_datasheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
         save(datasheet, folder / "design.png")
@@ -187,7 +189,7 @@ def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: Syst
     print_message(f"{file}: the cycle at {len(text.splitlines()) - 1} crank angles")
 
 
-def _leave_out(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
+def _remove_undefined(row: Row, mechanism: Mechanism, *, alone: bool) -> list[str]:
     """Remove numbers that are undefined without a job or a speed; return the reasons in words."""
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES

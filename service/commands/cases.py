@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..runs.result import json_text
-from ..runs.run_folder import disk
+from ..runs.run_folder import translate_disk_errors
 from ..text.options import Figures, Json
 from ..text.screen import console, print_message, print_output
 
@@ -26,11 +26,11 @@ def cases(
     """
     from dataclasses import asdict
 
-    from ..cases.case_table import collect, counted, show_case
+    from ..cases.case_table import collect_cases, show_case, verdict_counts
     from ..cases.printed_values import CASES
 
     chosen = CASES if case is None else (case,)
-    tables = collect(chosen)
+    tables = collect_cases(chosen)
     rows = [row for case_table in tables for row in case_table.rows]
     if json:
         print_output(json_text({"cases": [asdict(case_table) for case_table in tables]}))
@@ -38,10 +38,10 @@ def cases(
         screen = console()
         for case_table in tables:
             show_case(screen, case_table, full=case is not None)
-        screen.print(f"{len(rows)} numbers: {counted(rows)}", style="bold", soft_wrap=True)
+        screen.print(f"{len(rows)} numbers: {verdict_counts(rows)}", style="bold", soft_wrap=True)
     if figures is not None:
         from ..cases.figures import draw_cases
 
-        with disk(figures):
+        with translate_disk_errors(figures):
             for path in draw_cases(chosen, figures):
                 print_message(f"figure: {path}")

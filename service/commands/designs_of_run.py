@@ -95,7 +95,7 @@ class Tables:
     json: Annotated[Output, "Write the whole run as JSON; - is standard output."] = None
 
     @property
-    def requested(self) -> bool:
+    def is_any_requested(self) -> bool:
         """Whether any file is requested."""
         return self.csv is not None or self.json is not None
 
@@ -143,7 +143,7 @@ def export(
     csv, json, conditions = tables.csv, tables.json, selection.where
     if (choice.design is not None or choice.chooses_by_value) and not files:
         raise InputError(f"one design needs at least one of {', '.join(_FILES)}; got none; add one")
-    if not tables.requested and not files:
+    if not tables.is_any_requested and not files:
         raise InputError(
             f"nothing to export; give --csv FILE, --json FILE, or for one design {', '.join(_FILES)}, each with a FILE"
         )
@@ -151,7 +151,7 @@ def export(
         raise InputError("only one of --csv and --json may go to standard output; name a file for the other")
     if at is not None and not files.keys() & {"--dxf", "--svg"}:
         raise InputError("--at needs --dxf or --svg; got neither; add one, or leave --at out")
-    if selection.sorts and not tables.requested:
+    if selection.sorts and not tables.is_any_requested:
         raise InputError("--sort and --reverse need --csv or --json; got neither; add one, or leave them out")
     angle = option_value("--at", at, ANGLE)
     for option, file in files.items():
@@ -161,7 +161,7 @@ def export(
     folder, result = run_of(run, runs)
     contents: dict[Path, bytes] = {}
     if files:
-        of_table = choice.design is not None and tables.requested
+        of_table = choice.design is not None and tables.is_any_requested
         number = choice.number(result, run, None if of_table else conditions)
         stored = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}

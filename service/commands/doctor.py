@@ -16,7 +16,7 @@ import typer
 
 from ...model.errors import NotFound, SlidercrankError
 from ...objectives.count_text import counted
-from ..jobs.stores import Address, has_store, is_named, printable_store_address, store_address
+from ..jobs.stores import Address, has_store, is_store_specified, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
 from ..runs.run_folder import runs_place
@@ -50,7 +50,7 @@ def doctor(
     address = store_address(store, runs)
     if backup is not None:
         _back_up(store, runs, backup)
-    checks = diagnose(address, runs_place(runs), named=is_named(store))
+    checks = diagnose(address, runs_place(runs), named=is_store_specified(store))
     healthy = all(check.grade != "problem" for check in checks)
     if json:
         print_output(json_text({"healthy": healthy, "checks": [check._asdict() for check in checks]}))
@@ -123,9 +123,9 @@ def _check_store(address: str, named: bool) -> Iterator[Check]:
 
 def _check_access(file: Path) -> Iterator[Check]:
     """Check who may access a store file, which holds everything that the service's token protects."""
-    from ..store.database import may_use, remedy_of_rights
+    from ..store.database import is_readable_and_writable, remedy_of_rights
 
-    if not may_use(file):
+    if not is_readable_and_writable(file):
         text = f"{file} is not writable, so no job can make progress; {remedy_of_rights(file)}"
         yield Check("permissions", "problem", text)
     elif os.name == "posix" and (mode := file.stat().st_mode & 0o077):
@@ -134,13 +134,13 @@ def _check_access(file: Path) -> Iterator[Check]:
 
 
 def _check_database(address: str, database: Database) -> Iterator[Check]:
-    from ..store.schema_version import strangers, versions
+    from ..store.schema_version import foreign_tables_text, versions
     from ..store.upkeep import clock_ahead, damages, server_version
 
     if not database.sqlite:
         database.require_ready()
     yield Check("store", "ok", f"{database.name} answers, {server_version(database)}")
-    foreign = strangers(database)
+    foreign = foreign_tables_text(database)
     if foreign:
         text = f"they belong to another program ({foreign}); name another store with --store"
         yield Check("tables", "problem", text)
@@ -171,7 +171,7 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
     from ..store.records import SILENT
 
     with Store(address) as store:
-        counts, active = store.counts(), store.workers_at_work()
+        counts, active = store.count_by_state(), store.workers_at_work()
         silent = max(0, len(store.workers()) - active)
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]

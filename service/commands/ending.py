@@ -28,7 +28,7 @@ class NoDesigns(InfeasibleError):
         self.result = result
 
 
-def with_infeasible_json(command: Callable[..., None]) -> Callable[..., None]:
+def print_infeasible_as_json(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command that, with --json, prints infeasible input as the JSON of a run without designs."""
 
     @wraps(command)

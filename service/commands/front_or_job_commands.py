@@ -12,17 +12,17 @@ import typer
 
 from ...model.errors import InputError
 from ...model.file_names import path_text
-from ..designs.display_units import result_in
+from ..designs.display_units import convert_result
 from ..questions.compare.runs import ComparedRun, compared_run
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import Result, csv_text, json_text
-from ..runs.run_folder import disk, write_file
+from ..runs.run_folder import translate_disk_errors, write_file
 from ..text.options import Figures, JobFile, Json, Number, Run, Runs, Units
 from ..text.screen import console, print_message, print_output, print_record, show_activity, write_figure
 from .ending import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, end_without_design
 from .input_options import options_of, search_listener, with_question_help
-from .job_or_run import turning_problem
+from .job_or_run import rotating_problem
 from .run_choice import front_of_run, run_of
 
 if TYPE_CHECKING:
@@ -75,10 +75,10 @@ def round(
         for note in rounded.notes:
             print_message(f"note: {note}")
     if not rounded.is_satisfied:
-        end_without_design(record["message"] + _remedy(record["designs"]))
+        end_without_design(record["message"] + _allowance_options(record["designs"]))
 
 
-def _remedy(designs: list[dict[str, Any]]) -> str:
+def _allowance_options(designs: list[dict[str, Any]]) -> str:
     """Return the options that would accept the designs, amounts rounded up; empty if there are no designs."""
     largest_miss: dict[str, tuple[float, str]] = {}
     for miss in (miss for row in designs for miss in row["misses"] if miss["amount"] > miss["allowed"]):
@@ -151,7 +151,9 @@ def compare(
     answer = COMPARE.ask(compared, inputs, words=COMPARE.flags)
     if not answer.is_satisfied:
         raise InputError(answer.message)
-    picture = None if figures is None else _draw([(one, result_in(one.result, units)) for one in compared], figures)
+    picture = (
+        None if figures is None else _draw([(one, convert_result(one.result, units)) for one in compared], figures)
+    )
     print_record(json, answer.record(units), lambda screen: print_blocks(screen, answer.blocks, units))
     if picture is not None:
         print_message(f"{picture}")
@@ -176,7 +178,7 @@ def _draw(compared: Sequence[tuple[ComparedRun, Result]], folder: Path) -> Path:
         )
         for run, result in compared
     ]
-    with disk(folder):
+    with translate_disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
         save(comparison_matrix(drawn, objectives), folder / "comparison.png")
     return folder / "comparison.png"
@@ -192,7 +194,7 @@ def sweep(
     json: Json = False,
 ) -> None:
     """Answer the question and draw the answer."""
-    problem = turning_problem(job, "sweep")
+    problem = rotating_problem(job, "sweep")
     swept = SWEEP.ask(problem, inputs, words=SWEEP.flags)
     print_record(json, swept.record(units)["rows"], lambda screen: print_blocks(screen, swept.blocks, units))
     for note in () if json else swept.notes:

@@ -38,7 +38,7 @@ def check(
     screen = console()
     screen.print(f"{job} is a valid job: {summary['name']}", style="bold", soft_wrap=True)
     parts: dict[str, list[str]] = {
-        "change": [_in_words(**change) for change in summary["changes"]],
+        "change": [_change_line(**change) for change in summary["changes"]],
         **{name: summary[name] for name in ("given", "files", "tolerances", "costs", "variables")},
         "requirements": summary["rules"],
         "objectives": summary["objectives"],
@@ -53,7 +53,7 @@ def check(
             screen.print(f"  {title if index == 0 else '':<14}{line}", soft_wrap=True)
 
 
-def _in_words(sentence: str, path: str, value: Any, label: str) -> str:
+def _change_line(sentence: str, path: str, value: Any, label: str) -> str:
     """Return a change that resolves a warning, as a line of a job file."""
     from ...optimise.job.messages import toml_text
 

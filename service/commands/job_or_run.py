@@ -63,7 +63,7 @@ def machine_of(
     return Machine(mechanism, Linkage(crank, rod, offset, mechanism.branch), problem)
 
 
-def turning_problem(job: Path, command: str) -> Problem:
+def rotating_problem(job: Path, command: str) -> Problem:
     """Return the problem of a job file for the analysis of a given design; the job need not be feasible.
 
     Raises `InputError` for a swinging crank, phrased for a command.

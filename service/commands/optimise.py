@@ -17,10 +17,10 @@ from ...model.errors import InputError, OutputLost, StoreError
 from ...model.extras import is_installed, required
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..designs.display_units import result_in
+from ..designs.display_units import convert_result
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import json_text
-from ..runs.run_folder import RunFolder, disk, runs_place
+from ..runs.run_folder import RunFolder, runs_place, translate_disk_errors
 from ..text.design_options import SettingOptions
 from ..text.options import Json, Runs, Units
 from ..text.screen import console, print_message, print_output, progress_bar, show_activity
@@ -46,7 +46,7 @@ class Places:
     runs: Runs = None
     store: Address = None
 
-    def command_again(self, run: str) -> str:
+    def resume_command(self, run: str) -> str:
         """Return the command that resumes a run, with the given locations but without passwords."""
         from ..store.address import without_secrets
 
@@ -92,7 +92,7 @@ def optimise(
         raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
         required("matplotlib", "figures need")
-    options, place = engine.checked(), runs_place(places.runs)
+    options, place = engine.validated(), runs_place(places.runs)
     with contextlib.ExitStack() as opened:
         listed = True
         if job is not None:
@@ -101,10 +101,10 @@ def optimise(
             begin = new_run(jobs, place, problem, tables, files)
         else:
             jobs = opened.enter_context(open_store(places.store, places.runs))
-            begin = resumed_run(jobs, place, resume or "", _problem_again)
+            begin = resumed_run(jobs, place, resume or "", _problem_to_resume)
         interruption = opened.enter_context(Interruption())
         run, problem, claim = opened_run = opened.enter_context(begin)
-        again = places.command_again(claim.job.run) if listed else ""
+        again = places.resume_command(claim.job.run) if listed else ""
         opened.enter_context(renewing_claim(claim, again=again))
         run.log(f"command: {' '.join(map(without_secrets, sys.argv[1:]))}")
         run.log(f"job {claim.job.id} in store {jobs.name}" if listed else "in a temporary store")
@@ -115,7 +115,7 @@ def optimise(
         with show_activity("writing the designs"):
             result = keep_front(opened_run, front)
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
-        result_in_units, lost = result_in(result, units, problem), None
+        result_in_units, lost = convert_result(result, units, problem), None
         try:
             if json:
                 print_output(json_text(result_in_units.record()))
@@ -180,12 +180,12 @@ def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, An
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):
         print_message(f"note: {note}")
-    with disk(job.parent):
+    with translate_disk_errors(job.parent):
         files = files_of(job, needed_files(job))
     return *with_settings(problem, tables, settings.overrides), files
 
 
-def _problem_again(tables: Mapping[str, Any], folder: Path) -> Problem:
+def _problem_to_resume(tables: Mapping[str, Any], folder: Path) -> Problem:
     from ...optimise.job import parse_job
 
     return parse_job(tables, folder=folder)
@@ -194,7 +194,7 @@ def _problem_again(tables: Mapping[str, Any], folder: Path) -> Problem:
 def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
     from ..figures.front import draw_front
 
-    with show_activity("drawing the figures"), disk(run.figures):
+    with show_activity("drawing the figures"), translate_disk_errors(run.figures):
         for file in draw_front(front, run.figures, units):
             run.log(f"figures/{file.name}")
             if interruption.requested():

@@ -10,15 +10,25 @@ from typing import Annotated, Any
 import typer
 
 from ...objectives.kinds import System
-from ..designs.display_units import record_in
+from ..designs.display_units import convert_record
 from ..questions.design_question import BoundQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
 from ..runs.result import csv_text
 from ..runs.run_folder import write_file
-from ..text.options import DesignOfRun, Dimensions, JobFile, JobOrRun, Json, Runs, Units, drawable, require_ending
+from ..text.options import (
+    DesignOfRun,
+    Dimensions,
+    JobFile,
+    JobOrRun,
+    Json,
+    Runs,
+    Units,
+    require_drawable,
+    require_ending,
+)
 from ..text.screen import print_message, print_record, show_activity, write_figure
 from .input_options import option_of
-from .job_or_run import machine_of, turning_problem
+from .job_or_run import machine_of, rotating_problem
 
 
 def design_command(name: str) -> Callable[..., None]:
@@ -36,20 +46,20 @@ def design_command(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        curves, figure = files.get("curves"), drawable(files.get("figure"))
+        curves, figure = files.get("curves"), require_drawable(files.get("figure"))
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {item.name: item.flag for item in question.inputs}
-        bound_question = question.for_problem(mechanism, linkage, problem, inputs, words)
-        notes = _print_numbers(bound_question, units, json)
+        bound_question = question.bind_to_problem(mechanism, linkage, problem, inputs, words)
+        notes = _print_answer(bound_question, units, json)
         for note in () if json else notes:
             print_message(note)
         if curves is not None:
-            write_file(curves, csv_text(bound_question.written("curves", units)))
+            write_file(curves, csv_text(bound_question.output_of("curves", units)))
             print_message(f"{curves}: {says.curves}")
         if figure is not None:
-            write_figure(figure, lambda: bound_question.written("figure", units))
+            write_figure(figure, lambda: bound_question.output_of("figure", units))
 
     helps = (
         {"curves": f"Write {says.curves} as CSV.", "figure": "Draw the curves to a PNG file."} if says.curves else {}
@@ -77,18 +87,20 @@ def sizing_command(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        curves, folder = files.get("curves"), drawable(files.get("figures"))
+        curves, folder = files.get("curves"), require_drawable(files.get("figures"))
         require_ending("--curves", curves, ".csv")
-        problem = turning_problem(job, says.called or name)
+        problem = rotating_problem(job, says.called or name)
         words = {item.name: item.flag for item in question.inputs}
-        bound_question = question.for_problem(problem.mechanism.nominal, size.linkage(problem), problem, inputs, words)
-        for note in _print_numbers(bound_question, units, json):
+        bound_question = question.bind_to_problem(
+            problem.mechanism.nominal, size.linkage(problem), problem, inputs, words
+        )
+        for note in _print_answer(bound_question, units, json):
             print_message(note)
         if curves is not None:
-            write_file(curves, csv_text(bound_question.written("curves", units)))
+            write_file(curves, csv_text(bound_question.output_of("curves", units)))
             print_message(f"{curves}: {says.curves}")
         if folder is not None and says.figure is not None:
-            write_figure(folder / f"{says.figure[0]}.png", lambda: bound_question.written("figure", units), units)
+            write_figure(folder / f"{says.figure[0]}.png", lambda: bound_question.output_of("figure", units), units)
 
     written = [_file_option("curves", f"Write {says.curves} as CSV.")] if says.curves else []
     if says.figure:
@@ -103,14 +115,14 @@ def sizing_command(name: str) -> Callable[..., None]:
     return command
 
 
-def _print_numbers(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
+def _print_answer(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
     """Print the answer; return additional messages."""
     from ..render.terminal import print_blocks
 
     with show_activity("computing"):
         record = bound_question.numbers()
     print_record(
-        json, record_in(record, units), lambda screen: print_blocks(screen, bound_question.blocks(record), units)
+        json, convert_record(record, units), lambda screen: print_blocks(screen, bound_question.blocks(record), units)
     )
     return bound_question.notes(record)
 

@@ -14,10 +14,10 @@ from ...optimise.front.progress import stage_text
 from ..jobs.stores import (
     Address,
     Name,
+    existing_store,
     find_job,
     has_store,
     printable_store_address,
-    store_that_is_there,
     warn_without_workers,
 )
 from ..render.terminal import table
@@ -52,7 +52,7 @@ def jobs(
             )
     matching: list[Job] = []
     if has_store(store):
-        with store_that_is_there(store) as opened:
+        with existing_store(store) as opened:
             states: list[State] = state or []  # type: ignore[assignment] # looked at above
             matching = opened.jobs(states=states, name=name, limit=limit)
             if any(job.state == "queued" for job in matching):
@@ -74,20 +74,20 @@ def cancel(job: Name, store: Address = None, json: Json = False) -> None:
 
     The designs found so far are kept, and `resume` continues the job. Its worker responds within 2 s.
     """
-    with store_that_is_there(store) as opened:
+    with existing_store(store) as opened:
         after = opened.cancel(find_job(opened, job).id)
     _print_job(after, json, "asked to stop" if after.cancel_asked and after.state == "running" else "")
 
 
 def resume(job: Name, store: Address = None, json: Json = False) -> None:
     """Queue a cancelled or failed job again; it continues after its last completed round."""
-    with store_that_is_there(store) as opened:
+    with existing_store(store) as opened:
         _print_job(opened.resume(find_job(opened, job).id), json)
 
 
 def delete(job: Name, store: Address = None, json: Json = False) -> None:
     """Permanently delete an ended job with all its data."""
-    with store_that_is_there(store) as opened:
+    with existing_store(store) as opened:
         deleted = find_job(opened, job)
         opened.delete(deleted.id)
     print_output(json_text({"deleted": deleted.id}) if json else f"job {deleted.id}: {deleted.name}, deleted\n")

@@ -13,7 +13,7 @@ import typer
 from ...model.errors import InputError, SlidercrankError
 from ...objectives.kinds import System
 from ..designs.choice_options import require_single_choice
-from ..designs.display_units import result_in
+from ..designs.display_units import convert_result
 from ..designs.selection import chosen_rows, no_match_message
 from ..jobs.find_run import find_run
 from ..runs.result import Result
@@ -58,7 +58,7 @@ def result_in_units(result: Result, units: System, folder: Path | None) -> Resul
     if units != "metric" and folder is not None and result.trade_offs:
         with contextlib.suppress(SlidercrankError):  # its job is from another version
             problem = problem_of(folder, result)
-    return result_in(result, units, problem)
+    return convert_result(result, units, problem)
 
 
 Where = Annotated[

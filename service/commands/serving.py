@@ -77,7 +77,7 @@ class WorkOptions:
             terms=Terms(
                 limits=Limits(seconds=self.most_seconds, evaluations=self.most_evaluations, memory=memory),
                 grace=self.grace,
-                engine=engine.checked().shared_by(max(1, processes)),
+                engine=engine.validated().divided_among(max(1, processes)),
                 allowed_quantities=tuple(sorted(set(self.allow_quantity or ()))),
             ),
             log_format=self.log_format,
@@ -153,17 +153,17 @@ def serve(
     """
     from ..api.app import MODULES, computing_app, create_app
     from ..api.computing import Computing
-    from ..api.server import listen, names_of, run_server, url_of
+    from ..api.server import host_names_of, listen, run_server, url_of
     from ..api.settings import Settings
     from ..workers.heartbeat import end_children
     from ..workers.supervisor import Supervisor
 
-    secret, is_generated = _token(access.token, access.no_token, host)
+    secret, is_generated = _choose_token(access.token, access.no_token, host)
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers
     work = options.settings(store_address(store), engine, processes)
     settings = Settings(
         token=secret,
-        hosts=(*names_of(host), *(access.allow_host or ())),
+        hosts=(*host_names_of(host), *(access.allow_host or ())),
         submissions_per_minute=access.submissions,
         allowed_quantities=frozenset(work.terms.allowed_quantities),
         limits=work.terms.limits,
@@ -181,22 +181,22 @@ def serve(
         )
         set_up_logs(work.log_format)
         with closing(computing), Supervisor(work, processes) as supervisor:
-            run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.leave)
+            run_server(app, socket, stop_requested=termination.requested, stopping=supervisor.request_stop)
     end_children()  # the fork server takes half a second to exit on its own
-    _leave_requests()
+    _exit_despite_requests()
 
 
-def _leave_requests() -> None:
+def _exit_despite_requests() -> None:
     """Exit immediately despite running requests: no client waits for answers, and all jobs are back in the queue."""
-    from ..workers.heartbeat import leave
+    from ..workers.heartbeat import end_process_tree
 
     if any(not thread.daemon and thread is not threading.main_thread() for thread in threading.enumerate()):
         logging.shutdown()
         sys.stdout.flush()
-        leave(0)
+        end_process_tree(0)
 
 
-def _token(token: str | None, without_token: bool, host: str) -> tuple[str | None, bool]:
+def _choose_token(token: str | None, without_token: bool, host: str) -> tuple[str | None, bool]:
     """Return the token, and whether it was generated here. Raises `InputError` for a token that is too weak."""
     import secrets
 
@@ -234,10 +234,10 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
     compile_ahead(*SEARCH)
     os.environ.pop(STORE_VARIABLE, None)
-    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()), interrupted=_leave)
+    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()), interrupted=_exit_despite_input)
 
 
-def _leave() -> None:
+def _exit_despite_input() -> None:
     """Exit immediately, although a thread still reads standard input."""
     print_message("slidercrank: interrupted")
     os._exit(INTERRUPTED)

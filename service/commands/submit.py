@@ -13,12 +13,12 @@ import typer
 
 from ...model.errors import StoreError
 from ...optimise.front.progress import Progress, stage_text
-from ..jobs.stores import Address, Name, find_job, open_store, store_that_is_there, warn_without_workers
+from ..jobs.stores import Address, Name, existing_store, find_job, open_store, warn_without_workers
 from ..resources.memory import size_of
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
 from ..text.screen import console, error_console, print_message, print_output, progress_bar
-from ..text.streams import reader_left
+from ..text.streams import has_reader_left
 from .ending import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def watch(job: Name, store: Address = None, json: Json = False) -> None:
 
     The exit code is that of the job, as for optimise; 2 if the job failed. Ctrl-C stops watching; the job continues.
     """
-    with store_that_is_there(store) as opened:
+    with existing_store(store) as opened:
         watched = find_job(opened, job)
         if watched.state == "queued":
             warn_without_workers(opened)
@@ -130,7 +130,7 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
         with _event_writer(json) as show:
             for event in events_until_end(store, job.id):
                 show(event)
-                if reader_left():
+                if has_reader_left():
                     return EXIT_CODES["done"]
         ended = store.job(job.id)
         if not json:
@@ -188,12 +188,12 @@ def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
                 bar(Progress(**event.data))
             elif not event.data.get("steps") or event.at - last >= _SELDOM:
                 last = event.at if event.data.get("steps") else 0.0
-                print_output(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {in_words(event)}\n")
+                print_output(f"{time.strftime('%H:%M:%S', time.localtime(event.at))}  {event_in_words(event)}\n")
 
         yield show
 
 
-def in_words(event: Event) -> str:
+def event_in_words(event: Event) -> str:
     """Return an event in words, on one line."""
     data: dict[str, Any] = event.data
     if event.kind == "progress":

@@ -12,7 +12,7 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.file_names import path_text
 from ...objectives.kinds import System
-from ..jobs.front_wish_history import keep_wish, stated_wishes, wishes_of_run, words_of
+from ..jobs.front_wish_history import keep_wish, stated_wishes, wishes_as_entered, wishes_of_run
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
@@ -58,7 +58,7 @@ def wish(
         raise InputError(f"give either a wish or --list; got {received}; write it like {_EXAMPLE}")
     folder, front = front_of_run(run, runs, number)
     if earlier:
-        _list(folder, front, units, json=json)
+        _print_recorded_wishes(folder, front, units, json=json)
         return
     with show_activity("wishing"):
         row = None if number is None else number - 1
@@ -74,10 +74,10 @@ def wish(
         end_without_design(solved.message)
 
 
-def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
+def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
     """Print the wishes recorded for a run, newest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
-    from ..questions.wish.analysis import answered, wish_in_words
+    from ..questions.wish.analysis import wish_answer, wish_in_words
 
     wishes = wishes_of_run(folder)
     with show_activity("wishing"):
@@ -85,9 +85,9 @@ def _list(folder: Path, front: ParetoFront, units: System, *, json: bool) -> Non
         solved_wishes = []
         for made_wish in wishes:
             assert solver is not None
-            words = words_of(front, made_wish.wishes)
+            words = wishes_as_entered(front, made_wish.wishes)
             row = None if made_wish.design is None else made_wish.design - 1
-            solved_wishes.append((made_wish.time, words, answered(solver.wish(words, row=row), words)))
+            solved_wishes.append((made_wish.time, words, wish_answer(solver.wish(words, row=row), words)))
     if json:
         records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
         print_output(json_text({"run": path_text(folder), "made": records}))

@@ -17,7 +17,7 @@ from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of
-from .choice_options import minimised_values, target_sizes
+from .choice_options import minimised_values, target_scales
 from .judged_requirements import ranges_of, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
@@ -47,7 +47,7 @@ class Variation:
     dominates: list[int]
 
 
-def with_numbers(
+def design_with_numbers(
     design: StoredDesign, lengths: Sequence[float], values: Mapping[str, float] | None = None
 ) -> StoredDesign:
     """Return a design with other lengths, m, and other extra variables, by column in its unit; the rest is unchanged.
@@ -105,7 +105,7 @@ def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dic
     bounded = np.isfinite(finite).all(axis=1)
     if not bounded.any() or not np.isfinite(values).all():
         return {"dominated_by": [], "dominates": []}
-    span = column_ranges(finite[bounded], size=target_sizes(result))
+    span = column_ranges(finite[bounded], size=target_scales(result))
     gain = (values - finite) / np.where(span > 0.0, span, 1.0)  # positive where the front design is better
     positions = {}
     for name, way in (("dominated_by", gain), ("dominates", -gain)):
@@ -127,10 +127,10 @@ def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
     values = np.array([*lengths, *design.values[3:]])
     if not equal:
         return lengths
-    if not _moves(part, values):
-        raise _refused(design, equal, moved, values[place])
+    if not _rotates_or_swings(part, values):
+        raise _no_solution_error(design, equal, moved, values[place])
     for _ in range(_ROUNDS):
-        misses, slopes, sizes = _misses(design, equal, values)
+        misses, slopes, sizes = _equality_residuals(design, equal, values)
         if not np.isfinite(misses).all() or not np.isfinite(slopes).all():
             break
         if (np.abs(misses) <= _CONVERGED * sizes).all():
@@ -138,13 +138,13 @@ def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
         step = np.zeros(len(values))
         step[free] = -np.linalg.lstsq(slopes[:, free] / sizes[:, None], misses / sizes, rcond=1e-10)[0]
         for _ in range(_HALVINGS):
-            if _moves(part, values + step):
+            if _rotates_or_swings(part, values + step):
                 break
             step *= 0.5
         else:
             break
         values = values + step
-    raise _refused(design, equal, moved, values[place])
+    raise _no_solution_error(design, equal, moved, values[place])
 
 
 def nearest_holding(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
@@ -174,7 +174,7 @@ def nearest_holding(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
     return reached
 
 
-def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
+def _equality_residuals(design: StoredDesign, equal: list[Constraint], values: Array) -> tuple[Array, Array, Array]:
     """Return the equality residuals (m,), their derivatives (m, 3 + k), and the magnitudes of the targets (m,)."""
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
@@ -183,7 +183,7 @@ def _misses(design: StoredDesign, equal: list[Constraint], values: Array) -> tup
     return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
-def _moves(part: Problem, values: Array) -> bool:
+def _rotates_or_swings(part: Problem, values: Array) -> bool:
     """Return whether a design rotates fully, or swings as far as its job requires."""
     if part.motion is not None:
         return bool(moving(part.mechanism, part.motion, values[None])[0])
@@ -191,7 +191,7 @@ def _moves(part: Problem, values: Array) -> bool:
     return bool(crank > 0.0 and rod > crank + abs(offset))
 
 
-def _refused(design: StoredDesign, equal: list[Constraint], moved: str, value: float) -> InputError:
+def _no_solution_error(design: StoredDesign, equal: list[Constraint], moved: str, value: float) -> InputError:
     rules = []
     for constraint in equal:
         quantity = design.part.quantity(constraint.quantity)

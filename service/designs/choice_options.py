@@ -50,7 +50,7 @@ def chosen_row(
     order = None if lexicographic is None else _order(lexicographic, result.objectives)
     if not rows:
         return None
-    values, sizes = minimised_values(result)[list(rows)], target_sizes(result)
+    values, sizes = minimised_values(result)[list(rows)], target_scales(result)
     if weights is not None:
         return rows[choose_design.topsis(values, weights, size=sizes)]
     if order is not None:
@@ -62,11 +62,11 @@ def minimised_values(result: Result) -> Array:
     """Return the objectives (n, m) of a stored run, all minimised, in display units."""
     import numpy as np
 
-    values = [[objective.rank(row) for objective in result.objectives] for row in result.designs]
+    values = [[objective.minimised_value(row) for objective in result.objectives] for row in result.designs]
     return np.array(values, dtype=np.float64).reshape(len(result.designs), len(result.objectives))
 
 
-def target_sizes(result: Result) -> list[float]:
+def target_scales(result: Result) -> list[float]:
     """Return the targets of objectives, in display units, or 0: the scale for rounding errors in their distances."""
     return [abs(objective.target or 0.0) for objective in result.objectives]
 
@@ -75,7 +75,7 @@ def _weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
     """Return a weight for each objective, zero for omitted ones."""
     weights = dict.fromkeys(range(len(objectives)), 0.0)
     named: set[int] = set()
-    for part in _parts(text, _TOPSIS):
+    for part in _comma_separated_parts(text, _TOPSIS):
         name, equals, value = part.partition("=")
         column = _column(name, objectives)
         weight = plain_number(value)
@@ -92,7 +92,7 @@ def _weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
 def _order(text: str, objectives: Sequence[StoredObjective]) -> list[tuple[int, float, float]]:
     """Return objectives in order: column, absolute tolerance (display unit) and tolerance relative to the range."""
     order = []
-    for part in _parts(text, _LEXICOGRAPHIC):
+    for part in _comma_separated_parts(text, _LEXICOGRAPHIC):
         name, colon, value = part.partition(":")
         column = _column(name, objectives)
         absolute, share = _tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
@@ -114,7 +114,7 @@ def _tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
 
 
-def _parts(text: str, example: str) -> list[str]:
+def _comma_separated_parts(text: str, example: str) -> list[str]:
     parts = [part.strip() for part in re.split(r",(?![^()]*\))", text)]  # except commas within min and max
     if not all(parts):
         raise InputError(f"objectives must be separated by single commas; got {text!r}; write it like {example}")

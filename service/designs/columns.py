@@ -62,7 +62,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         unit,
         factor,
         factor / split_unit(name)[2] if same is not None else None if unit else 1.0,
-        Group.DIMENSIONS if key in chosen_columns(keys) else _group_of(metric_key(key)),
+        Group.DIMENSIONS if key in choice_column_keys(keys) else _group_of(metric_key(key)),
     )
 
 
@@ -81,7 +81,7 @@ def _group_of(key: str) -> Group:
     return ({quantity.field: quantity.group for quantity in FACTS.values()} | groups).get(key, Group.FURTHER)
 
 
-def chosen_columns(keys: Iterable[str]) -> list[str]:
+def choice_column_keys(keys: Iterable[str]) -> list[str]:
     """Return the choice columns, which are those between the offset and the quantities."""
     from_offset = itertools.dropwhile(lambda key: metric_key(key) != "offset_mm", keys)
     return list(
@@ -124,11 +124,11 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     from ...objectives.units import closest
 
     near = closest(name, [*keys, *names]) if name else None
-    hint = f"did you mean {near}?" if near else f"choose from {_listed(keys)}"
+    hint = f"did you mean {near}?" if near else f"choose from {_keys_text(keys)}"
     raise InputError(f"there is no quantity or column {name!r}; {hint}")
 
 
-def _listed(keys: Collection[str]) -> str:
+def _keys_text(keys: Collection[str]) -> str:
     remaining = len(keys) - _MOST
     return ", ".join(list(keys)[:_MOST]) + (f" and {remaining} more, the columns of front.csv" if remaining > 0 else "")
 

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 
-def row_in(row: Mapping[str, Any], system: System) -> Row:
+def convert_row(row: Mapping[str, Any], system: System) -> Row:
     """Return a design with the keys and values of a unit system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
-    return rows_in([dict(row)], system)[0]
+    return convert_rows([dict(row)], system)[0]
 
 
-def rows_in(rows: Sequence[Row], system: System) -> list[Row]:
-    """Return designs that share their keys, converted as by `row_in`."""
+def convert_rows(rows: Sequence[Row], system: System) -> list[Row]:
+    """Return designs that share their keys, converted as by `convert_row`."""
     if system == "metric" or not rows:
         return list(rows)
     names = {key: key_in(key, system) for key in rows[0]}
     return [{names[key][0]: _scaled(value, names[key][1]) for key, value in row.items()} for row in rows]
 
 
-def record_in(record: Any, system: System) -> Any:
+def convert_record(record: Any, system: System) -> Any:
     """Return a JSON record with the keys and values of a unit system, at any depth.
 
     Numbers and lists of numbers are converted from the unit in their key, and the key gets the new unit.
@@ -40,11 +40,11 @@ def record_in(record: Any, system: System) -> Any:
         return record
     if isinstance(record, Mapping):
         keys = {key: key_in(key, system) for key in record}
-        return {name: _scaled(record_in(record[key], system), factor) for key, (name, factor) in keys.items()}
-    return [record_in(item, system) for item in record] if isinstance(record, list | tuple) else record
+        return {name: _scaled(convert_record(record[key], system), factor) for key, (name, factor) in keys.items()}
+    return [convert_record(item, system) for item in record] if isinstance(record, list | tuple) else record
 
 
-def result_in(result: Result, system: System, problem: Problem | None = None) -> Result:
+def convert_result(result: Result, system: System, problem: Problem | None = None) -> Result:
     """Return the result of a run in a unit system. The order of designs and all selections are unchanged.
 
     problem: problem of the run; recomputes the trade-offs at the knee, which are stored in metric units; without it
@@ -54,15 +54,15 @@ def result_in(result: Result, system: System, problem: Problem | None = None) ->
         return result
     return replace(
         result,
-        objectives=tuple(objective_in(objective, system) for objective in result.objectives),
-        designs=rows_in(result.designs, system),
-        violated=record_in(result.violated, system),
-        discrete=record_in(result.discrete, system),
+        objectives=tuple(convert_objective(objective, system) for objective in result.objectives),
+        designs=convert_rows(result.designs, system),
+        violated=convert_record(result.violated, system),
+        discrete=convert_record(result.discrete, system),
         trade_offs=[] if problem is None or not result.trade_offs else _trade_offs(problem, result, system),
     )
 
 
-def objective_in(objective: StoredObjective, system: System) -> StoredObjective:
+def convert_objective(objective: StoredObjective, system: System) -> StoredObjective:
     """Return an objective in a unit system."""
     column, factor = key_in(objective.column, system)
     target = None if objective.target is None else objective.target * factor

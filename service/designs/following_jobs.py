@@ -108,7 +108,7 @@ def widen_limits(
         else:
             job.setdefault(table, {}).setdefault(path, {})["min" if side == "lower" else "max"] = text
         changes.append(f"{limit.title} {_WORDS[side]} {_with_unit(value, limit.unit)}")
-    return _renamed(job, ", ".join(changes))
+    return _with_change_in_name(job, ", ".join(changes))
 
 
 def _limits_of(part: Problem, tables: Mapping[str, Any]) -> list[Limit]:
@@ -210,10 +210,10 @@ def job_near_lengths(
             margin = share * length_of[name]
         job["variables"][name] = [f"{length_of[name] - margin:.6g} mm", f"{length_of[name] + margin:.6g} mm"]
     sizes = ", ".join(f"{length_of[name]:.4g}" for name in DIMENSIONS)
-    return _renamed(job, f"near {sizes} mm")
+    return _with_change_in_name(job, f"near {sizes} mm")
 
 
-def _renamed(job: dict[str, Any], change: str) -> dict[str, Any]:
+def _with_change_in_name(job: dict[str, Any], change: str) -> dict[str, Any]:
     """Return a job with a change appended to its name, unless the name becomes too long."""
     name = f"{job['name']}, {change}"
     return job | {"name": name} if len(name) <= _LONGEST_NAME else job

@@ -95,7 +95,7 @@ def _unmatched_sentence(
     system: System,
 ) -> list[str]:
     """Return the number of designs of one front that the other does not match, and where they lie."""
-    free = unmatched(front, other_front)
+    free = is_unmatched(front, other_front)
     count, total = int(free.sum()), len(front)
     if count == 0:
         return [f"{other_name} matches or beats every design of {name}, {_TO}"]
@@ -110,7 +110,7 @@ def _unmatched_sentence(
     return [f"{name} has {count} of {counted(total, 'design')} that {other_name} does not match, {_TO}{place}"]
 
 
-def unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
+def is_unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:
     """Return the designs (n, m) that no other design (k, m) matches or beats; scaled objectives, all minimised."""
     return np.array([not bool((other_front <= point + NEAR).all(axis=1).any()) for point in front])
 

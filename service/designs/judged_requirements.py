@@ -33,7 +33,7 @@ class Requirement:
     upper: float | None
 
     @property
-    def slack(self) -> str:
+    def slack_column(self) -> str:
         """Column with the distance to the nearer bound."""
         return f"slack_{self.column}"
 

@@ -30,15 +30,15 @@ def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured
     """
     table = read_table(text, _NAME, ragged=True)
     names = [name for name in table.heads if name]
-    curve_names = columns_of(names, mechanism, linkage, _any_unit)
+    curve_names = columns_of(names, mechanism, linkage, _unit_in_si)
     places = [place for place, name in enumerate(table.heads) if name in curve_names]
     columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
     nothing = np.full(len(table), np.nan)
-    measured = measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _any_unit)
+    measured = measured_from({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _unit_in_si)
     return replace(measured, understood=table.summary_text(places))
 
 
-def _any_unit(text: str, kind: Kind) -> float | None:
+def _unit_in_si(text: str, kind: Kind) -> float | None:
     """Return the SI value of any unit that jobs may use; None for a unit of another kind."""
     symbol = symbol_in(text.replace("_", " "), kind)
     return None if symbol is None else to_si(f"1 {symbol}", kind)

@@ -13,7 +13,7 @@ _NOISE = 1e-12
 _SLACK = "slack_"
 
 
-def without_noise(row: Mapping[str, Cell]) -> Row:
+def row_without_noise(row: Mapping[str, Cell]) -> Row:
     """Return a design in which numbers below the rounding error of those in the same unit are zero.
 
     Examples are the mean torque of a lossless machine, which is a sum of large terms, and a slack at its bound.
@@ -22,14 +22,14 @@ def without_noise(row: Mapping[str, Cell]) -> Row:
     scales: dict[str, float] = {}
     for key, cell in row.items():
         if isinstance(cell, float) and math.isfinite(cell) and not key.startswith(_SLACK):
-            unit = _scale_of(key)
+            unit = _unit_or_name(key)
             scales[unit] = max(scales.get(unit, 0.0), abs(cell))
     return {
-        key: 0.0 if isinstance(cell, float) and 0.0 < abs(cell) < _NOISE * scales.get(_scale_of(key), 0.0) else cell
+        key: 0.0 if isinstance(cell, float) and 0.0 < abs(cell) < _NOISE * scales.get(_unit_or_name(key), 0.0) else cell
         for key, cell in row.items()
     }
 
 
-def _scale_of(key: str) -> str:
+def _unit_or_name(key: str) -> str:
     """Return the unit of a column; without a unit its name, which a slack shares with its quantity."""
     return split_unit(key)[1] or key.removeprefix(_SLACK)

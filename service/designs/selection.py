@@ -80,7 +80,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
         )
     name, comparison, value = match.groups()
     comparison = _SAME.get(comparison, comparison)
-    _require_order(text, name, comparison, value)
+    _require_name_first(text, name, comparison, value)
     column, formula = _column_and_formula(name, keys)
     if formula is not None:
         return Condition(column, comparison, _number_in_unit(match, column), formula)
@@ -93,7 +93,7 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
     return Condition(column, comparison, _number_in_unit(match, column))
 
 
-def _require_order(text: str, name: str, comparison: str, value: str) -> None:
+def _require_name_first(text: str, name: str, comparison: str, value: str) -> None:
     """Raise an error for a condition that begins with its value, or has two comparisons."""
     from ...objectives.units import is_value
 
@@ -165,7 +165,7 @@ def _number_in_unit(match: re.Match[str], column: Column) -> float:
         raise InputError(f"the value in {match[0].strip()!r} {error}") from None
 
 
-def select(rows: list[Row], conditions: Collection[str]) -> list[int]:
+def select_rows(rows: list[Row], conditions: Collection[str]) -> list[int]:
     """Return the positions of the designs that meet all conditions. Raises `InputError` for an invalid condition."""
     if not rows:
         return []
@@ -191,7 +191,7 @@ def chosen_rows(
     sort: quantity, column or formula: best first for an objective, otherwise smallest first; None for the order of the
     front. reverse: whether to reverse the order. Raises `InputError` for an invalid condition or an unknown column.
     """
-    chosen = select(result.designs, conditions)
+    chosen = select_rows(result.designs, conditions)
     if sort is not None and result.designs:
         column, formula = _column_and_formula(sort, list(result.designs[0]))
         key = column.key
@@ -199,7 +199,7 @@ def chosen_rows(
         if formula is not None:
             chosen.sort(key=lambda row: order_key(formula.evaluate(result.designs[row])))
         elif objective is not None:
-            chosen.sort(key=lambda row: objective.rank(result.designs[row]))
+            chosen.sort(key=lambda row: objective.minimised_value(result.designs[row]))
         else:
             chosen.sort(key=lambda row: order_key(result.designs[row][key]))
     return chosen[::-1] if reverse else chosen

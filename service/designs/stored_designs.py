@@ -135,10 +135,10 @@ def _variable_factors(mechanism: Mechanism) -> dict[str, float]:
 
 
 def _variable_values(row: Row, factors: Mapping[str, float]) -> tuple[float, ...]:
-    return tuple(_si(row, key, factor) for key, factor in factors.items())
+    return tuple(_si_value(row, key, factor) for key, factor in factors.items())
 
 
-def _si(row: Row, key: str, factor: float) -> float:
+def _si_value(row: Row, key: str, factor: float) -> float:
     """Return the number whose product with the factor is exactly the displayed value."""
     displayed = _cell(row, key)
     if not isinstance(displayed, float) or not math.isfinite(displayed):

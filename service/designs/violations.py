@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
 
 
-def violated_by(mechanism: Mechanism, row: Row) -> dict[str, float]:
+def violations_of(mechanism: Mechanism, row: Row) -> dict[str, float]:
     """Return the excess of a design over each violated allowable value, by the quantity's column.
 
     row: metric row of the design; the returned values are also metric.

@@ -15,11 +15,11 @@ from ...objectives.kinds import System, metric_unit_in
 from ..designs.stored_designs import StoredDesign
 from ..designs.toleranced import tolerances_of
 from . import layers as on
-from .dimensions import Lettering, aligned, dimension
+from .dimensions import Lettering, aligned_dimension, dimension
 from .lever_drawing import lever_drawing
-from .linkage_shapes import Look, fixed_shapes, lengths_in_words, look_of, moving_shapes, pin_positions
+from .linkage_shapes import LinkageSizes, fixed_shapes, lengths_in_words, linkage_sizes, moving_shapes, pin_positions
 from .shapes import Anchor, Arc, Dimension, Drawing, Label, Line, Point, Shape
-from .swing_parts import SwingLook, half_body, swing_look, swing_moving, swing_scenery
+from .swing_parts import SwingSizes, fixed_swing_shapes, half_body_side, moving_swing_shapes, swing_sizes
 from .titles import TEXT, TRUE_SCALE, with_title
 
 CRANK_ANGLE = math.radians(60.0)
@@ -57,7 +57,7 @@ def linkage_drawing(
     title, such as "design 3". crank_angle: crank angle of the drawing, rad. system: unit system of texts. Raises
     `AssemblyError` for a linkage that does not rotate fully.
     """
-    look = look_of(mechanism, linkage)
+    look = linkage_sizes(mechanism, linkage)
     size = look.size
     pin, slider = pin_positions(linkage, crank_angle)
     shapes: list[Shape] = [
@@ -86,13 +86,13 @@ def swing_drawing(
     within the swing up to full revolutions; None for half-way. name, design: as for `linkage_drawing`. Raises
     `InputError` for a crank angle outside the swing, and the errors of `require_swing`.
     """
-    drawn = swing_look(mechanism, linkage, swing)
+    drawn = swing_sizes(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)
     pin, slider = pin_positions(drawn.linkage, angle)
     letters = Lettering(TEXT * drawn.look.size, system)
     shapes: list[Shape] = [
-        *swing_scenery(drawn),
-        *swing_moving(drawn, angle),
+        *fixed_swing_shapes(drawn),
+        *moving_swing_shapes(drawn, angle),
         *_swing_dimensions(drawn, angle, pin, slider, letters, tolerances_of(mechanism, drawn.linkage)),
     ]
     notes = _swing_notes(drawn, angle, system)
@@ -116,7 +116,7 @@ def _angle_in_swing(swing: Swing, angle: float | None) -> float:
 
 
 def _stroke_dimensions(
-    pin: Point, slider: Point, look: Look, letters: Lettering, tolerances: Mapping[str, float]
+    pin: Point, slider: Point, look: LinkageSizes, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
     """Return the skeleton and the dimension lines of a rotating linkage, with the stroke dimension outside."""
     side = -1.0 if pin[1] >= 0.0 else 1.0  # away from crank and rod
@@ -127,14 +127,14 @@ def _stroke_dimensions(
 
 
 def _swing_dimensions(
-    drawn: SwingLook, angle: float, pin: Point, slider: Point, letters: Lettering, tolerances: Mapping[str, float]
+    drawn: SwingSizes, angle: float, pin: Point, slider: Point, letters: Lettering, tolerances: Mapping[str, float]
 ) -> list[Shape]:
     """Return the skeleton and the dimension lines of a swing, with travel outside and angle inside."""
     look, swing, height, bend = drawn.look, drawn.swing, letters.height, _outer_side(pin, slider)
     left, low, _, high = drawn.extent
     through = (look.inner[0], low - 3.0 * height if drawn.bearing_below else high + 3.0 * height)
     travel = dimension("travel", look.inner, look.outer, through, 0.0, look=letters)
-    body = -math.inf if drawn.body is None else bend * drawn.body[1] + half_body(look)
+    body = -math.inf if drawn.body is None else bend * drawn.body[1] + half_body_side(look)
     first, last = sorted(math.degrees(at) for at in (swing.start, swing.end))
     arc = Arc(on.DIMENSIONS, (0.0, 0.0), 0.45 * look.crank, first, last)
     share = 0.25 if bend > 0.0 else 0.75  # on the side opposite the crank's own dimension
@@ -147,7 +147,7 @@ def _swing_dimensions(
 def _dimensions(
     pin: Point,
     slider: Point,
-    look: Look,
+    look: LinkageSizes,
     travel: Dimension,
     letters: Lettering,
     tolerances: Mapping[str, float],
@@ -165,8 +165,8 @@ def _dimensions(
     shapes: list[Shape] = [
         Line(on.SKELETON, (0.0, 0.0), pin),
         Line(on.SKELETON, pin, slider),
-        aligned("crank", (0.0, 0.0), pin, bend * crank_side, letters, crank),
-        aligned("rod", pin, slider, bend * rod_side, letters, rod),
+        aligned_dimension("crank", (0.0, 0.0), pin, bend * crank_side, letters, crank),
+        aligned_dimension("rod", pin, slider, bend * rod_side, letters, rod),
         travel,
     ]
     if look.offset:
@@ -180,7 +180,7 @@ def _outer_side(pin: Point, slider: Point) -> float:
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 
 
-def _turn_notes(linkage: Linkage, angle: float, look: Look, system: System) -> tuple[str, ...]:
+def _turn_notes(linkage: Linkage, angle: float, look: LinkageSizes, system: System) -> tuple[str, ...]:
     inner, outer = (f"{math.degrees(item):.6g}" for item in map(float, linkage.dead_centre_angles))
     widths = "Link widths are to scale; slider and pins are schematic."
     return (
@@ -193,7 +193,7 @@ def _turn_notes(linkage: Linkage, angle: float, look: Look, system: System) -> t
     )
 
 
-def _swing_notes(drawn: SwingLook, angle: float, system: System) -> tuple[str, ...]:
+def _swing_notes(drawn: SwingSizes, angle: float, system: System) -> tuple[str, ...]:
     look, swing = drawn.look, drawn.swing
     unit, factor = metric_unit_in("mm", system)
     start, end, drawn_angle = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))

@@ -22,7 +22,7 @@ class Lettering:
     system: System = "metric"
 
     @property
-    def factor(self) -> float:
+    def display_factor(self) -> float:
         """Conversion factor from mm to the unit in the texts."""
         return metric_unit_in("mm", self.system)[1]
 
@@ -49,7 +49,7 @@ def dimension(
         feet.reverse()
         start, end = end, start
     length = _dot(_difference(feet[1], feet[0]), direction)
-    displayed, off = look.factor * length, look.factor * tolerance
+    displayed, off = look.display_factor * length, look.display_factor * tolerance
     text = format_toleranced(displayed, off) if tolerance else f"{displayed:.7g}"
     wide, arrow = WIDE * height * len(text), _ARROW * height
     fits = length > wide + 2.6 * arrow
@@ -79,7 +79,7 @@ def dimension(
     return Dimension(DIMENSIONS, name, start, end, through, angle, text, height, tuple(parts), tolerance)
 
 
-def aligned(name: str, start: Point, end: Point, away: float, look: Lettering, tolerance: float) -> Dimension:
+def aligned_dimension(name: str, start: Point, end: Point, away: float, look: Lettering, tolerance: float) -> Dimension:
     """Return the dimension along a link. away: distance of its line to the left of the direction from start to end."""
     x, y = end[0] - start[0], end[1] - start[1]
     length = math.hypot(x, y)

@@ -13,7 +13,7 @@ from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import System, metric_unit_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
-from .dimensions import Lettering, aligned
+from .dimensions import Lettering, aligned_dimension
 from .lever_parts import lever_extent, lever_shapes
 from .shapes import Drawing, Line, Point, Shape
 from .titles import TEXT, TRUE_SCALE, with_title
@@ -71,8 +71,8 @@ def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, toleran
     return [
         Line(on.SKELETON, origin, pin),
         Line(on.SKELETON, pivot, pin),
-        aligned("crank", origin, pin, side * away, letters, tolerances.get("crank", 0.0)),
-        aligned("rod", origin, pivot, -side * away, letters, tolerances.get("rod", 0.0)),
+        aligned_dimension("crank", origin, pin, side * away, letters, tolerances.get("crank", 0.0)),
+        aligned_dimension("rod", origin, pivot, -side * away, letters, tolerances.get("rod", 0.0)),
     ]
 
 

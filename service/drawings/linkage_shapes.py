@@ -29,7 +29,7 @@ class Barrel:
 
 
 @dataclass(frozen=True)
-class Look:
+class LinkageSizes:
     """Sizes of a drawn linkage, mm. crank, rod, offset: its dimensions.
 
     inner, outer: slider pins at the dead centres, or at the ends of a swing. slider_range: minimum and maximum slider
@@ -61,18 +61,20 @@ class Look:
         return max(right - left, high - low)
 
 
-def look_of(mechanism: Mechanism, linkage: Linkage) -> Look:
+def linkage_sizes(mechanism: Mechanism, linkage: Linkage) -> LinkageSizes:
     """Return the drawn sizes for a machine's linkage.
 
     Raises `AssemblyError` for a linkage that does not rotate fully.
     """
     inner, outer = (_MM * float(x) for x in linkage.dead_centres)
     r = _MM * float(linkage.crank)
-    look = look_between(mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r))
+    look = linkage_sizes_between(
+        mechanism, linkage, (inner, outer), (min(inner, outer), max(inner, outer)), (-r, -r, r, r)
+    )
     return _with_cylinders(mechanism, look)
 
 
-def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
+def _with_cylinders(mechanism: Mechanism, look: LinkageSizes) -> LinkageSizes:
     """Return a linkage with its slider drawn as the piston of a machine's cylinders.
 
     Bore and clearance are true to scale; the piston length is schematic.
@@ -97,14 +99,14 @@ def _with_cylinders(mechanism: Mechanism, look: Look) -> Look:
     return replace(look, block=bore, barrels=tuple(barrels), extent=extent)
 
 
-def look_between(
+def linkage_sizes_between(
     mechanism: Mechanism,
     linkage: Linkage,
     ends: tuple[float, float],
     slider_range: tuple[float, float],
     swept: tuple[float, float, float, float],
-) -> Look:
-    """Return the drawn sizes of a linkage whose slider moves between two positions, mm; see `Look`.
+) -> LinkageSizes:
+    """Return the drawn sizes of a linkage whose slider moves between two positions, mm; see `LinkageSizes`.
 
     swept: left, bottom, right and top of the path of the crank's axis.
     """
@@ -122,7 +124,9 @@ def look_between(
         max(swept[3] + half, e + 0.72 * block),
     )
     has_sections = any(isinstance(link, Bar) for link in described)
-    return Look(r, l, e, (ends[0], e), (ends[1], e), slider_range, extent, crank, rod, block, block, pin, has_sections)
+    return LinkageSizes(
+        r, l, e, (ends[0], e), (ends[1], e), slider_range, extent, crank, rod, block, block, pin, has_sections
+    )
 
 
 def lengths_in_words(linkage: Linkage, system: System = "metric", *, digits: int = 7, stroke: bool = False) -> str:
@@ -138,13 +142,13 @@ def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
     return (r * math.cos(angle), r * math.sin(angle)), (x, _MM * float(linkage.offset))
 
 
-def moving_shapes(pin: Point, slider: Point, look: Look) -> list[Shape]:
+def moving_shapes(pin: Point, slider: Point, look: LinkageSizes) -> list[Shape]:
     """Return slider, rod and crank with their pins, for given positions of crank pin and slider pin."""
     drawn = link_shapes((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
     return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 
 
-def fixed_shapes(linkage: Linkage, look: Look, *, bearing_below: bool) -> list[Shape]:
+def fixed_shapes(linkage: Linkage, look: LinkageSizes, *, bearing_below: bool) -> list[Shape]:
     """Return axes, paths, both dead centres, guide and bearing.
 
     bearing_below: whether the bearing stands below the pivot.
@@ -158,7 +162,7 @@ def fixed_shapes(linkage: Linkage, look: Look, *, bearing_below: bool) -> list[S
         ghosts += link_shapes((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
     walls = [line for barrel in look.barrels for line in _barrel_shapes(barrel, look.offset)]
-    return [*axes(look), *paths, *ghosts, *rails(look), *bearing(look, is_below=bearing_below), *walls]
+    return [*centre_lines(look), *paths, *ghosts, *rails(look), *bearing(look, is_below=bearing_below), *walls]
 
 
 def _barrel_shapes(barrel: Barrel, offset: float) -> list[Shape]:
@@ -168,7 +172,7 @@ def _barrel_shapes(barrel: Barrel, offset: float) -> list[Shape]:
     return [Line(on.CYLINDER, start, end) for start, end in itertools.pairwise(corners)]
 
 
-def axes(look: Look) -> list[Shape]:
+def centre_lines(look: LinkageSizes) -> list[Shape]:
     """Return the slider line, and its parallel through the crank pivot."""
     left, _, right, _ = look.extent
     ends = (left - 0.03 * look.size, right + 0.03 * look.size)
@@ -188,14 +192,14 @@ def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     return Outline(layer, corners, (0.0, 1.0, 0.0, 1.0))
 
 
-def block(layer: Layer, pin: Point, look: Look) -> Outline:
+def block(layer: Layer, pin: Point, look: LinkageSizes) -> Outline:
     """Return the outline of a slider around its pin."""
     x, y = 0.75 * look.slider_size, 0.5 * look.block
     corners = tuple((pin[0] + u * x, pin[1] + v * y) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: Look) -> list[Shape]:
+def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: LinkageSizes) -> list[Shape]:
     """Return slider, rod and crank, each on its layer."""
     return [
         block(layers[0], slider, look),
@@ -204,7 +208,7 @@ def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, l
     ]
 
 
-def rails(look: Look) -> list[Shape]:
+def rails(look: LinkageSizes) -> list[Shape]:
     """Return the hatched guide of the slider."""
     shapes: list[Shape] = []
     start, end = look.slider_range[0] - 0.95 * look.slider_size, look.slider_range[1] + 0.95 * look.slider_size
@@ -219,7 +223,7 @@ def rails(look: Look) -> list[Shape]:
     return shapes
 
 
-def bearing(look: Look, *, is_below: bool) -> list[Shape]:
+def bearing(look: LinkageSizes, *, is_below: bool) -> list[Shape]:
     """Return the bearing of the crank pivot. is_below: whether the bearing stands below the pivot."""
     return pivot_bearing((0.0, 0.0), 1.5 * max(look.pin, 0.3 * look.crank_width), is_below=is_below)
 

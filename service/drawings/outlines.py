@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from .linkage_shapes import Barrel, look_of
+from .linkage_shapes import Barrel, linkage_sizes
 from .shapes import Point
-from .swing_parts import Cylinder, half_body, swing_look
+from .swing_parts import Cylinder, half_body_side, swing_sizes
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,13 @@ class Outlines:
 def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Outlines:
     """Return the drawn parts of a design that rotates fully or swings.
 
-    Raises the errors of `look_of` and `swing_look`.
+    Raises the errors of `linkage_sizes` and `swing_sizes`.
     """
     if swing is None:
-        look = look_of(mechanism, linkage)
+        look = linkage_sizes(mechanism, linkage)
         return Outlines(look.extent, (1.5 * look.slider_size, look.block), look.barrels, None, None, 0.0)
-    drawn = swing_look(mechanism, linkage, swing)
+    drawn = swing_sizes(mechanism, linkage, swing)
     slider = (1.5 * drawn.look.slider_size, drawn.look.block)
-    return Outlines(drawn.extent, slider, drawn.look.barrels, drawn.cylinder, drawn.body, 2.0 * half_body(drawn.look))
+    return Outlines(
+        drawn.extent, slider, drawn.look.barrels, drawn.cylinder, drawn.body, 2.0 * half_body_side(drawn.look)
+    )

@@ -146,7 +146,7 @@ class Drawing:
         return min(x), min(y), max(x), max(y)
 
 
-def pairs(outline: Outline) -> Iterator[tuple[Point, Point, float]]:
+def outline_sides(outline: Outline) -> Iterator[tuple[Point, Point, float]]:
     """Yield the sides of an outline as start, end and bulge."""
     corners = outline.corners
     yield from zip(corners, (*corners[1:], corners[0]), outline.bulges, strict=True)
@@ -161,7 +161,7 @@ def _extreme_points(shape: Shape) -> Iterable[Point]:
     if isinstance(shape, Arc):
         return shape.points
     if isinstance(shape, Outline):
-        return [point for side in pairs(shape) for point in _box_corners(*side)]
+        return [point for side in outline_sides(shape) for point in _box_corners(*side)]
     if isinstance(shape, Wedge):
         return shape.corners
     if isinstance(shape, Dimension):

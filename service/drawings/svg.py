@@ -5,7 +5,21 @@ from __future__ import annotations
 import math
 from xml.sax.saxutils import escape, quoteattr
 
-from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Layer, Line, Outline, Point, Shape, Wedge, pairs
+from .shapes import (
+    Arc,
+    Circle,
+    Dashes,
+    Dimension,
+    Drawing,
+    Label,
+    Layer,
+    Line,
+    Outline,
+    Point,
+    Shape,
+    Wedge,
+    outline_sides,
+)
 
 _MARGIN = 0.03  # relative to the size of the drawing
 _LINE = 0.004  # width of a line with weight 0.5, relative to that size
@@ -37,13 +51,13 @@ def svg_text(drawing: Drawing) -> str:
         f'<rect x="{_number(left)}" y="{_number(-top)}" width="{width}" height="{height}" fill="#ffffff"/>',
     ]
     for layer in drawing.layers:
-        lines.append(group(layer, drawing.size))
+        lines.append(opening_tag(layer, drawing.size))
         lines += [f"  {line}" for shape in drawing.shapes_on(layer.name) for line in elements(shape)]
         lines.append("</g>")
     return "\n".join([*lines, "</svg>", ""])
 
 
-def group(layer: Layer, size: float) -> str:
+def opening_tag(layer: Layer, size: float) -> str:
     """Return the opening tag for a layer's group. size: size of the drawing."""
     attributes = {
         "id": layer.name,
@@ -86,7 +100,7 @@ def elements(shape: Shape) -> list[str]:
 
 def _outline_svg(shape: Outline) -> str:
     parts = [f"M{_point_text(shape.corners[0])}"]
-    for start, end, bulge in pairs(shape):
+    for start, end, bulge in outline_sides(shape):
         if not bulge:
             parts.append(f"L{_point_text(end)}")
             continue

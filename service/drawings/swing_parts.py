@@ -12,7 +12,16 @@ from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, dead_points, placed, require_swing
 from . import layers as on
-from .linkage_shapes import Look, axes, bearing, link_shapes, look_between, moving_shapes, pin_positions, rails
+from .linkage_shapes import (
+    LinkageSizes,
+    bearing,
+    centre_lines,
+    link_shapes,
+    linkage_sizes_between,
+    moving_shapes,
+    pin_positions,
+    rails,
+)
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
 _MM = 1e3
@@ -34,7 +43,7 @@ class Cylinder:
 
 
 @dataclass(frozen=True)
-class SwingLook:
+class SwingSizes:
     """Sizes of a drawn swinging linkage. swing: swing between crank angles. cylinder: None if the crank drives.
 
     body: mass centre of a crank with a given mass, along and across the crank, mm; None for other cranks.
@@ -42,7 +51,7 @@ class SwingLook:
 
     linkage: Linkage
     swing: Swing
-    look: Look
+    look: LinkageSizes
     cylinder: Cylinder | None
     body: Point | None
 
@@ -61,7 +70,7 @@ class SwingLook:
         return math.sin(0.5 * (self.swing.start + self.swing.end)) >= 0.0
 
 
-def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLook:
+def swing_sizes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSizes:
     """Return the drawn sizes of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
     swing = placed(mechanism, checked, swing)
@@ -70,9 +79,9 @@ def swing_look(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingLoo
     slider_range = (min(ways), max(ways))
     body = _body_centre(mechanism, checked)
     swept = _swept_box(checked, swing, body)
-    look = look_between(mechanism, checked, (ways[0], ways[1]), slider_range, swept)
+    look = linkage_sizes_between(mechanism, checked, (ways[0], ways[1]), slider_range, swept)
     cylinder = _fitting_cylinder(look) if swing.driver == "slider" else None
-    return SwingLook(checked, swing, look, cylinder, body)
+    return SwingSizes(checked, swing, look, cylinder, body)
 
 
 def _body_centre(mechanism: Mechanism, linkage: Linkage) -> Point | None:
@@ -83,7 +92,7 @@ def _body_centre(mechanism: Mechanism, linkage: Linkage) -> Point | None:
     return _MM * centre_along, _MM * crank.centre_across
 
 
-def half_body(look: Look) -> float:
+def half_body_side(look: LinkageSizes) -> float:
     """Return half the side of the body's square, mm."""
     return _BODY * look.crank
 
@@ -105,7 +114,7 @@ def _swept_box(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[floa
     return float(every[0].min()), float(every[1].min()), float(every[0].max()), float(every[1].max())
 
 
-def _fitting_cylinder(look: Look) -> Cylinder:
+def _fitting_cylinder(look: LinkageSizes) -> Cylinder:
     """Return a cylinder of the required length, on the far side of the slider."""
     side = 1.0 if sum(look.slider_range) >= 0.0 else -1.0
     far = side * look.slider_range[1 if side > 0.0 else 0]
@@ -114,7 +123,7 @@ def _fitting_cylinder(look: Look) -> Cylinder:
     return Cylinder(side, side * near_end, side * (near_end + long), 0.5 * look.block)
 
 
-def swing_scenery(drawn: SwingLook) -> list[Shape]:
+def fixed_swing_shapes(drawn: SwingSizes) -> list[Shape]:
     """Return axes, paths of the pins, both ends, guide, bearing and the barrel of the cylinder."""
     look, swing = drawn.look, drawn.swing
     first, last = sorted(math.degrees(angle) for angle in (swing.start, swing.end))
@@ -130,10 +139,10 @@ def swing_scenery(drawn: SwingLook) -> list[Shape]:
         if drawn.cylinder is not None:
             ghosts.append(_piston_rod(layer, slider, drawn.cylinder, look))
     barrel = [] if drawn.cylinder is None else _barrel(drawn.cylinder, look)
-    return [*axes(look), *ways, *ghosts, *rails(look), *bearing(look, is_below=drawn.bearing_below), *barrel]
+    return [*centre_lines(look), *ways, *ghosts, *rails(look), *bearing(look, is_below=drawn.bearing_below), *barrel]
 
 
-def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
+def moving_swing_shapes(drawn: SwingSizes, angle: float) -> list[Shape]:
     """Return the cylinder's rod, the links with their pins, and the body at a crank angle, rad."""
     pin, slider = pin_positions(drawn.linkage, angle)
     pushed = [] if drawn.cylinder is None else [_piston_rod(on.ACTUATOR, slider, drawn.cylinder, drawn.look)]
@@ -141,9 +150,9 @@ def swing_moving(drawn: SwingLook, angle: float) -> list[Shape]:
     return [*pushed, *moving_shapes(pin, slider, drawn.look), *turned]
 
 
-def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
+def body_shapes(body: Point, look: LinkageSizes, angle: float) -> list[Shape]:
     """Return the body on a crank at an angle, rad: a square around its mass centre, marked by a cross."""
-    half, mark = half_body(look), 0.5 * half_body(look)
+    half, mark = half_body_side(look), 0.5 * half_body_side(look)
     cosine, sine = math.cos(angle), math.sin(angle)
 
     def rotated(dx: float, dy: float) -> Point:
@@ -159,9 +168,9 @@ def body_shapes(body: Point, look: Look, angle: float) -> list[Shape]:
     ]
 
 
-def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> Outline:
+def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: LinkageSizes) -> Outline:
     """Return the rod of the cylinder, from the slider to the barrel."""
-    return box(
+    return rectangle(
         layer,
         (slider[0] + cylinder.side * 0.75 * look.block, slider[1]),
         (cylinder.near_end, slider[1]),
@@ -169,16 +178,16 @@ def _piston_rod(layer: Layer, slider: Point, cylinder: Cylinder, look: Look) -> 
     )
 
 
-def cylinder_parts(cylinder: Cylinder, look: Look) -> tuple[Outline, Outline]:
+def piston_rod_and_barrel(cylinder: Cylinder, look: LinkageSizes) -> tuple[Outline, Outline]:
     """Return the cylinder's complete rod relative to the slider pin, and its barrel."""
     near = look.slider_range[0] if cylinder.side > 0.0 else look.slider_range[1]
-    rod = box(
+    rod = rectangle(
         on.ACTUATOR, (cylinder.side * 0.75 * look.block, 0.0), (cylinder.near_end - near, 0.0), 0.3 * cylinder.width
     )
-    return rod, box(on.ACTUATOR, (cylinder.near_end, look.offset), (cylinder.foot, look.offset), cylinder.width)
+    return rod, rectangle(on.ACTUATOR, (cylinder.near_end, look.offset), (cylinder.foot, look.offset), cylinder.width)
 
 
-def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
+def rectangle(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     """Return a rectangle around a horizontal line."""
     half = 0.5 * width
     corners = (
@@ -190,7 +199,7 @@ def box(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     return Outline(layer, corners, (0.0, 0.0, 0.0, 0.0))
 
 
-def _barrel(cylinder: Cylinder, look: Look) -> list[Shape]:
+def _barrel(cylinder: Cylinder, look: LinkageSizes) -> list[Shape]:
     """Return the barrel of the cylinder and its mount."""
     y, half = look.offset, 0.8 * cylinder.width
     hatch = [
@@ -202,4 +211,4 @@ def _barrel(cylinder: Cylinder, look: Look) -> list[Shape]:
         for k in (-0.6, -0.2, 0.2, 0.6, 1.0)
     ]
     wall = Line(on.FRAME, (cylinder.foot, y - half), (cylinder.foot, y + half))
-    return [box(on.ACTUATOR, (cylinder.near_end, y), (cylinder.foot, y), cylinder.width), wall, *hatch]
+    return [rectangle(on.ACTUATOR, (cylinder.near_end, y), (cylinder.foot, y), cylinder.width), wall, *hatch]

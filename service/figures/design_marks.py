@@ -79,7 +79,7 @@ class Axis:
         return not is_constant(self.values)
 
 
-def marks(front: ParetoFront) -> list[Mark]:
+def marked_designs(front: ParetoFront) -> list[Mark]:
     """Return the marked designs; one that is best in several objectives appears once. The knee comes last."""
     labels: dict[int, list[tuple[str, str]]] = {}
     for name, row in front.extremes().items():

@@ -12,10 +12,10 @@ from matplotlib.patches import Arc
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, metric_unit_in
-from ..drawings.linkage_shapes import Look, fixed_shapes, look_of, moving_shapes, pin_positions
+from ..drawings.linkage_shapes import LinkageSizes, fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Point
 from ..render.numerals import format_number, length
-from .painting import paint, show_rectangle
+from .painting import paint_shapes, show_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
 
@@ -24,10 +24,10 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
 
     The dead centres are outlined in grey. Links with a section have their true width.
     """
-    look = look_of(mechanism, linkage)
+    look = linkage_sizes(mechanism, linkage)
     (left, low, right, high), size = look.extent, look.size
     pin, slider = pin_positions(linkage, least_transmission_crank_angle(linkage))
-    paint(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
+    paint_shapes(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
     _draw_rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
     _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
     _dimension_stroke(axes, look, size, system)
@@ -88,7 +88,7 @@ def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **styl
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
 
-def _dimension_stroke(axes: Axes, look: Look, size: float, system: System) -> None:
+def _dimension_stroke(axes: Axes, look: LinkageSizes, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0

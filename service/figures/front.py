@@ -16,10 +16,10 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust import robust_quantities
 from ..designs.changed_design import Variation
 from ..designs.stored_designs import StoredDesign
-from ..resources.garbage import uncollected
+from ..resources.garbage import without_garbage_collection
 from .comparison import robustness_figure
 from .datasheet import design_datasheet
-from .design_marks import marks
+from .design_marks import marked_designs
 from .lever import lever_datasheet
 from .parallel import parallel_coordinates
 from .scatter import scatter_matrix
@@ -52,7 +52,7 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
         figures.append(FrontFigure(("parallel_coordinates",), title, partial(parallel_coordinates, front, system)))
     datasheets = (
         FrontFigure(mark.names, mark.label, partial(datasheet_of, front, mark.row, mark.label, system))
-        for mark in marks(front)
+        for mark in marked_designs(front)
     )
     return [*figures, *datasheets]
 
@@ -66,7 +66,7 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
     folder.mkdir(parents=True, exist_ok=True)
     for item in front_figures(front, system):
         first, *copies = (folder / f"{name}.png" for name in item.names)
-        with uncollected():
+        with without_garbage_collection():
             save(item.draw(), first)
         yield first
         for copy in copies:

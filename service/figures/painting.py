@@ -10,7 +10,20 @@ import numpy as np
 
 from ...model.extras import NamingExtra
 from ..drawings import layers as on
-from ..drawings.shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Point, Shape, Wedge, pairs
+from ..drawings.shapes import (
+    Arc,
+    Circle,
+    Dashes,
+    Dimension,
+    Drawing,
+    Label,
+    Line,
+    Outline,
+    Point,
+    Shape,
+    Wedge,
+    outline_sides,
+)
 from .style import LINK, add_axes, new_figure
 
 with NamingExtra("figures need"):
@@ -46,7 +59,7 @@ def drawing_figure(drawing: Drawing) -> Figure:
     show_rectangle(axes, left, bottom, right, top, share=_FILLS)
     dimensions = [shape for shape in drawing.shapes if isinstance(shape, Dimension)]
     for shapes in (drawing.shapes, *(shape.parts for shape in dimensions)):
-        paint(axes, shapes)
+        paint_shapes(axes, shapes)
         for label in shapes:
             if isinstance(label, Label):
                 axes.text(
@@ -79,7 +92,7 @@ def show_rectangle(axes: Axes, left: float, low: float, right: float, high: floa
     axes.axis("off")
 
 
-def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
+def paint_shapes(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
     """Draw lines, circles, outlines and wedges without texts, later ones above earlier ones; return the artists."""
     artists: list[Artist] = []
     for order, shape in enumerate(shapes):
@@ -99,7 +112,7 @@ def paint(axes: Axes, shapes: Iterable[Shape]) -> list[Artist]:
             disc = Disc(shape.centre, shape.radius, facecolor=fill, edgecolor=shape.layer.ink, **style)
             artists.append(axes.add_patch(disc))
         elif isinstance(shape, Outline):
-            corners = [point for side in pairs(shape) for point in _arc_points(*side)]
+            corners = [point for side in outline_sides(shape) for point in _arc_points(*side)]
             polygon = Polygon(corners, facecolor=fill, edgecolor=shape.layer.ink, **style)
             artists.append(axes.add_patch(polygon))
         elif isinstance(shape, Wedge):

@@ -14,9 +14,9 @@ from matplotlib.ticker import MaxNLocator
 from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from ..render.numerals import on_scale
-from .design_marks import Axis, dimension_axes, marks, objective_axis
-from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colours, heading, new_figure, padded_limits
+from ..render.numerals import format_on_scale
+from .design_marks import Axis, dimension_axes, marked_designs, objective_axis
+from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colour_map, heading, new_figure, padded_limits
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, along the axes, beside them
@@ -27,7 +27,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
     dimensions = dimension_axes(front, system)
     objectives = [objective_axis(front, objective, system) for objective in front.objectives]
     axes = dimensions + objectives
-    marked = marks(front)
+    marked = marked_designs(front)
     columns = max(2, min(4, len(axes) - 2))
     foot = 0.45 + 0.2 * -(-len(marked) // columns)
     width = 2.0 * _SIDE + _STEP * (len(axes) - 1)
@@ -50,7 +50,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         LineCollection(
             list(lines[order]),
             array=first[order],
-            cmap=colours(),
+            cmap=colour_map(),
             linewidths=1.0 if len(front) <= 150 else 0.6,
             alpha=0.75,
             zorder=1,
@@ -111,7 +111,7 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         panel.text(
             position - 0.05,
             at if axis.varies else at + 0.012,  # all lines meet if there is only one value
-            on_scale(tick, low, high, digits=6 if axis.varies else 4),
+            format_on_scale(tick, low, high, digits=6 if axis.varies else 4),
             ha="right",
             va="center" if axis.varies else "bottom",
             fontsize=SMALL,
@@ -121,8 +121,8 @@ def _draw_axis(panel: Axes, position: int, axis: Axis, title: str) -> None:
         )
     if axis.varies:
         ends: dict[str, Any] = {"ha": "center", "fontsize": SMALL, "color": MUTED}
-        panel.text(position, -0.025, on_scale(low, low, high), va="top", **ends)
-        panel.text(position, 1.025, on_scale(high, low, high), va="bottom", **ends)
+        panel.text(position, -0.025, format_on_scale(low, low, high), va="top", **ends)
+        panel.text(position, 1.025, format_on_scale(high, low, high), va="bottom", **ends)
     panel.text(position, 1.0 + 0.24 / _HEIGHT, title, ha="center", va="bottom", fontsize=TEXT)
 
 

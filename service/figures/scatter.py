@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from .design_marks import Axis, Mark, dimension_axes, marks, objective_axis, with_better_arrow
-from .style import INK, SMALL, TEXT, add_axes, colours, heading, legend_at, new_figure, padded_limits, style_axes
+from .design_marks import Axis, Mark, dimension_axes, marked_designs, objective_axis, with_better_arrow
+from .style import INK, SMALL, TEXT, add_axes, colour_map, heading, legend_at, new_figure, padded_limits, style_axes
 
 MOST = 6
 """Maximum number of drawn objectives: with more, the panels are too small to read."""
@@ -25,7 +25,7 @@ _LEFT, _BOTTOM, _TOP, _RIGHT, _GAP = 0.95, 0.75, 0.7, 0.3, 0.18  # inches
 def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     """Return the scatter matrix of a front with at least two objectives and one design, in a unit system."""
     axes = [objective_axis(front, objective, system) for objective in front.objectives[:MOST]]
-    marked = marks(front)
+    marked = marked_designs(front)
     count = len(axes) - 1
     if count == 1:
         colour = max(dimension_axes(front, system), key=lambda axis: _spread(axis.values))
@@ -88,7 +88,7 @@ def _draw_panel(panel: Axes, x_axis: Axis, y_axis: Axis, colour: np.ndarray, mar
         x_axis.values,
         y_axis.values,
         c=colour,
-        cmap=colours(),
+        cmap=colour_map(),
         s=16,
         linewidths=0.3,
         edgecolors=INK,

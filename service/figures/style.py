@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from ...model.extras import NamingExtra
 from ...optimise.front.constant_numbers import is_constant
-from ..render.numerals import on_scale
-from ..resources.garbage import uncollected
+from ..render.numerals import format_on_scale
+from ..resources.garbage import without_garbage_collection
 
-with NamingExtra("figures need"), uncollected():
+with NamingExtra("figures need"), without_garbage_collection():
     import matplotlib
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
@@ -147,8 +147,8 @@ def style_axes(axes: Axes, *, most_x_ticks: int = 5, most_y_ticks: int = 5) -> N
     axes.set_axisbelow(True)
     axes.xaxis.set_major_locator(MaxNLocator(most_x_ticks, steps=[1, 2, 2.5, 5, 10]))
     axes.yaxis.set_major_locator(MaxNLocator(most_y_ticks, steps=[1, 2, 2.5, 5, 10]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_xlim(), digits=6)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: on_scale(value, *axes.get_ylim(), digits=6)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: format_on_scale(value, *axes.get_xlim(), digits=6)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: format_on_scale(value, *axes.get_ylim(), digits=6)))
 
 
 def padded_limits(low: float, high: float, margin: float = 0.06) -> tuple[float, float]:
@@ -159,7 +159,7 @@ def padded_limits(low: float, high: float, margin: float = 0.06) -> tuple[float,
     return low - margin * span, high + margin * span
 
 
-def colours() -> ListedColormap:
+def colour_map() -> ListedColormap:
     """Return the colour scale: cividis without its palest end, even in greyscale and for the colour-blind."""
     full = matplotlib.colormaps["cividis"]
     return ListedColormap([full(0.92 * i / 255.0) for i in range(256)])

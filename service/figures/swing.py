@@ -14,10 +14,10 @@ from ...model.swing.swing import Swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
 from ..drawings.shapes import Shape
-from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
+from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
 from ..render.blocks import dimensions, joined
 from .drawing import scale_bar
-from .painting import paint, show_rectangle
+from .painting import paint_shapes, show_rectangle
 from .panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure
 from .panels import draw_panel_figure
 from .style import add_axes
@@ -44,8 +44,8 @@ def swing_figure(
     panel_figure = swing_panels(mechanism, linkage, swing)
     if title:
         panel_figure = replace(panel_figure, title=title, subtitle=joined([subtitle, panel_figure.subtitle], "; "))
-    drawn = swing_look(mechanism, linkage, swing)
-    shapes = [*swing_scenery(drawn), *swing_moving(drawn, 0.5 * (drawn.swing.start + drawn.swing.end))]
+    drawn = swing_sizes(mechanism, linkage, swing)
+    shapes = [*fixed_swing_shapes(drawn), *moving_swing_shapes(drawn, 0.5 * (drawn.swing.start + drawn.swing.end))]
     return figure_below_machine(panel_figure, shapes, drawn.extent, system)
 
 
@@ -61,7 +61,7 @@ def figure_below_machine(
     figure = draw_panel_figure(panel_figure, system, space_above=tall + _BELOW)
     foot = -(-len(panel_figure.panels) // panel_figure.columns) * panel_figure.height + _BELOW
     axes = add_axes(figure, _ASIDE, foot, wide, tall)
-    paint(axes, shapes)
+    paint_shapes(axes, shapes)
     scale_bar(axes, left, low + 0.03 * size, size, system)
     show_rectangle(axes, left, low, right, high)
     return figure

@@ -22,7 +22,7 @@ _WORKER = "command line"
 _MEDIA = {".toml": "application/toml", ".json": "application/json"}
 
 
-def _is_patient(waited: float) -> bool:
+def _may_wait_longer(waited: float) -> bool:
     return waited < _PATIENCE
 
 
@@ -38,11 +38,13 @@ def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
     ]
 
 
-def begin(store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]) -> Claim:
+def begin_run(
+    store: Store, folder: RunFolder, tables: Mapping[str, Any], name: str, files: Sequence[Artefact]
+) -> Claim:
     """Add the job of a new folder to the store, rename the folder to match, and return the claim."""
-    worker = _worker()
+    worker = _worker_name()
     claim = store.begin(tables, name=name, run=folder.path.name, worker=worker, lease=LEASE, files=files)
-    claim.patient = _is_patient
+    claim.patient = _may_wait_longer
     folder.rename(claim.job.run)
     folder.keep_files({file.name: file.content for file in files})
     return claim
@@ -57,15 +59,15 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
         job = store.job(int(text))
     else:
         folder = find_folder(text, place)
-        stored = store.find(folder.name)
+        stored = store.find_by_run(folder.name)
         if stored is None:
             raise InputError(
                 f"a run can only continue from its records in the store; {folder.name} is not in {store.name}; run "
                 "its job again"
             )
         job = stored
-    if not (job.state in RESUMABLE or _is_left(job)):
-        raise _refused(job)
+    if not (job.state in RESUMABLE or _is_abandoned(job)):
+        raise _not_resumable_error(job)
     return job
 
 
@@ -73,32 +75,32 @@ def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
     """Return the unchanged folder of a job to resume, or a new one if there is none here."""
     path = place / job.run
     if path.is_dir():
-        return RunFolder.again(path)
+        return RunFolder.reopen(path)
     folder = RunFolder(place, job.name)
     folder.rename(job.run)
-    folder.keep_files({name: store.artefact(job.id, name).content for name in store.artefacts(job.id)})
+    folder.keep_files({name: store.artefact(job.id, name).content for name in store.artefact_names(job.id)})
     return folder
 
 
-def take_up(store: Store, job: Job) -> Claim:
+def claim_stopped_job(store: Store, job: Job) -> Claim:
     """Claim a stopped job again. Its folder is open, so no other command-line process uses it.
 
     Raises `InputError` for a job that cannot be resumed.
     """
     try:
-        claim = store.go_on(job.id, worker=_worker(), lease=LEASE, alone=_is_left(job))
+        claim = store.reclaim(job.id, worker=_worker_name(), lease=LEASE, alone=_is_abandoned(job))
     except InputError:
-        raise _refused(store.job(job.id)) from None
-    claim.patient = _is_patient
+        raise _not_resumable_error(store.job(job.id)) from None
+    claim.patient = _may_wait_longer
     return claim
 
 
-def _is_left(job: Job) -> bool:
+def _is_abandoned(job: Job) -> bool:
     """Whether a command-line process still claims to run a job; if the folder is free, that process has ended."""
     return job.state == "running" and (job.worker or "").startswith(_WORKER)
 
 
-def _refused(job: Job) -> InputError:
+def _not_resumable_error(job: Job) -> InputError:
     return InputError(f"only an interrupted or cancelled run can continue; {job.run} is {job.state}; run its job again")
 
 
@@ -122,5 +124,5 @@ def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
         raise
 
 
-def _worker() -> str:
+def _worker_name() -> str:
     return f"{_WORKER} on {socket.gethostname()}, process {os.getpid()}"

@@ -28,17 +28,17 @@ def find_run(text: str, place: Path) -> Path:
         with open_store(None, place) as store:
             job = _stored_job(store, text, place)
             if job is not None:
-                return export_job(store, job, place)
+                return export_run_folder(store, job, place)
     return find_folder(text, place)
 
 
-def export_job(store: Store, job: Job, place: Path) -> Path:
+def export_run_folder(store: Store, job: Job, place: Path) -> Path:
     """Write the run folder of a job that has a result, unless it exists, and return it."""
     path = place / job.run
     if path.is_dir():
         return path
     result = store.result(job.id)
-    files = {name: store.artefact(job.id, name).content for name in store.artefacts(job.id)}
+    files = {name: store.artefact(job.id, name).content for name in store.artefact_names(job.id)}
     versions = json.loads(files.pop("versions.json", b"{}"))
     with RunFolder(place, job.name) as folder:
         folder.rename(job.run)
@@ -58,7 +58,7 @@ def _stored_job(store: Store, text: str, place: Path) -> Job | None:
         latest = store.jobs(states=_FOUND, limit=1)
         names = [folder.name for folder in run_folders(place)]
         return latest[0] if latest and latest[0].run > max(names, default="") else None
-    return store.find(text)
+    return store.find_by_run(text)
 
 
 def find_folder(text: str, place: Path) -> Path:

@@ -26,7 +26,7 @@ def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple
     return stated
 
 
-def words_of(front: ParetoFront, stated: Wished) -> dict[str, str]:
+def wishes_as_entered(front: ParetoFront, stated: Wished) -> dict[str, str]:
     """Return wishes of `stated_wishes` as people enter them: "110 N m", "improve", "may worsen to 40 deg"."""
     words = {}
     for name, (kind, value) in stated.items():
@@ -40,7 +40,7 @@ def wishes_of_run(folder: Path) -> list[MadeWish]:
     """Return the wishes for the run in a folder, newest first; none for a run without a job."""
     from ..store.remarks import wishes_of
 
-    with _job(folder) as store_and_job:
+    with _store_and_job(folder) as store_and_job:
         return wishes_of(*store_and_job) if store_and_job else []
 
 
@@ -48,19 +48,19 @@ def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
     """Record a wish for the run in a folder; return whether the run has a job to store the wish with."""
     from ..store.remarks import note_wish
 
-    with _job(folder) as store_and_job:
+    with _store_and_job(folder) as store_and_job:
         if store_and_job:
             note_wish(*store_and_job, wishes, design)
         return store_and_job is not None
 
 
 @contextmanager
-def _job(folder: Path) -> Iterator[tuple[Store, int] | None]:
+def _store_and_job(folder: Path) -> Iterator[tuple[Store, int] | None]:
     """Yield the store that lists the run in a folder, with the number of its job."""
     place = folder.resolve().parent
     if not has_store(None, place):
         yield None
         return
     with open_store(None, place) as store:
-        job = store.find(folder.resolve().name)
+        job = store.find_by_run(folder.resolve().name)
         yield None if job is None else (store, job.id)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError, NotFound
-from ..runs.run_folder import disk, runs_place
+from ..runs.run_folder import runs_place, translate_disk_errors
 from ..text.screen import print_message
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def printable_store_address(option: str | None, runs: Path | None = None) -> str
     return without_secrets(store_address(option, runs))
 
 
-def is_named(option: str | None) -> bool:
+def is_store_specified(option: str | None) -> bool:
     """Whether the location of the store was specified; otherwise it is the default."""
     return bool(option or os.environ.get(STORE_VARIABLE))
 
@@ -58,7 +58,7 @@ def open_store(option: str | None, runs: Path | None = None) -> Store:
 
     address = store_address(option, runs)
     if "://" not in address:
-        with disk(Path(address).parent):
+        with translate_disk_errors(Path(address).parent):
             Path(address).parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     return Store(address)
 
@@ -69,8 +69,8 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
     Raises `InputError` for an invalid address, and `StoreError` for a file that cannot be a store; see `has_content`.
     """
     address = store_address(option, runs)
-    with disk(Path(address).parent):
-        if not is_named(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
+    with translate_disk_errors(Path(address).parent):
+        if not is_store_specified(option) and not any(Path(f"{address}{end}").exists() for end in ("", "-wal")):
             return False  # the usual case, handled without importing SQLAlchemy
     from ..store.address import file_of, has_content
 
@@ -85,7 +85,7 @@ def warn_without_workers(store: Store) -> None:
 
 
 @contextmanager
-def store_that_is_there(option: str | None) -> Iterator[Store]:
+def existing_store(option: str | None) -> Iterator[Store]:
     """Yield the store, and close it afterwards. Raises `NotFound` for a missing file, which is not created."""
     if not has_store(option):
         raise NotFound(

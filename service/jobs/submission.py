@@ -26,7 +26,7 @@ LONGEST_WAIT = 10.0
 """Maximum time per function call while a request waits for it, s."""
 
 
-def parse_allowed(
+def parse_with_allowed_functions(
     tables: Mapping[str, Any],
     allowed: Collection[str],
     values: Mapping[str, Any] | None = None,
@@ -42,15 +42,15 @@ def parse_allowed(
     from ...optimise.job.file import require_plain_data
 
     require_plain_data(tables)
-    require_allowed(tables, allowed)
+    require_allowed_functions(tables, allowed)
     return parse_job(tables, values, require_feasible=require_feasible)
 
 
-def require_allowed(tables: Mapping[str, Any], allowed: Collection[str]) -> None:
+def require_allowed_functions(tables: Mapping[str, Any], allowed: Collection[str]) -> None:
     """Raise `JobError` for a job that names a function that is not allowed."""
     for name, function in functions_of(tables).items():
         if function not in allowed:
-            raise _refused(name, function, allowed)
+            raise _function_not_allowed_error(name, function, allowed)
 
 
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
@@ -77,7 +77,7 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     return functions
 
 
-def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
+def _function_not_allowed_error(name: str, function: str, allowed: Collection[str]) -> JobError:
     from ...objectives.units import quote
 
     remedy = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
@@ -87,7 +87,7 @@ def _refused(name: str, function: str, allowed: Collection[str]) -> JobError:
     )
 
 
-def bounded(problem: Problem, seconds: float) -> Problem:
+def with_time_limit_per_call(problem: Problem, seconds: float) -> Problem:
     """Return a problem with a time limit per call, s, for its custom functions."""
     from ...objectives.own.quantity import bounded
 
@@ -97,7 +97,7 @@ def bounded(problem: Problem, seconds: float) -> Problem:
 
 
 @contextlib.contextmanager
-def ending_custom_functions(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
+def end_custom_processes_on_exit(problem: Problem, engine: Engine | None = None) -> Iterator[None]:
     """End the custom function processes of a problem on exit: otherwise they run until the problem is freed.
 
     engine: engine that may also have called them; its processes end too, and new ones start when needed.
@@ -131,7 +131,7 @@ def submit(
     """
     return store.submit(
         tables,
-        name=parse_allowed(tables, allowed_quantities).name,
+        name=parse_with_allowed_functions(tables, allowed_quantities).name,
         limits=limits,
         files=[source or job_json(tables)],
         **queueing,

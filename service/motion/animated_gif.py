@@ -17,10 +17,10 @@ from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.swing_curves import curves_at_even_times
-from ..drawings.linkage_shapes import fixed_shapes, look_of, moving_shapes, pin_positions
+from ..drawings.linkage_shapes import fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
-from ..drawings.swing_parts import swing_look, swing_moving, swing_scenery
-from ..figures.painting import paint, show_rectangle
+from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
+from ..figures.painting import paint_shapes, show_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, add_axes, new_figure, write_text
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ class _Scene:
 
 
 def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scene:
-    look, turns = look_of(mechanism, linkage), cycle_turns(mechanism)
+    look, turns = linkage_sizes(mechanism, linkage), cycle_turns(mechanism)
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
     angles = turn * 2.0 * math.pi * np.arange(turns * FRAMES) / FRAMES
     gas = [indicator(mechanism, linkage, load, angles).pressure for _, load in cylinders(mechanism)]
@@ -88,7 +88,7 @@ def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scen
 
 
 def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System) -> _Scene:
-    drawn = swing_look(mechanism, linkage, swing)
+    drawn = swing_sizes(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, FRAMES)
     frames = []
     for way, angle in (
@@ -98,8 +98,8 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: S
     ):
         slider = pin_positions(drawn.linkage, angle)[1]
         reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length(slider[0], system)}"
-        frames.append((swing_moving(drawn, angle), reading))
-    return _Scene(drawn.extent, drawn.look.size, swing_scenery(drawn), frames, "ends of the swing dashed")
+        frames.append((moving_swing_shapes(drawn, angle), reading))
+    return _Scene(drawn.extent, drawn.look.size, fixed_swing_shapes(drawn), frames, "ends of the swing dashed")
 
 
 def _length(mm: float, system: System) -> str:
@@ -120,7 +120,7 @@ def _draw_frames(scene: _Scene, title: str) -> list[Picture]:
     show_rectangle(axes, left - margin, low - margin, right + margin, high + margin)
     write_text(figure, 0.15, height + _FOOT + 0.15, title[:90], fontsize=TEXT + 1.5, weight="bold")
     write_text(figure, 0.15, 0.12, scene.dashed, fontsize=SMALL, color=MUTED)
-    paint(axes, scene.still)
+    paint_shapes(axes, scene.still)
     reading = figure.text(1.0 - 0.15 / _WIDTH, 0.12 / (height + _HEAD + _FOOT), "", fontsize=TEXT, ha="right")
     canvas = figure.canvas
     canvas.draw()
@@ -130,7 +130,7 @@ def _draw_frames(scene: _Scene, title: str) -> list[Picture]:
     for shapes, reading_text in scene.frames:
         reading.set_text(reading_text.replace("-", "−"))
         canvas.restore_region(still)  # type: ignore[attr-defined]
-        for artist in (reading, *paint(axes, shapes)):
+        for artist in (reading, *paint_shapes(axes, shapes)):
             figure.draw_artist(artist)
             if artist is not reading:
                 artist.remove()

@@ -21,9 +21,9 @@ from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
 from ..designs.design_curves import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.linkage_shapes import Look, bar, block, fixed_shapes, lengths_in_words, look_of
+from ..drawings.linkage_shapes import LinkageSizes, bar, block, fixed_shapes, lengths_in_words, linkage_sizes
 from ..drawings.shapes import Circle, Shape
-from ..drawings.swing_parts import body_shapes, cylinder_parts, swing_look, swing_scenery
+from ..drawings.swing_parts import body_shapes, fixed_swing_shapes, piston_rod_and_barrel, swing_sizes
 
 ANGLES = 360
 """Number of curve points per revolution: one per degree."""
@@ -97,7 +97,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
     """
     turns = cycle_turns(mechanism)
     curves = cycle_table(mechanism, linkage, angles=turns * ANGLES, turns=turns)
-    look = look_of(mechanism, linkage)
+    look = linkage_sizes(mechanism, linkage)
     angles = np.arange(turns * ANGLES, dtype=np.float64) * (2.0 * math.pi / ANGLES)
     turn = linkage.at(angles)
     dead = [math.degrees(float(angle)) % 360.0 for angle in linkage.dead_centre_angles]
@@ -106,7 +106,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
     return Playback(
         summary=f"{lengths_in_words(linkage, system, digits=6, stroke=True)}; {turning}",
         record={
-            **place_record(look, turn.slider_position, turn.rod_angle),
+            **position_record(look, turn.slider_position, turn.rod_angle),
             "direction": -1 if mechanism.speed < 0.0 else 1,
             "perSecond": 1.0 / turn_time(mechanism),
         },
@@ -142,7 +142,7 @@ def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[Cu
     ]
 
 
-def place_record(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
+def position_record(look: LinkageSizes, slider: Any, rod: Any) -> dict[str, Any]:
     """Return crank and offset, mm, and at each point of a motion the slider position, mm, and the rod angle, deg.
 
     slider: slider positions, m. rod: rod angles, rad.
@@ -156,7 +156,7 @@ def place_record(look: Look, slider: Any, rod: Any) -> dict[str, Any]:
     }
 
 
-def moving_link_shapes(look: Look) -> dict[str, list[Shape]]:
+def moving_link_shapes(look: LinkageSizes) -> dict[str, list[Shape]]:
     """Return slider, rod, crank and pins, each in its own coordinates."""
     pin = (0.0, 0.0)
     return {
@@ -169,7 +169,7 @@ def moving_link_shapes(look: Look) -> dict[str, list[Shape]]:
 
 def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Playback:
     """Return the motion of a swinging linkage. system: unit system of the summary. Raises as `require_swing`."""
-    drawn = swing_look(mechanism, linkage, swing)
+    drawn = swing_sizes(mechanism, linkage, swing)
     ways = curves_at_even_times(mechanism, drawn.linkage, drawn.swing, ANGLES)
     angles = np.concatenate([way.crank_angle for way in ways])
     at = drawn.linkage.at(angles)
@@ -189,7 +189,7 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
         moving["crank"] = [*moving["crank"], *body_shapes(drawn.body, drawn.look, 0.0)]
     pushed: dict[str, list[Shape]] = {}
     if drawn.cylinder is not None:
-        rod, barrel = cylinder_parts(drawn.cylinder, drawn.look)
+        rod, barrel = piston_rod_and_barrel(drawn.cylinder, drawn.look)
         pushed = {"push": [rod], "barrel": [barrel]}
     timed = drawn.swing.duration
     start, end = (math.degrees(angle) for angle in (drawn.swing.start, drawn.swing.end))
@@ -198,14 +198,14 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
         summary=f"{lengths_in_words(drawn.linkage, system, digits=6)}; from {start:.6g} to {end:.6g} deg, "
         f"the {drawn.swing.driver} driven, {how}",
         record={
-            **place_record(drawn.look, at.slider_position, at.rod_angle),
+            **position_record(drawn.look, at.slider_position, at.rod_angle),
             "angles": [round(math.degrees(angle), 9) for angle in angles],
             "direction": 1,
             "perSecond": 0.0 if timed is None else 0.5 / timed,
         },
         columns=columns,
         marks=(0.5 * ANGLES,),
-        still=swing_scenery(drawn),
+        still=fixed_swing_shapes(drawn),
         moving={**pushed, **moving},
         extent=drawn.extent,
         size=drawn.look.size,

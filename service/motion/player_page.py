@@ -16,7 +16,7 @@ from ...objectives.kinds import System, metric_unit_in, unit_text
 from ...optimise.front.constant_numbers import is_constant
 from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
-from ..drawings.svg import elements, group
+from ..drawings.svg import elements, opening_tag
 from ..render.numerals import format_number as number
 from .playback import ANGLES, Playback, swing_playback, turn_playback
 
@@ -96,10 +96,10 @@ def _drawing(play: Playback, title: str) -> str:
     for layer in _STILL:
         shapes = [shape for shape in play.still if shape.layer is layer]
         if shapes:
-            lines += [group(layer, size), *(line for shape in shapes for line in elements(shape)), "</g>"]
+            lines += [opening_tag(layer, size), *(line for shape in shapes for line in elements(shape)), "</g>"]
     for name, shapes in play.moving.items():
         layer = shapes[0].layer
-        lines.append(group(layer, size).replace(f'id="{layer.name}"', f'id="{name}" class="part"', 1))
+        lines.append(opening_tag(layer, size).replace(f'id="{layer.name}"', f'id="{name}" class="part"', 1))
         lines += [*(line for shape in shapes for line in elements(shape)), "</g>"]
     return "\n".join([*lines, "</svg>"])
 

@@ -62,16 +62,16 @@ def _as_function(name: str, sources: Mapping[str, str]) -> tuple[str, list[str],
     def resolve(path: str) -> str:
         return posixpath.normpath(posixpath.join(posixpath.dirname(name), path))
 
-    def imported(match: re.Match[str]) -> str:
+    def replace_import(match: re.Match[str]) -> str:
         now.append(resolve(match[2]))
         return f'const {{{match[1].replace(" as ", ": ")}}} = take("{now[-1]}");'
 
-    def imported_later(match: re.Match[str]) -> str:
+    def replace_dynamic_import(match: re.Match[str]) -> str:
         later.append(resolve(match[1]))
         return f'Promise.resolve().then(() => take("{later[-1]}"))'
 
     code = _INDENTATION.sub("", _EXPLAINED.sub("", sources[name]))
-    text = _LATER.sub(imported_later, _IMPORT.sub(imported, code))
+    text = _LATER.sub(replace_dynamic_import, _IMPORT.sub(replace_import, code))
     exported = [match[2] for match in _EXPORT.finditer(text)]
     text = _EXPORT.sub(r"\1\2", text)
     if strange := _LEFT.search(text):

@@ -29,8 +29,8 @@ from ...optimise.search.elimination import EliminationBranch, elimination_branch
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
-from .partial_job import is_closed
-from .samples import BATCH, SAMPLES, designs_of, screened
+from .partial_job import depends_on_dimensions_only
+from .samples import BATCH, SAMPLES, designs_of, screened_samples
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -80,15 +80,15 @@ class Possible:
     unchecked: tuple[str, ...]
 
 
-def possible(problem: Problem) -> Possible:
-    """Return the values that the ranges of a problem from `partial_job.geometry` allow."""
+def possible_values(problem: Problem) -> Possible:
+    """Return the values that the ranges of a problem from `partial_job.geometry_problem` allow."""
     free = replace(problem, constraints=())
     box, is_uniform = designs_of(free)
     turning = _rotates_fully(box)
     uniform = box[turning & is_uniform]
-    light, costly = _lengths_only(problem)
-    screening = run_within(PATIENCE, lambda: screened(problem)) if costly else None
-    sample = screened(light) if screening is None else screening
+    light, costly = _dimensional_problem(problem)
+    screening = run_within(PATIENCE, lambda: screened_samples(problem)) if costly else None
+    sample = screened_samples(light) if screening is None else screening
     feasible = sample.is_feasible
     if screening is None:
         hardest = _hardest_requirement(light, uniform)
@@ -107,17 +107,17 @@ def possible(problem: Problem) -> Possible:
         nearest=None
         if hardest is None or feasible.any()
         else run_within(PATIENCE, partial(_nearest_value, light if screening is None else problem, hardest[0])),
-        example=lengths_of(example_of(sample.designs, sample.violation, box[turning])),
+        example=lengths_of(example_design(sample.designs, sample.violation, box[turning])),
         example_feasible=bool(feasible.any()),
         unchecked=costly if screening is None else (),
     )
 
 
-def _lengths_only(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
+def _dimensional_problem(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with only the requirements on the dimensions, and the names of the others."""
     machine = massless_machine(problem.mechanism)
-    closed = tuple(c for c in problem.constraints if is_closed(c.quantity))
-    costly = tuple(c.quantity for c in constraints_of(problem) if not is_closed(c.quantity))
+    closed = tuple(c for c in problem.constraints if depends_on_dimensions_only(c.quantity))
+    costly = tuple(c.quantity for c in constraints_of(problem) if not depends_on_dimensions_only(c.quantity))
     return replace(problem, mechanism=machine, constraints=closed), costly
 
 
@@ -140,7 +140,9 @@ def _rotates_fully(designs: Array) -> NDArray[np.bool_]:
 @lru_cache(maxsize=48)  # most edits between previews change neither ranges nor requirements
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
     """Return the range of a closed-form quantity subject to the other requirements on the dimensions."""
-    constraints = tuple(c for c in constraints_of(problem) if is_closed(c.quantity) and c.quantity != name)
+    constraints = tuple(
+        c for c in constraints_of(problem) if depends_on_dimensions_only(c.quantity) and c.quantity != name
+    )
     if name == "transmission_angle":
         constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
     alone = replace(problem, constraints=constraints)
@@ -151,7 +153,7 @@ def _possible_ends(problem: Problem, name: str) -> Ends | None:
 
 def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, index: int) -> Ends | None:
     """Return the minimum and maximum on a branch, sampled ever more densely around the best samples."""
-    points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_on_edges(problem, branch)])
+    points = np.concatenate([first_samples(SAMPLES, len(branch.free), 1, index), *_points_at_limit(problem, branch)])
     values = _closed_form_values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
         return None
@@ -189,7 +191,7 @@ def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, si
     return float(-polished.values[good, 0].min()) if good.any() else -np.inf
 
 
-def _on_edges(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
+def _points_at_limit(problem: Problem, branch: EliminationBranch) -> Iterator[Array]:
     """Yield points of a branch (n, k) at the limit of a requirement.
 
     Extremes lie there, and the feasible bands are thin.
@@ -265,7 +267,7 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
         sought = with_single_objective(problem, name, "target", 0.5 * (constraint.lower + constraint.upper))
     else:
         sought = with_single_objective(problem, name, "minimise" if constraint.lower is None else "maximise")
-    sample = screened(replace(sought, constraints=others))
+    sample = screened_samples(replace(sought, constraints=others))
     rows = np.flatnonzero(sample.is_feasible)
     if not len(rows):
         return None
@@ -274,7 +276,7 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def example_of(designs: Array, violation: Array, fallback: Array) -> Array | None:
+def example_design(designs: Array, violation: Array, fallback: Array) -> Array | None:
     """Return the most central feasible design, or else the least infeasible, or else the middle of the fallback."""
     if (feasible := violation <= FEASIBLE).any():
         return _middle_of(designs[feasible])

@@ -27,7 +27,7 @@ _MOST_POINTS = 100
 """Maximum points of tabulated loads: each is a breakpoint of every curve, and adds to the cost of every sample."""
 
 
-def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
+def geometry_problem(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
     """Return the problem in crank, rod and offset that a job states; None while there is none.
 
     None while their ranges cannot be read, and for a swing.
@@ -56,7 +56,7 @@ def geometry(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem
     return _with_slow_stroke(replace(problem, constraints=constraints), requirements.get("slow_stroke"))
 
 
-def left_out(tables: Mapping[str, Any], problem: Problem) -> list[str]:
+def omitted_requirements(tables: Mapping[str, Any], problem: Problem) -> list[str]:
     """Return the names of a job's requirements that are missing from its geometry problem."""
     return requirement_names(tables, {constraint.quantity for constraint in problem.constraints} | {"slow_stroke"})
 
@@ -78,7 +78,7 @@ def _with_slow_stroke(problem: Problem, stroke: Any) -> Problem:
     return with_stroke
 
 
-def is_closed(name: str) -> bool:
+def depends_on_dimensions_only(name: str) -> bool:
     """Whether a quantity depends only on the three dimensions."""
     return name in QUANTITIES and QUANTITIES[name].of_dimensions
 
@@ -107,7 +107,7 @@ def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
 def _checkable_constraints(stated: Mapping[str, Any], *, with_machine: bool) -> Iterator[Constraint]:
     """Yield the requirements that can be read and checked quickly."""
     for name, bounds in stated.items():
-        if name not in QUANTITIES or not (with_machine or is_closed(name)):
+        if name not in QUANTITIES or not (with_machine or depends_on_dimensions_only(name)):
             continue
         try:
             yield from constraints_of(ConstraintsPart.model_validate({name: bounds}))

@@ -24,8 +24,8 @@ from ...optimise.problem.problem import Problem
 from ...optimise.problem.remark import Change, Remark
 from ...optimise.problem.requirements import Constraint, Word
 from ...optimise.problem.violation import constraints_of
-from .feasibility import Ends, Possible, possible
-from .partial_job import geometry, left_out
+from .feasibility import Ends, Possible, possible_values
+from .partial_job import geometry_problem, omitted_requirements
 from .swinging import PossibleSwing, possible_swing
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
@@ -47,7 +47,7 @@ class Wrong:
 
 
 @dataclass(frozen=True)
-class Look:
+class JobPreview:
     """Preview of a job.
 
     wrong: its mistakes, empty if the job can be solved. problem: problem of the whole job, if valid.
@@ -69,20 +69,20 @@ class Look:
     swing: PossibleSwing | None = None
 
 
-def look_at(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+def job_preview(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> JobPreview:
     """Return the findings about a job. read: function that returns its problem, or raises its mistakes."""
     try:
         require_few_values(tables)
     except InputError as error:
-        return Look(_mistakes_in(error), None, None, None, [], [])
-    look = _find_problems(tables, read)
+        return JobPreview(_mistakes_in(error), None, None, None, [], [])
+    look = _find_mistakes(tables, read)
     formulas = stated_formulas(tables)
-    wrong = look.wrong if look.problem is not None else _with_formulas(look.wrong, formulas)
+    wrong = look.wrong if look.problem is not None else _with_formula_mistakes(look.wrong, formulas)
     swing = possible_swing(tables, look.problem)
     return replace(look, wrong=wrong, formulas=formulas, names=formula_names(tables), swing=swing)
 
 
-def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
+def _with_formula_mistakes(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wrong]:
     """Return mistakes with those in formulas, which the others hide: a job is read before its formulas.
 
     A message about the formula itself replaces the message about its place, unless that is a key of another table.
@@ -99,10 +99,10 @@ def _with_formulas(wrong: list[Wrong], formulas: list[StatedFormula]) -> list[Wr
     ]
 
 
-def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> Look:
+def _find_mistakes(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> JobPreview:
     """Return the findings about a job except those on its formulas."""
     try:
-        stated = geometry(tables, None)
+        stated = geometry_problem(tables, None)
     except InputError:
         stated = None
     full_problem, wrong, rest = None, list[Wrong](), tables
@@ -121,30 +121,30 @@ def _find_problems(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]]
     try:
         full_problem = read(rest)
         if not sentences_by_name and stated is not None:
-            stated = geometry(tables, full_problem)
+            stated = geometry_problem(tables, full_problem)
     except InputError as error:
         wrong += _mistakes_in(error)
     if sentences_by_name:
         full_problem = None
     if stated is None:
-        return Look(wrong, full_problem, None, None, [], [])
-    possible_values = possible(stated)
+        return JobPreview(wrong, full_problem, None, None, [], [])
+    ranges = possible_values(stated)
     fixed_names = () if full_problem is None else tuple(item.name for item in full_problem.mechanism.varying)
-    doubts = _doubtful_lengths(tables)
+    doubts = _implausible_lengths(tables)
     reported = () if full_problem is None else full_problem.warnings
-    return Look(
+    return JobPreview(
         wrong,
         full_problem,
         stated,
-        possible_values,
-        [*left_out(tables, stated), *possible_values.unchecked],
+        ranges,
+        [*omitted_requirements(tables, stated), *ranges.unchecked],
         [doubt for doubt in doubts if doubt not in reported]
         if doubts  # lengths in the wrong unit would lead to wrong remedies
-        else infeasibility_sentences(stated, possible_values, fixed_names, tables),
+        else infeasibility_sentences(stated, ranges, fixed_names, tables),
     )
 
 
-def _doubtful_lengths(tables: Mapping[str, Any]) -> list[str]:
+def _implausible_lengths(tables: Mapping[str, Any]) -> list[str]:
     """Return the warnings about crank, rod and offset values without a unit that are implausible."""
     keys = {f"variables.{name}" for name in DIMENSIONS}
     plain = plain_values(Job, {"variables": tables["variables"]})

@@ -93,13 +93,13 @@ def _length_columns(problem: Problem) -> list[int]:
     return [0, 1, 2, *([] if column is None else [column])]
 
 
-def screened(problem: Problem) -> Screening:
+def screened_samples(problem: Problem) -> Screening:
     """Return designs as in `designs_of` with their violations, as many as a short time allows."""
     end = time.monotonic() + _MOMENT
     columns = _length_columns(problem)
     designs, violations, uniform = [np.zeros((0, len(columns)))], [np.zeros(0)], [np.zeros(0, dtype=bool)]
     objectives = [np.zeros((0, len(problem.objectives)))]
-    parts = _exact_parts(problem)
+    parts = _problems_with_exact_bands(problem)
     for place, part in enumerate(parts):
         branches = elimination_branches(part)
         evaluators = [Evaluator(part, branch) for branch in branches]
@@ -123,7 +123,7 @@ def screened(problem: Problem) -> Screening:
     )
 
 
-def _exact_parts(problem: Problem) -> list[Problem]:
+def _problems_with_exact_bands(problem: Problem) -> list[Problem]:
     """Return problems that require single values within the bands of a problem; itself if it has no bands.
 
     A band is a range for a quantity that can be eliminated. Its values are spread over the possible range of the

@@ -22,9 +22,9 @@ from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
-from .feasibility import PATIENCE, Ends, example_of, lengths_of, run_within
+from .feasibility import PATIENCE, Ends, example_design, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
-from .samples import Screening, designs_of, screened
+from .samples import Screening, designs_of, screened_samples
 
 Array = NDArray[np.float64]
 
@@ -87,10 +87,10 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
         own=swing_quantities(swing),
     )
     full = None if full_problem is None else replace(full_problem.part(0), objectives=objectives)
-    screening = None if full is None else run_within(PATIENCE, lambda: screened(full))
+    screening = None if full is None else run_within(PATIENCE, lambda: screened_samples(full))
     named = requirement_names(tables)
     unchecked = () if screening is not None else tuple(name for name in named if name != SWING_TRANSMISSION_ANGLE.name)
-    return _possible_swing(swing, light, screened(light) if screening is None else screening, unchecked)
+    return _possible_swing(swing, light, screened_samples(light) if screening is None else screening, unchecked)
 
 
 def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: tuple[str, ...]) -> PossibleSwing:
@@ -99,10 +99,10 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
     turning = passes(light.mechanism, swing, box)
     designs, good = sample.designs, sample.is_feasible
     closes = np.isfinite(sample.violation)
-    example = example_of(designs, sample.violation, box[turning])
+    example = example_design(designs, sample.violation, box[turning])
     basis = designs[good] if good.any() else designs[closes] if closes.any() else box[turning]
     ends = ends_of(light.mechanism, swing, basis)
-    travel = np.abs(positions(ends.end, sign, basis) - positions(ends.start, sign, basis))
+    travel = np.abs(slider_positions(ends.end, sign, basis) - slider_positions(ends.start, sign, basis))
     example_swing = None
     if example is not None:
         example_ends = ends_of(light.mechanism, swing, example[None])
@@ -124,7 +124,7 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
     )
 
 
-def positions(angle: float | Array, sign: float, designs: Array) -> Array:
+def slider_positions(angle: float | Array, sign: float, designs: Array) -> Array:
     """Return the slider position (n,), m, of designs (n, 3) at a crank angle; NaN where the linkage does not close."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore", divide="ignore"):

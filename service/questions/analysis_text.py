@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ..designs.display_units import record_in, row_in
+from ..designs.display_units import convert_record, convert_row
 from ..render.terminal import print_blocks
 from ..text.tables import show_design, show_rules, show_undefined, show_violated
 from .discovery import TOPIC_COLUMNS
@@ -34,9 +34,9 @@ def show_analysis(
     before the topics, or "".
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
-    show_design(screen, row_in({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
+    show_design(screen, convert_row({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
     show_undefined(screen, {key: why for key, why in reasons if key not in TOPIC_COLUMNS}, custom)
-    show_violated(screen, record_in(analysis.violated, units), row_in(row, units))
+    show_violated(screen, convert_record(analysis.violated, units), convert_row(row, units))
     if judgement is not None:
         show_rules(screen, judgement)
     if hint:

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ..designs.display_units import record_in, row_in
+from ..designs.display_units import convert_record, convert_row
 from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules
-from ..designs.violations import violated_by
+from ..designs.violations import violations_of
 from ..runs.result import Row, rows_of
 from .design_question import BoundQuestion
 from .discovery import TOPICS
@@ -46,14 +46,20 @@ class Analysis:
 
         judgement: its job, evaluated at the design; None without a job.
         """
-        topics = {topic.name: topic.numbers_in(self.topic_numbers[topic.name], units) for topic in self.topics}
-        undefined = {} if self.undefined is None else {"undefined": record_in(self.undefined, units)}
+        topics = {topic.name: topic.numbers_in_units(self.topic_numbers[topic.name], units) for topic in self.topics}
+        undefined = {} if self.undefined is None else {"undefined": convert_record(self.undefined, units)}
         judged: dict[str, Any] = {}
         if judgement is not None:
             judged["rules"] = [asdict(rule) for rule in judgement.rules]
             if judgement.choices:
                 judged["choices"] = [asdict(choice) for choice in judgement.choices]
-        return row_in(self.row, units) | topics | undefined | {"violated": record_in(self.violated, units)} | judged
+        return (
+            convert_row(self.row, units)
+            | topics
+            | undefined
+            | {"violated": convert_record(self.violated, units)}
+            | judged
+        )
 
 
 def judge_design(
@@ -79,10 +85,10 @@ def quantities_of_design(
 ) -> tuple[Row, dict[str, str]]:
     """Return every quantity of one design, and by column the reason for each missing one. custom: custom quantities."""
     from ...objectives.tables.analysis import columns_of
-    from .peaks import row_of
+    from .peaks import lengths_row
 
     return with_undefined_values(
-        rows_of(columns_of(mechanism, row_of(linkage), custom=custom))[0], mechanism, linkage, custom
+        rows_of(columns_of(mechanism, lengths_row(linkage), custom=custom))[0], mechanism, linkage, custom
     )
 
 
@@ -143,7 +149,7 @@ def analysis_of(
     added after these. cancelled: polled; once true, the remaining topics are omitted. lenient: whether to omit a topic
     that does not apply to this design instead of raising an error.
     """
-    design = tuple(TOPICS[name].for_design(mechanism, linkage, (options or {}).get(name)) for name in topics)
+    design = tuple(TOPICS[name].bind_to_design(mechanism, linkage, (options or {}).get(name)) for name in topics)
     design += tuple(further_topics)
     numbers_by_topic: dict[str, dict[str, Any]] = {}
     remarks, refused = list(notes), list[str]()
@@ -161,4 +167,4 @@ def analysis_of(
                 raise InputError(reason) from None
             refused.append(reason)
     answered = tuple(topic for topic in design if topic.name in numbers_by_topic)
-    return Analysis(row, numbers_by_topic, answered, remarks, refused, undefined, violated_by(mechanism, row))
+    return Analysis(row, numbers_by_topic, answered, remarks, refused, undefined, violations_of(mechanism, row))

@@ -54,9 +54,9 @@ class DesignQuestion:
 
     package: package of the folder; its last part is the name. place: position among the questions, in ascending order.
     shows: description for the help. needs_job: whether it needs masses, loads or tolerances. explained_columns: columns
-    that it shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function `prepare`
-    in the module derives further options for numbers and figure from the given ones. An optional function `in_units`
-    converts the numbers to a unit system.
+    that it shows, which the table of a design therefore omits. inputs: accepted inputs. An optional function
+    `compute_shared_options` in the module derives further options for numbers and figure from the given ones. An
+    optional function `in_units` converts the numbers to a unit system.
 
     command: declaration as a separate command. Its numbers also accept `words`, the interface's names for the inputs,
     and `swing`, the swing in the job, or `problem` if it sizes; the design need not rotate fully. The keys `note` or
@@ -72,21 +72,21 @@ class DesignQuestion:
     command: QuestionCommand | None = None
 
     @property
-    def analysis(self) -> Any:
+    def analysis_module(self) -> Any:
         """Module of the folder with the functions."""
         return import_module(f"{self.package}.analysis")
 
     @property
     def record_type(self) -> Any:
         """Type of the numbers; see `record_types`."""
-        return get_type_hints(self.analysis.numbers, include_extras=True)["return"]
+        return get_type_hints(self.analysis_module.numbers, include_extras=True)["return"]
 
     @property
     def name(self) -> str:
         """Name in `--show`, in JSON and of the figure's file."""
         return self.package.rpartition(".")[2]
 
-    def for_problem(
+    def bind_to_problem(
         self,
         mechanism: Mechanism,
         linkage: Linkage,
@@ -104,14 +104,14 @@ class DesignQuestion:
         swing = None if problem is None else problem.motion
         if self.command is None:
             require_rotating_crank(swing, f"the topic {self.name}")
-            return self.for_design(
+            return self.bind_to_design(
                 mechanism, linkage, read_inputs(self.inputs, inputs, f"the topic {self.name}", words)
             )
         context: dict[str, object] = {"swing": swing}
         if self.command.sizes:
             require_rotating_crank(swing, self.command.called or self.name)
             context = {"problem": problem}
-        return self.for_design(
+        return self.bind_to_design(
             mechanism, linkage, {**context, "words": words, **read_inputs(self.inputs, inputs, self.name, words)}
         )
 
@@ -121,13 +121,13 @@ class DesignQuestion:
         """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
         from ...model.linkage.single_linkage import single
 
-        bound = self.for_problem(mechanism, linkage, problem, inputs)
+        bound = self.bind_to_problem(mechanism, linkage, problem, inputs)
         if self.command is None:
             single(mechanism, linkage)
         record: dict[str, Any] = json_ready(bound.numbers())
         return record
 
-    def for_design(
+    def bind_to_design(
         self, mechanism: Mechanism, linkage: Linkage, options: dict[str, Any] | None = None
     ) -> BoundQuestion:
         """Return the question for one design. options: options of its `numbers`."""
@@ -150,60 +150,60 @@ class BoundQuestion:
 
     def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
         """Return the numbers, ready for JSON. Raises `InputError` if the design has none."""
-        self._prepare(cancelled)
-        record: dict[str, Any] = self._analysis.numbers(self.mechanism, self.linkage, **self.options)
+        self._add_shared_options(cancelled)
+        record: dict[str, Any] = self._analysis_module.numbers(self.mechanism, self.linkage, **self.options)
         return record
 
-    def numbers_in(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
+    def numbers_in_units(self, numbers: dict[str, Any], units: System) -> dict[str, Any]:
         """Return metric numbers converted to a unit system, for JSON."""
-        from ..designs.display_units import record_in
+        from ..designs.display_units import convert_record
 
-        converted: dict[str, Any] = getattr(self._analysis, "in_units", record_in)(numbers, units)
+        converted: dict[str, Any] = getattr(self._analysis_module, "in_units", convert_record)(numbers, units)
         return converted
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
         """Return metric numbers as blocks for people."""
-        result_blocks: list[Block] = self._analysis.blocks(numbers)
+        result_blocks: list[Block] = self._analysis_module.blocks(numbers)
         return result_blocks
 
     def notes(self, numbers: dict[str, Any]) -> list[str]:
         """Return notes on the numbers: undefined values, or an unproven optimum."""
-        if hasattr(self._analysis, "notes"):
-            remarks: list[str] = self._analysis.notes(numbers)
+        if hasattr(self._analysis_module, "notes"):
+            remarks: list[str] = self._analysis_module.notes(numbers)
             return remarks
         return [note for note in numbers.get("notes", [numbers.get("note")]) if note]
 
-    def written(self, name: str, units: System) -> Any:
+    def output_of(self, name: str, units: System) -> Any:
         """Return the output of a function in the module, by name: rows of `curves`, or a `figure`."""
-        return getattr(self._analysis, name)(self.mechanism, self.linkage, units=units, **self.options)
+        return getattr(self._analysis_module, name)(self.mechanism, self.linkage, units=units, **self.options)
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
         """Draw the figure for known numbers into a folder; return the file."""
         from ..figures.panels import save_figure
 
         file = folder / f"{self.name}.png"
-        save_figure(self._drawn(), file, units)
+        save_figure(self._figure_source(), file, units)
         return file
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
         """Return the figure without computed numbers. Raises `InputError` if there is none."""
         from ..figures.panels import figure_of
 
-        self._prepare(cancelled)
-        return figure_of(self._drawn(), units)
+        self._add_shared_options(cancelled)
+        return figure_of(self._figure_source(), units)
 
-    def _prepare(self, cancelled: Callable[[], bool]) -> None:
-        if hasattr(self._analysis, "prepare"):
-            self.options.update(
-                self._analysis.prepare(self.mechanism, self.linkage, **{**self.options, "cancelled": cancelled})
-            )
+    def _add_shared_options(self, cancelled: Callable[[], bool]) -> None:
+        module = self._analysis_module
+        if hasattr(module, "compute_shared_options"):
+            inputs = {**self.options, "cancelled": cancelled}
+            self.options.update(module.compute_shared_options(self.mechanism, self.linkage, **inputs))
 
-    def _drawn(self) -> FigureSource:
+    def _figure_source(self) -> FigureSource:
         hidden = {item.name for item in self.question.inputs if not item.drawn}
         options = {name: value for name, value in self.options.items() if name not in hidden}
-        source: FigureSource = self._analysis.figure(self.mechanism, self.linkage, **options)
+        source: FigureSource = self._analysis_module.figure(self.mechanism, self.linkage, **options)
         return source
 
     @property
-    def _analysis(self) -> Any:
-        return self.question.analysis
+    def _analysis_module(self) -> Any:
+        return self.question.analysis_module

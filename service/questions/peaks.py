@@ -21,12 +21,12 @@ class Peak(NamedTuple):
     degrees: float
 
 
-def row_of(linkage: Linkage) -> NDArray[np.float64]:
+def lengths_row(linkage: Linkage) -> NDArray[np.float64]:
     """Return crank, rod and offset, m, as a table with one design (1, 3)."""
     return np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
 
 
 def peak(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> Peak:
     """Return the peak of a signal over the cycle; the first of equal peaks (`first_peaks`)."""
-    values, angles = first_peaks(mechanism, signal, row_of(linkage))
+    values, angles = first_peaks(mechanism, signal, lengths_row(linkage))
     return Peak(float(values[0]), math.degrees(float(angles[0])))

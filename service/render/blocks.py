@@ -135,13 +135,13 @@ def column(title: Text = "", kind: Kind | None = None, *, left: bool = False) ->
     return Column(title, kind, right_aligned=not left)
 
 
-def recorded(record: Mapping[str, Any], key: str, **look: Any) -> Value:
+def value_from_record(record: Mapping[str, Any], key: str, **look: Any) -> Value:
     """Return a number from a metric record, whose key names its unit. look: further fields of `Value`."""
-    return recorded_all({key: [record[key]]}, key, **look)[0]
+    return values_from_record({key: [record[key]]}, key, **look)[0]
 
 
-def recorded_all(record: Mapping[str, Any], key: str, **look: Any) -> list[Value]:
-    """Return a list of numbers from a metric record; see `recorded`."""
+def values_from_record(record: Mapping[str, Any], key: str, **look: Any) -> list[Value]:
+    """Return a list of numbers from a metric record; see `value_from_record`."""
     _, kind = kind_of_key(key)
     return [Value(None if number is None else number / kind.metric.factor, kind, **look) for number in record[key]]
 
@@ -154,8 +154,10 @@ def named_number(record: Mapping[str, Any], key: str, remark: Text = "") -> Name
     """Return a named number from a metric record, with the crank angle of a peak and a remark."""
     name, _ = kind_of_key(key)
     angle = f"{name}_angle_deg"
-    at = words("at {angle}", angle=recorded(record, angle, decimals=2)) if record.get(angle) is not None else ""
-    return name.replace("_", " ").replace("rms ", "RMS "), recorded(record, key), joined([at, remark])
+    at = (
+        words("at {angle}", angle=value_from_record(record, angle, decimals=2)) if record.get(angle) is not None else ""
+    )
+    return name.replace("_", " ").replace("rms ", "RMS "), value_from_record(record, key), joined([at, remark])
 
 
 def number_list(title: Text, numbers: Sequence[NamedNumber]) -> list[Block]:
@@ -168,9 +170,9 @@ def number_list(title: Text, numbers: Sequence[NamedNumber]) -> list[Block]:
     return [Sentence(title, "heading"), Table(columns, tuple(rows), indented=True, dim=(3,))]
 
 
-def compared(record: Mapping[str, Any], key: str, remark: str) -> Text:
+def remark_with_value(record: Mapping[str, Any], key: str, remark: str) -> Text:
     """Return a remark with a number from a metric record: "12.5 N m without friction"; empty without the number."""
-    value = recorded(record, key)
+    value = value_from_record(record, key)
     return "" if value.number is None else words("{value} {remark}", value=value, remark=remark)
 
 

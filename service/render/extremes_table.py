@@ -7,7 +7,7 @@ from typing import Any
 
 from ...objectives.column_keys import kind_of_key
 from ...objectives.kinds import ANGLE, LENGTH
-from .blocks import Table, Text, Unit, column, recorded
+from .blocks import Table, Text, Unit, column, value_from_record
 
 _PLACES = (column("at", ANGLE), column("slider", LENGTH))
 
@@ -16,18 +16,18 @@ def extremes_table(curves: Mapping[str, Mapping[str, Any]]) -> Table:
     """Return a line for each curve of a metric record: both extremes, each with crank angle and slider position."""
     columns = (column("curve", left=True), column("least"), *_PLACES, column("greatest"), *_PLACES)
     rows = tuple((entry["title"], *_extreme(entry, "least"), *_extreme(entry, "greatest")) for entry in curves.values())
-    units = (Unit(kind_of_key(_key(entry, "least"))[1]) for entry in curves.values())
+    units = (Unit(kind_of_key(_position_key(entry, "least"))[1]) for entry in curves.values())
     lines = tuple((*row, unit) for row, unit in zip(rows, units, strict=True))
     return Table((*columns, column("unit", left=True)), lines, ruled=True)
 
 
 def _extreme(entry: Mapping[str, Any], word: str) -> Iterator[Text]:
-    value = recorded(entry, _key(entry, word))
+    value = value_from_record(entry, _position_key(entry, word))
     yield value
     for place in ("crank_angle_deg", "slider_position_mm"):
-        at = recorded(entry, f"{word}_at_{place}", decimals=2, missing="")
+        at = value_from_record(entry, f"{word}_at_{place}", decimals=2, missing="")
         yield "" if value.number is None else at
 
 
-def _key(entry: Mapping[str, Any], word: str) -> str:
+def _position_key(entry: Mapping[str, Any], word: str) -> str:
     return next(key for key in entry if kind_of_key(key)[0] == word)

@@ -67,7 +67,7 @@ def format_text(text: Text, system: System = "metric", *, bare: bool = False, pr
     return "".join(format_text(part, system, printed=printed) for part in text)
 
 
-def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> tuple[str, ...]:
+def table_headings(table: Table, system: System = "metric", *, separator: str = ", ") -> tuple[str, ...]:
     """Return the column headings of a table, each followed by a separator and the unit of the column."""
     titles = []
     for column in table.columns:
@@ -76,7 +76,7 @@ def heads(table: Table, system: System = "metric", *, separator: str = ", ") -> 
     return tuple(titles)
 
 
-def cells(table: Table, system: System = "metric", *, printed: bool = False) -> tuple[tuple[str, ...], ...]:
+def table_cells(table: Table, system: System = "metric", *, printed: bool = False) -> tuple[tuple[str, ...], ...]:
     """Return the cells of a table; see `format_value`."""
     return tuple(tuple(format_text(cell, system, bare=True, printed=printed) for cell in row) for row in table.rows)
 
@@ -87,9 +87,9 @@ def plain_blocks(blocks: Sequence[Block], system: System = "metric") -> list[Pla
         PlainBlock(format_text(block.text, system), heading=block.style == "heading")
         if isinstance(block, Sentence)
         else PlainBlock(
-            heads=tuple(" ".join(head.split()) for head in heads(block, system)),
+            heads=tuple(" ".join(head.split()) for head in table_headings(block, system)),
             right=tuple(column.right_aligned for column in block.columns),
-            rows=tuple(tuple(cell.strip() for cell in row) for row in cells(block, system)),
+            rows=tuple(tuple(cell.strip() for cell in row) for row in table_cells(block, system)),
         )
         for block in blocks
     ]

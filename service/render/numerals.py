@@ -21,7 +21,7 @@ def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
     return ("0" if float(text) == 0.0 else text).replace("-", "−")
 
 
-def on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
+def format_on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
     """Return a number as text for an axis from low to high; values below a millionth of the range become zero."""
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
@@ -32,14 +32,14 @@ def with_unit(title: str, symbol: str, target: float | None = None) -> str:
     return named if target is None else f"{named} (target {f'{target:g} {unit_text(symbol)}'.rstrip()})"
 
 
-def rounded(cell: Cell) -> str:
+def format_cell(cell: Cell) -> str:
     """Return a value for people, with six significant digits."""
     if cell is None:
         return "–"
     return cell if isinstance(cell, str) else format_number(cell, 6)
 
 
-def as_stored(cell: Cell) -> str:
+def format_cell_exactly(cell: Cell) -> str:
     """Return a value as in CSV, with every digit; empty for undefined values and words."""
     if cell is None or isinstance(cell, str) or math.isnan(cell):
         return ""
@@ -52,6 +52,6 @@ def length(millimetres: float, system: System, digits: int = 4) -> str:
     return f"{format_number(millimetres * factor, digits)} {unit}"
 
 
-def measured(cell: Cell, unit: str) -> str:
+def format_cell_with_unit(cell: Cell, unit: str) -> str:
     """Return a value for people with its unit."""
-    return f"{rounded(cell)} {unit_text(unit)}".rstrip()
+    return f"{format_cell(cell)} {unit_text(unit)}".rstrip()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...objectives.kinds import System
 from .blocks import Block, Sentence, Table
-from .formatting import cells, format_text, heads
+from .formatting import format_text, table_cells, table_headings
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -32,7 +32,7 @@ def _is_note(block: Block | None) -> bool:
 
 
 def _print_table(screen: Console, block: Table, system: System) -> None:
-    titles = heads(block, system, separator=",\n" if block.ruled else ", ")
+    titles = table_headings(block, system, separator=",\n" if block.ruled else ", ")
     rows = table(
         *(f"{'>' if column.right_aligned else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
         ruled=block.ruled,
@@ -40,7 +40,7 @@ def _print_table(screen: Console, block: Table, system: System) -> None:
     )
     for place in block.dim:
         rows.columns[place].style = "dim"
-    for place, (first, *rest) in enumerate(cells(block, system)):
+    for place, (first, *rest) in enumerate(table_cells(block, system)):
         rows.add_row(f"  {first}" if block.indented else first, *rest, style="bold" if place in block.bold else "")
     print_table(screen, rows)
 

@@ -37,5 +37,5 @@ def bookmarks_of_run(folder: Path) -> list[Bookmark]:
     from ..store.remarks import bookmarks_of
 
     with open_store(None, folder.parent) as store:
-        job = store.find(folder.name)
+        job = store.find_by_run(folder.name)
         return [] if job is None else bookmarks_of(store, job.id)

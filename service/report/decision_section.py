@@ -5,8 +5,8 @@ from __future__ import annotations
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
 from ..designs.columns import find_column
-from ..designs.display_units import row_in
-from ..render.numerals import rounded
+from ..designs.display_units import convert_row
+from ..render.numerals import format_cell
 from .document import Block, Paragraph, Section, Table
 from .subject import Alternative, Subject
 
@@ -21,7 +21,7 @@ def decision_section(subject: Subject) -> Section | None:
     if subject.bookmark != chosen.bookmark:
         blocks.append(Paragraph("This report is about another design.", "note"))
     ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
-    rows = [row_in(alternative.row, subject.system) for alternative in ordered]
+    rows = [convert_row(alternative.row, subject.system) for alternative in ordered]
     keys = [find_column(name, list(rows[0])).key for name in DIMENSIONS]
     columns = [find_column(key, list(rows[0])) for key in keys]
     objectives = subject.result.objectives
@@ -30,7 +30,7 @@ def decision_section(subject: Subject) -> Section | None:
     cells = tuple(
         (
             alternative.bookmark.name,
-            *(rounded(row[column.key]) for column in numbers),
+            *(format_cell(row[column.key]) for column in numbers),
             _reason_and_misses(alternative),
         )
         for alternative, row in zip(ordered, rows, strict=True)

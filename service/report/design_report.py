@@ -11,8 +11,8 @@ from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..designs.changed_design import Variation
-from ..designs.columns import chosen_columns, find_column
-from ..render.numerals import measured, rounded
+from ..designs.columns import choice_column_keys, find_column
+from ..render.numerals import format_cell, format_cell_with_unit
 from ..text.job_in_words import machine_in_words
 from .decision_section import decision_section
 from .design_section import design_section, linkage_picture, numbers_section
@@ -59,12 +59,16 @@ def _summary_section(subject: Subject) -> Section:
     keys = {metric_key(key) for key in row}
     size_names = [item.name for item in (STROKE, ACTUATOR_TRAVEL, SWING_ANGLE) if item.field in keys]
     columns = [find_column(name, list(row)) for name in (*DIMENSIONS, *size_names)]
-    lengths = [f"{item.title} {subject.sensible(item.key, row[item.key])} {unit_text(item.unit)}" for item in columns]
+    lengths = [
+        f"{item.title} {subject.format_cell(item.key, row[item.key])} {unit_text(item.unit)}" for item in columns
+    ]
     rows = {
         "Lengths": [", ".join(lengths)],
-        "Objectives": [f"{item.title} {measured(row[item.column], item.unit)}" for item in subject.result.objectives],
-        "Choices": [_format_choice(subject, key) for key in chosen_columns(row)] if subject.problem.choices else [],
-        "Beyond what is allowed": [unit_text(line) for line in subject.violated],
+        "Objectives": [
+            f"{item.title} {format_cell_with_unit(row[item.column], item.unit)}" for item in subject.result.objectives
+        ],
+        "Choices": [_format_choice(subject, key) for key in choice_column_keys(row)] if subject.problem.choices else [],
+        "Beyond what is allowed": [unit_text(line) for line in subject.violation_sentences],
         "Machine": _machine_lines(subject),
         "What it is": _best_objectives(subject)
         if subject.changed is None
@@ -79,7 +83,7 @@ def _format_choice(subject: Subject, key: str) -> str:
     column, value = find_column(key, list(subject.row)), subject.row[key]
     custom = next((quantity for quantity in subject.problem.own if quantity.field == key), None)
     title, unit = (column.title, column.unit) if custom is None else (custom.title, custom.unit.symbol)
-    return f"{title} {value}" if isinstance(value, str) else f"{title} {measured(value, unit)}"
+    return f"{title} {value}" if isinstance(value, str) else f"{title} {format_cell_with_unit(value, unit)}"
 
 
 def _machine_lines(subject: Subject) -> list[str]:
@@ -102,10 +106,10 @@ def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
     """Return sentences on the changes to a design on the front, and on their effect."""
     before = subject.result.designs[subject.number - 1]
     changes = [
-        f"{name} {measured(subject.row[column.key], column.unit)} instead of "
-        f"{measured(before[column.key], column.unit)}"
+        f"{name} {format_cell_with_unit(subject.row[column.key], column.unit)} instead of "
+        f"{format_cell_with_unit(before[column.key], column.unit)}"
         for name, column in ((name, find_column(name, list(before))) for name in DIMENSIONS)
-        if rounded(subject.row[column.key]) != rounded(before[column.key])
+        if format_cell(subject.row[column.key]) != format_cell(before[column.key])
     ]
     sentences = [f"design {subject.number} of {len(subject.result.designs)} with other lengths: {', '.join(changes)}"]
     if changed.outside:

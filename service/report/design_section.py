@@ -13,13 +13,13 @@ from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.judged_requirements import requirements_of
-from ..designs.rounding_noise import without_noise
+from ..designs.rounding_noise import row_without_noise
 from ..designs.toleranced import format_toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
 from ..figures.front import datasheet_of
 from ..figures.painting import drawing_figure
-from ..render.numerals import as_stored, rounded
+from ..render.numerals import format_cell, format_cell_exactly
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -32,7 +32,10 @@ def design_section(subject: Subject) -> Section:
         subject.label[:1].upper() + subject.label[1:],
         (
             *_rule_blocks(subject),
-            *(Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad") for line in subject.violated),
+            *(
+                Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad")
+                for line in subject.violation_sentences
+            ),
             *_optimality_blocks(subject),
             Picture(
                 "The design over a turn of the crank"
@@ -51,13 +54,13 @@ def numbers_section(subject: Subject) -> Section:
     columns, absent = _columns_of_machine(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _is_active(subject, column)}
-    row_without_noise = without_noise(subject.row)
+    row = row_without_noise(subject.row)
     rows = tuple(
         (
             column.title,
-            lengths.get(column.key, "0" if column.key in at_bound else rounded(row_without_noise[column.key])),
+            lengths.get(column.key, "0" if column.key in at_bound else format_cell(row[column.key])),
             unit_text(column.unit),
-            as_stored(subject.row[column.key]),
+            format_cell_exactly(subject.row[column.key]),
             column.key,
         )
         for column in columns
@@ -132,9 +135,9 @@ def _rule_blocks(subject: Subject) -> list[Block]:
         all_met = all_met and is_met
         state = "met, active" if active and is_met else "met" if is_met else "not met"
         title = column.title.removeprefix("slack of ")
-        distance = "0" if active else rounded(slack)
+        distance = "0" if active else format_cell(slack)
         bound = bounds.get(column.key, "")
-        rows.append((title, bound, rounded(value), distance, unit_text(column.unit), state))
+        rows.append((title, bound, format_cell(value), distance, unit_text(column.unit), state))
     verdict = "All requirements are met." if all_met else "Not all requirements are met: see below."
     return [
         Paragraph(verdict, "good" if all_met else "bad"),
@@ -152,11 +155,11 @@ def _bounds_by_slack(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):
-        key, factor = key_in(item.slack, subject.system)
+        key, factor = key_in(item.slack_column, subject.system)
         ends = [("at least", item.lower), ("at most", item.upper)]
         if item.lower == item.upper:
             ends = [("equal to", item.lower)]
-        bounds[key] = " and ".join(f"{word} {rounded(end * factor)}" for word, end in ends if end is not None)
+        bounds[key] = " and ".join(f"{word} {format_cell(end * factor)}" for word, end in ends if end is not None)
     return bounds
 
 
@@ -174,10 +177,10 @@ def _optimality_blocks(subject: Subject) -> list[Block]:
         blocks.append(Paragraph("This design is not on the front; no better one was searched for.", "note"))
     if status == "stationary":
         condition = "while the requirements hold"
-        text = f"Stationary: no small change improves every objective {condition} (residual {rounded(residual)})."
+        text = f"Stationary: no small change improves every objective {condition} (residual {format_cell(residual)})."
         blocks.append(Paragraph(text, "good"))
     elif status is not None:
-        text = f"Best found, but not shown to be stationary (residual {rounded(residual)})."
+        text = f"Best found, but not shown to be stationary (residual {format_cell(residual)})."
         blocks.append(Paragraph(text, "plain"))
     if len(subject.result.objectives) < 2 or subject.changed is not None:
         return blocks

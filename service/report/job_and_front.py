@@ -12,7 +12,7 @@ from ..designs.columns import find_column
 from ..designs.violations import front_violations_in_words
 from ..figures.parallel import parallel_coordinates
 from ..figures.scatter import scatter_matrix
-from ..render.numerals import measured, rounded
+from ..render.numerals import format_cell, format_cell_with_unit
 from ..text.job_in_words import freedom_in_words, summarise
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
@@ -42,7 +42,7 @@ def search_section(subject: Subject, created: str) -> Section:
         "Method": settings.method,
         "Seed": f"{result.seed}: the same job and seed give the same front, bit for bit",
         "Evaluations": f"{result.evaluations}",
-        "Time of the search": f"{rounded(result.seconds)} s",
+        "Time of the search": f"{format_cell(result.seconds)} s",
         "Designs": f"{len(result.designs)} on the front, none of which is better than another in all objectives",
         "Hypervolume": f"{result.hypervolume:.6f} of the box from the best values of the front to 1.1 times its range",
         "Outcome": f"{result.status}: {result.message}",
@@ -51,14 +51,14 @@ def search_section(subject: Subject, created: str) -> Section:
         "Report drawn by": f"{_versions_in_words({name: version_of(name) for name in _DREW})}; {created}",
     }
     facts = Facts({title: [line] for title, line in rows.items()})
-    return Section("How the front was found", (facts, *_certificate(subject)))
+    return Section("How the front was found", (facts, *_certificate_blocks(subject)))
 
 
 def _versions_in_words(versions: Mapping[str, str]) -> str:
     return ", ".join(f"{name} {number}" for name, number in versions.items())
 
 
-def _certificate(subject: Subject) -> tuple[Block, ...]:
+def _certificate_blocks(subject: Subject) -> tuple[Block, ...]:
     certificate = subject.certificate
     if certificate is None:
         text = "No certificate: how far the front is from the true one was not proven (slidercrank certify does that)."
@@ -72,9 +72,10 @@ def _certificate(subject: Subject) -> tuple[Block, ...]:
     ):
         value = certificate.get(key)
         if value is not None:
-            lines.append(f"{title}: {rounded(float(value))}")
+            lines.append(f"{title}: {format_cell(float(value))}")
     lines += [
-        f"{certificate['boxes']} boxes, {certificate['open_boxes']} open, {rounded(float(certificate['seconds']))} s"
+        f"{certificate['boxes']} boxes, {certificate['open_boxes']} open, "
+        f"{format_cell(float(certificate['seconds']))} s"
     ]
     return (Facts({"Certificate": lines, **({"Notes": certificate["notes"]} if certificate["notes"] else {})}),)
 
@@ -104,13 +105,17 @@ def front_section(subject: Subject) -> Section:
 def _ranges(subject: Subject) -> Table:
     rows = []
     for objective in subject.result.objectives:
-        ranked = sorted(subject.result.designs, key=objective.rank)
+        ranked = sorted(subject.result.designs, key=objective.minimised_value)
         best, worst = ranked[0][objective.column], ranked[-1][objective.column]
         value = subject.row[objective.column]
-        place = 1 + sum(objective.rank(row) < objective.rank(subject.row) for row in ranked)
+        place = 1 + sum(objective.minimised_value(row) < objective.minimised_value(subject.row) for row in ranked)
         rank = f"{place} of {len(ranked) + (subject.changed is not None)}"
-        numbers = (rounded(value), rounded(best), rounded(worst), unit_text(objective.unit), rank)
-        sense = objective.sense if objective.target is None else f"target {measured(objective.target, objective.unit)}"
+        numbers = (format_cell(value), format_cell(best), format_cell(worst), unit_text(objective.unit), rank)
+        sense = (
+            objective.sense
+            if objective.target is None
+            else f"target {format_cell_with_unit(objective.target, objective.unit)}"
+        )
         rows.append((objective.title, sense, *numbers))
     return Table(
         f"Objectives within the front: {subject.label}",
@@ -138,13 +143,13 @@ def _comparison_table(subject: Subject) -> Table:
         (
             str(place + 1),
             ", ".join(words),
-            *(subject.sensible(column.key, result.designs[place][column.key]) for column in columns),
+            *(subject.format_cell(column.key, result.designs[place][column.key]) for column in columns),
         )
         for place, words in labels.items()
     )
     if subject.changed is not None:
         rows = (
-            ("", "this design", *(subject.sensible(column.key, subject.row[column.key]) for column in columns)),
+            ("", "this design", *(subject.format_cell(column.key, subject.row[column.key]) for column in columns)),
             *rows,
         )
     heads = tuple(f"{column.title}, {unit_text(column.unit)}" if column.unit else column.title for column in columns)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from ...model.swing.swing import Swing
-from ..questions.lever.analysis import blocks, numbers, prepare
+from ..questions.lever.analysis import blocks, compute_shared_options, numbers
 from ..render.blocks import Table as Numbers
-from ..render.formatting import cells
+from ..render.formatting import table_cells
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 
@@ -13,11 +13,16 @@ from .subject import Subject
 def lever_section(subject: Subject, swing: Swing) -> Section:
     """Return the numbers of the swing, as the command `lever` has them."""
     design, system = subject.design, subject.system
-    request = prepare(design.mechanism, design.linkage, swing=swing)["request"]
+    request = compute_shared_options(design.mechanism, design.linkage, swing=swing)["request"]
     record = numbers(design.mechanism, design.linkage, request=request)
     tables = [block for block in blocks(record) if isinstance(block, Numbers)]
     shown: list[Block] = [
-        Table("The lever and its cylinder", ("", "value", "unit", "where"), cells(table, system, printed=True), _WIDTHS)
+        Table(
+            "The lever and its cylinder",
+            ("", "value", "unit", "where"),
+            table_cells(table, system, printed=True),
+            _WIDTHS,
+        )
         for table in tables
     ]
     notes = (Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"])

@@ -13,12 +13,12 @@ from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation
-from ..designs.display_units import record_in, result_in, row_in
+from ..designs.display_units import convert_record, convert_result, convert_row
 from ..designs.judged_requirements import faults_in_words
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..designs.toleranced import format_toleranced, tolerances_of
-from ..designs.violations import violated_by, violations_in_words
-from ..render.numerals import rounded
+from ..designs.violations import violations_in_words, violations_of
+from ..render.numerals import format_cell
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Subject:
     @cached_property
     def result(self) -> Result:
         """Result in the unit system of the report."""
-        return result_in(self.metric, self.system)
+        return convert_result(self.metric, self.system)
 
     @cached_property
     def front(self) -> ParetoFront:
@@ -88,22 +88,24 @@ class Subject:
         keys = {name: key_in(f"{name}_mm", self.system) for name in tolerances_mm}
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
-    def sensible(self, key: str, cell: Cell) -> str:
+    def format_cell(self, key: str, cell: Cell) -> str:
         """Return a cell for people: a dimension with the decimals of its tolerance, anything else with six digits."""
         if key not in self.tolerances or not isinstance(cell, float):
-            return rounded(cell)
+            return format_cell(cell)
         return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")
 
     @property
     def row(self) -> Row:
         """All numbers of the design."""
-        return self.result.designs[self.number - 1] if self.changed is None else row_in(self.changed.row, self.system)
+        return (
+            self.result.designs[self.number - 1] if self.changed is None else convert_row(self.changed.row, self.system)
+        )
 
     @cached_property
-    def violated(self) -> list[str]:
+    def violation_sentences(self) -> list[str]:
         """Sentences on the allowable values that the design violates."""
         row = self.metric.designs[self.number - 1] if self.changed is None else self.changed.row
-        violated = record_in(violated_by(self.design.mechanism, row), self.system)
+        violated = convert_record(violations_of(self.design.mechanism, row), self.system)
         return violations_in_words(violated, self.row)
 
     @cached_property

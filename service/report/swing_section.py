@@ -13,8 +13,8 @@ from ...objectives.tables.swing_curves import driven_side, error_kind
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
-from ..render.formatting import cells, heads
-from ..render.numerals import length, rounded
+from ..render.formatting import table_cells, table_headings
+from ..render.numerals import format_cell, length
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 
@@ -35,14 +35,14 @@ class SwingOfSubject:
         """Return the numbers of the swing, and the extremes of its curves."""
         record, system = swing_record(self._subject.design.mechanism, self.summary), self._subject.system
         tables = [block for block in swing_blocks(record) if isinstance(block, Numbers)]
-        numbers, extremes = (cells(table, system, printed=True) for table in tables)
+        numbers, extremes = (table_cells(table, system, printed=True) for table in tables)
         named, wide = ("", "value", "unit", "where"), (0.38, 0.14, 0.08, 0.4)
         blocks: list[Block] = [
             Table(swing_title(record), named, numbers, wide, frozenset({1})),
             *(Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"]),
         ]
         title, widths = "Extremes of the curves over both strokes", (0.25, 0.11, 0.1, 0.12, 0.12, 0.1, 0.12, 0.08)
-        blocks.append(Table(title, heads(tables[1], system), extremes, widths, frozenset(range(1, 7))))
+        blocks.append(Table(title, table_headings(tables[1], system), extremes, widths, frozenset(range(1, 7))))
         return Section("The swing", tuple(blocks))
 
     def tolerances(self) -> Section | None:
@@ -56,19 +56,19 @@ class SwingOfSubject:
         rows = tuple(
             (
                 share.source,
-                f"{rounded(math.degrees(share.limit))} deg"
+                f"{format_cell(math.degrees(share.limit))} deg"
                 if share.source == "crank angle"
                 else length(1e3 * share.limit, system, 6),
-                rounded(factor * unit_of_error.factor * share.error),
+                format_cell(factor * unit_of_error.factor * share.error),
                 f"{100.0 * share.error / total:.1f}",
             )
             for share in shares
         )
         driven_quantity = "crank angle" if driven_side(self.summary.swing) == "crank" else "slider position"
         sentence = (
-            f"The {driven_quantity} is off by {rounded(factor * unit_of_error.factor * worst.value)} {unit} at most, "
-            f"at a crank angle of {rounded(math.degrees(worst.crank_angle))} deg: worst case of all sources, to first "
-            "order."
+            f"The {driven_quantity} is off by {format_cell(factor * unit_of_error.factor * worst.value)} {unit} at "
+            f"most, at a crank angle of {format_cell(math.degrees(worst.crank_angle))} deg: worst case of all sources, "
+            "to first order."
         )
         table = Table(
             f"Sources of the error of the {driven_quantity} there",

@@ -21,7 +21,7 @@ def is_full(error: BaseException) -> bool:
     return isinstance(error, OSError) and error.errno in _FULL
 
 
-def free(place: Path) -> int:
+def free_bytes(place: Path) -> int:
     """Return the free space, bytes, at the location of a file or folder, existing or not; very large if unknown."""
     existing = place.absolute()
     while not existing.exists() and existing != existing.parent:
@@ -34,18 +34,18 @@ def free(place: Path) -> int:
 
 def free_space_text(place: Path) -> str:
     """Return the free space at a location in words."""
-    return f"{place} has {size_text(free(place))} free"
+    return f"{place} has {size_text(free_bytes(place))} free"
 
 
-def full_places(error: OSError) -> str:
+def full_places_text(error: OSError) -> str:
     """Return the locations affected by a full-disk error: the one that it names, or else those without free space."""
     if isinstance(error.filename, str | os.PathLike):
         return free_space_text(Path(error.filename))
-    places = [place for place in _other_folders() if free(place) < LEAST]
+    places = [place for place in _cache_and_temporary_folders() if free_bytes(place) < LEAST]
     return ", ".join(map(free_space_text, places)) or "a disk is full"
 
 
-def _other_folders() -> list[Path]:
+def _cache_and_temporary_folders() -> list[Path]:
     """Return further locations that this software writes to: compiled kernels and temporary files."""
     from ... import model
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
+def without_garbage_collection() -> Iterator[None]:
     """Suspend garbage collection, which takes a fifth of the time to load matplotlib or to draw a figure."""
     collecting = gc.isenabled()
     gc.disable()

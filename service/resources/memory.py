@@ -35,7 +35,7 @@ class Memory:
         """Memory left behind by earlier jobs, bytes."""
         return self._least - self._fresh
 
-    def of_the_job(self) -> int:
+    def used_by_job(self) -> int:
         """Return the memory that the job uses now, bytes, including that of a fresh process."""
         total = memory_taken()
         self._least = min(self._least, total)

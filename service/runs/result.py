@@ -35,7 +35,7 @@ class StoredObjective:
     unit: str
     target: float | None = None
 
-    def rank(self, row: Row) -> float:
+    def minimised_value(self, row: Row) -> float:
         """Return a number that is smaller for a better design."""
         value = row[self.column]
         if not isinstance(value, float | int) or math.isnan(value):
@@ -281,17 +281,17 @@ def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     out = io.StringIO()
     if rows:
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow([_inert_text(key) for key in rows[0]] if spreadsheet else rows[0])
+        writer.writerow([_text_without_formula(key) for key in rows[0]] if spreadsheet else rows[0])
         for row in rows:
             # The writer writes every number as repr does, and None as nothing; only NaN differs from itself.
             cells = ["" if cell != cell else cell for cell in row.values()]
             if spreadsheet:
-                cells = [_inert_text(cell) if isinstance(cell, str) else cell for cell in cells]
+                cells = [_text_without_formula(cell) if isinstance(cell, str) else cell for cell in cells]
             writer.writerow(cells)
     return out.getvalue()
 
 
-def _inert_text(text: str) -> str:
+def _text_without_formula(text: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 

@@ -60,19 +60,19 @@ class RunFolder:
     `MissingExtra` before there is a result removes the folder, since nothing was done. Any other error leaves the run
     unfinished, with the reason in log.txt, and adds the location of the log to the error as a note. A resumed run keeps
     its
-    files: nothing changes before `go_on`, and after an error the result of a cancelled run stays readable.
+    files: nothing changes before `resume`, and after an error the result of a cancelled run stays readable.
     """
 
     def __init__(self, place: Path, name: str) -> None:
         """Create the folder in `place`, named by time and job name; unique even among runs of the same second."""
         self.started = time.strftime("%Y-%m-%d %H:%M:%S")
-        with disk(place):
+        with translate_disk_errors(place):
             place.mkdir(mode=0o700, parents=True, exist_ok=True)
             # Prepared under a hidden name, then renamed, so that the folder never appears without its mark.
             hidden = place / f".new-{os.getpid()}-{secrets.token_hex(4)}"
             hidden.mkdir(mode=0o700)  # its log contains the command line
             try:
-                _write(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
+                _write_atomically(hidden / MARK, f"Started {self.started}. The run continues, or was interrupted.\n")
                 self.path = _rename_hidden(hidden, place / run_name(name))
             except BaseException:
                 shutil.rmtree(hidden, ignore_errors=True)
@@ -82,25 +82,25 @@ class RunFolder:
         self.log(f"run {self.path.name} started")
 
     @classmethod
-    def again(cls, path: Path) -> RunFolder:
-        """Open the folder of an interrupted or cancelled run to continue it; it stays unchanged until `go_on`.
+    def reopen(cls, path: Path) -> RunFolder:
+        """Open the folder of an interrupted or cancelled run to continue it; it stays unchanged until `resume`.
 
         Raises `InputError` while another process uses it.
         """
         run = cls.__new__(cls)
         run.started = time.strftime("%Y-%m-%d %H:%M:%S")
         run.path = path
-        with disk(path):
+        with translate_disk_errors(path):
             run._lock = _lock(path)
             run._was_complete, run._has_result = not (path / MARK).exists(), True
         run._is_as_before = True
         return run
 
-    def go_on(self) -> None:
+    def resume(self) -> None:
         """Mark an interrupted or cancelled run as unfinished again."""
         self._is_as_before = False
-        with disk(self.path):
-            _write(self.path / MARK, f"Resumed {self.started}. The run continues, or was interrupted.\n")
+        with translate_disk_errors(self.path):
+            _write_atomically(self.path / MARK, f"Resumed {self.started}. The run continues, or was interrupted.\n")
         self.log(f"run {self.path.name} continues")
 
     @property
@@ -110,13 +110,13 @@ class RunFolder:
 
     def log(self, line: str) -> None:
         """Add a line to log.txt."""
-        with disk(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
+        with translate_disk_errors(self.path), (self.path / "log.txt").open("a", encoding="utf-8") as file:
             file.write(f"{time.strftime('%Y-%m-%d %H:%M:%S')}  {path_text(line)}\n")
 
     def rename(self, name: str) -> None:
         """Rename the folder. Raises `RunError` if the name is taken."""
         if name != self.path.name:
-            with disk(self.path.parent):
+            with translate_disk_errors(self.path.parent):
                 self.path = self.path.rename(self.path.with_name(name))
 
     def keep_files(self, files: Mapping[str, bytes]) -> None:
@@ -125,22 +125,22 @@ class RunFolder:
             target = self.path / path_from_text(name)
             if not target.resolve().is_relative_to(self.path.resolve()):
                 raise RunError(f"the files of a run must be in its folder; got {name!r}; choose another name")
-            with disk(self.path):
+            with translate_disk_errors(self.path):
                 target.parent.mkdir(parents=True, exist_ok=True)
-                _write(target, content)
+                _write_atomically(target, content)
 
     def keep_result(self, result: Result, versions: dict[str, str]) -> None:
         """Write front.csv, front.json and versions.json."""
         self._has_result, self._was_complete = True, False
-        with disk(self.path):
-            _write(self.path / "versions.json", json_text(versions))
-            _write(self.path / "front.csv", csv_text(result.designs))
-            _write(self.path / "front.json", json_text(result.record()))
+        with translate_disk_errors(self.path):
+            _write_atomically(self.path / "versions.json", json_text(versions))
+            _write_atomically(self.path / "front.csv", csv_text(result.designs))
+            _write_atomically(self.path / "front.json", json_text(result.record()))
 
     def finish(self) -> None:
         """Flush everything to disk, then remove the mark."""
         self.log("run finished")
-        with disk(self.path):
+        with translate_disk_errors(self.path):
             for folder in (self.figures, self.path):
                 for file in sorted(folder.glob("*")):
                     sync(file)
@@ -168,10 +168,10 @@ class RunFolder:
             shutil.rmtree(self.path, ignore_errors=True)
         elif error is not None and not self._is_as_before:
             with contextlib.suppress(RunError, OSError):  # the pending error matters more
-                self._stop(error)
+                self._record_failure(error)
         self._release()
 
-    def _stop(self, error: BaseException) -> None:
+    def _record_failure(self, error: BaseException) -> None:
         """Log an error. The run is unfinished, unless it was cancelled before and still has that result."""
         reason = str(error) or "interrupted"
         if isinstance(error, InputError):
@@ -182,7 +182,7 @@ class RunFolder:
         if self._was_complete:
             (self.path / MARK).unlink(missing_ok=True)
         else:
-            _write(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
+            _write_atomically(self.path / MARK, f"Started {self.started}, stopped by an error: {reason}\n")
 
 
 def write_file(path: Path, content: str | bytes) -> None:
@@ -193,12 +193,12 @@ def write_file(path: Path, content: str | bytes) -> None:
     """
     if path.is_dir():
         raise InputError(f"an output must be a file; got the folder {path}; name a file in it")
-    with disk(path.parent):
+    with translate_disk_errors(path.parent):
         if path.exists() and not path.is_file():
             with path.open("wb") as stream:
                 stream.write(_bytes_of(content))
         else:
-            _write(path.resolve(), content)
+            _write_atomically(path.resolve(), content)
 
 
 def _lock(folder: Path) -> int | None:
@@ -241,7 +241,7 @@ def _bytes_of(content: str | bytes) -> bytes:
     return content.encode(errors="surrogateescape") if isinstance(content, str) else content  # of paths
 
 
-def _write(path: Path, content: str | bytes) -> None:
+def _write_atomically(path: Path, content: str | bytes) -> None:
     """Write a file under another name, flush it to disk, then rename it."""
     draft = path.with_name(f".{path.name}.{os.getpid()}")
     try:
@@ -269,7 +269,7 @@ def sync(path: Path) -> None:
 
 
 @contextlib.contextmanager
-def disk(place: Path) -> Iterator[None]:
+def translate_disk_errors(place: Path) -> Iterator[None]:
     """Turn a disk error into a `RunError` that names the location, and its free space if it is full."""
     try:
         yield

@@ -77,7 +77,7 @@ def file_of(address: str | PathLike[str]) -> Path | None:
     return Path(url.database) if url.database and url.get_backend_name() == "sqlite" else None
 
 
-def is_there(file: Path) -> bool:
+def store_file_exists(file: Path) -> bool:
     """Whether the file of a store exists.
 
     Raises `StoreError` if it cannot be such a file, or was deleted or emptied while its write-ahead log remains. SQLite
@@ -108,9 +108,9 @@ def is_there(file: Path) -> bool:
 def has_content(file: Path) -> bool:
     """Whether the file of a store exists and can be inspected.
 
-    Raises `StoreError` for an empty file, and as `is_there` does.
+    Raises `StoreError` for an empty file, and as `store_file_exists` does.
     """
-    exists = is_there(file)
+    exists = store_file_exists(file)
     if exists and not file.stat().st_size:
         raise StoreError(
             f"a store to inspect must have tables; {path_text(file)} is an empty file; submit a job to it, or restore "

@@ -15,11 +15,11 @@ from ...model.errors import LeaseLost
 from ..runs.result import Result, json_ready
 from .database import Database, Full, Unavailable
 from .database_clock import JUMP, later, now
-from .job_rows import NewEvent, add_events, records_of, state_event
+from .job_rows import NewEvent, add_events, evaluation_records, state_event
 from .queue import MOST_DELAY, put_files
 from .records import NOT_DONE, Artefact, Job
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_of, checksum, packed, packed_exact, plain, summary_of, text_of
+from .serialisation import cells_of, checksum, database_text, packed, packed_exact, summary_of, text_of
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 _REPORT_AFTER = 1.0  # s after which a waiting write is reported
 _PAUSE = 0.25  # s between two attempts of a write that the database rejected
-Rest = Callable[[Connection], None]
+Writer = Callable[[Connection], None]
 Patience = Callable[[float], bool]
 """Whether a write waits for space after finding the disk full; called with the time waited so far, s."""
 
 
-def _never(_: float) -> bool:
+def _no_patience(_: float) -> bool:
     return False
 
 
@@ -73,16 +73,16 @@ class Claim:
         self.waited = 0.0
 
     @property
-    def age(self) -> float:
+    def seconds_since_renewal(self) -> float:
         """Time since the lease was last renewed, s."""
         return time.monotonic() - self._renewed
 
     def records(self) -> list[Record]:
         """Return the records of the job's evaluations so far, in order."""
         with self._database.reading() as connection:
-            return records_of(connection, self.job.id)
+            return evaluation_records(connection, self.job.id)
 
-    def keep(self, record: Record) -> None:
+    def keep_record(self, record: Record) -> None:
         """Accept the next record; it is written with the next progress report, or at the end."""
         with self._lock:
             self.has_started = True
@@ -102,22 +102,24 @@ class Claim:
     def renew(self) -> None:
         """Renew the lease and check for cancellation; additionally writes only the reason why a write waits."""
         with self._lock:  # otherwise the write may end its wait meanwhile
-            self._write({"reason": plain(self.waits)} if self.waits else {}, [], keep=False, patient=_never)
+            self._write(
+                {"reason": database_text(self.waits)} if self.waits else {}, [], keep=False, patient=_no_patience
+            )
 
-    def look(self) -> None:
+    def check_cancellation(self) -> None:
         """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has claimed it."""
         left = (jobs.c.lease_until - now()).label("left")
         query = select(jobs.c.cancel_asked, left).where(self._mine, jobs.c.state == "running")
         with self._database.reading() as connection:
             row = connection.execute(query).first()
         if row is None:
-            raise self._lost()
+            raise self._lease_lost_error()
         self.cancel_asked = self.cancel_asked or row.cancel_asked
         self.astray = not 0.5 * self.lease <= row.left <= self.lease + JUMP
 
-    def say(self, text: str) -> None:
+    def add_message(self, text: str) -> None:
         """Add a message to the events of the job."""
-        self._write({}, [("message", {"text": plain(text)})])
+        self._write({}, [("message", {"text": database_text(text)})])
 
     def start_over(self, reason: str) -> None:
         """Delete all records: the search restarts. reason: reason for the events of the job."""
@@ -128,7 +130,7 @@ class Claim:
             def forget(connection: Connection) -> None:
                 connection.execute(delete(records).where(of_job))
 
-            self._write({"records": 0}, [("message", {"text": plain(reason)})], forget)
+            self._write({"records": 0}, [("message", {"text": database_text(reason)})], forget)
             self._records = 0
 
     def write_files(self, *files: Artefact) -> None:
@@ -148,7 +150,7 @@ class Claim:
         left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
         texts = {"result": text_of(record), "summary": text_of(summary_of(result))}
 
-        def rest(connection: Connection) -> None:
+        def write_result(connection: Connection) -> None:
             of_job = jobs.c.id == self.job.id
             sums = checksum(connection.scalar(select(jobs.c.tables).where(of_job)), *texts.values())
             sums += checksum(*(str(row["cells"]) for row in rows), content)
@@ -163,7 +165,7 @@ class Claim:
             if result.status != "cancelled":  # a cancelled job can be resumed
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
-        self._end(result.status, result.message, {**texts, **left}, rest)
+        self._end(result.status, result.message, {**texts, **left}, write_result)
 
     def fail(self, reason: str, *, again: bool, delay: float = 0.0) -> None:
         """Return the job to the queue after an error.
@@ -174,13 +176,15 @@ class Claim:
         attempts = 0 if self._unsent else self._attempts
         tries = f" (attempt {attempts} of {self.job.most_attempts})" if again and attempts else ""
         if again and attempts < self.job.most_attempts:
-            self._leave("queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None})
+            self._end_without_result(
+                "queued", f"{reason}{tries}", {"due": later(min(delay, MOST_DELAY)), "finished": None}
+            )
         else:
-            self._leave("failed", f"{reason}{tries}", {})
+            self._end_without_result("failed", f"{reason}{tries}", {})
 
-    def give_up(self, reason: str = NOT_DONE) -> None:
+    def end_as_cancelled(self, reason: str = NOT_DONE) -> None:
         """End the job as cancelled, with the result from before this claim."""
-        self._leave("cancelled", reason, {})
+        self._end_without_result("cancelled", reason, {})
 
     def hand_back(self, reason: str, *, delay: float = 0.0) -> None:
         """Queue the job again unchanged, without counting the attempt: the job did not cause the stop.
@@ -189,30 +193,32 @@ class Claim:
         """
         fewer = case((jobs.c.attempts > 0, jobs.c.attempts - 1), else_=0)
         due = {"due": later(min(delay, MOST_DELAY))} if delay else {}
-        self._leave("queued", reason, {"finished": None, "attempts": fewer, **due})
+        self._end_without_result("queued", reason, {"finished": None, "attempts": fewer, **due})
 
-    def let_go(self) -> None:
+    def release(self) -> None:
         """End the lease immediately, regardless of clocks, unless another worker has the job."""
         with self._database.writing() as connection:
             connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
 
-    def _leave(self, state: str, reason: str, changes: dict[str, Any]) -> None:
+    def _end_without_result(self, state: str, reason: str, changes: dict[str, Any]) -> None:
         """End the claim without a result. Records that do not fit on the disk are omitted: they are recomputed."""
         try:
-            self._end(state, reason, changes, patient=_never)
+            self._end(state, reason, changes, patient=_no_patience)
         except Full:
-            self._end(state, reason, changes, keep=False, patient=lambda _: self.age <= self.lease)
+            self._end(state, reason, changes, keep=False, patient=lambda _: self.seconds_since_renewal <= self.lease)
 
-    def _end(self, state: str, reason: str, changes: dict[str, Any], rest: Rest | None = None, **options: Any) -> None:
-        reason = plain(reason)
+    def _end(
+        self, state: str, reason: str, changes: dict[str, Any], also_write: Writer | None = None, **options: Any
+    ) -> None:
+        reason = database_text(reason)
         ended = {"state": state, "reason": reason, "worker": None, "lease_until": None, "finished": now()}
-        self._write({**ended, **changes}, [state_event(state, reason)], rest, **options)
+        self._write({**ended, **changes}, [state_event(state, reason)], also_write, **options)
 
     def _write(
         self,
         changes: dict[str, Any],
         new_events: Sequence[NewEvent],
-        rest: Rest | None = None,
+        also_write: Writer | None = None,
         *,
         keep: bool = True,
         patient: Patience | None = None,
@@ -222,13 +228,19 @@ class Claim:
             try:
                 while True:
                     try:
-                        self._try(
-                            {"reason": "", **changes} if full else changes, new_events, rest, keep=keep, tried=tried
+                        self._write_once(
+                            {"reason": "", **changes} if full else changes,
+                            new_events,
+                            also_write,
+                            keep=keep,
+                            tried=tried,
                         )
                         return
                     except Unavailable as error:
                         waited, disk_full = time.monotonic() - began, isinstance(error, Full)
-                        if not ((patient or self.patient)(waited) if disk_full else self.age <= self.lease):
+                        if not (
+                            (patient or self.patient)(waited) if disk_full else self.seconds_since_renewal <= self.lease
+                        ):
                             raise
                         if waited > _REPORT_AFTER and not reported:
                             _log.warning("waits to write: %s", error)
@@ -244,8 +256,14 @@ class Claim:
                     self.waits = ""
                     self.waited += time.monotonic() - began
 
-    def _try(
-        self, changes: dict[str, Any], new_events: Sequence[NewEvent], rest: Rest | None, *, keep: bool, tried: bool
+    def _write_once(
+        self,
+        changes: dict[str, Any],
+        new_events: Sequence[NewEvent],
+        also_write: Writer | None,
+        *,
+        keep: bool,
+        tried: bool,
     ) -> None:
         """Write everything in one transaction. tried: whether an earlier attempt may already have taken effect."""
         pending, started = self._unsent if keep else [], time.monotonic()
@@ -262,7 +280,7 @@ class Claim:
         if rows:
             values["attempts"] = 0  # the job makes progress, so earlier failures do not count
         condition = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
-        if self.age > self.lease and not self.waits:
+        if self.seconds_since_renewal > self.lease and not self.waits:
             condition = and_(condition, jobs.c.lease_until > now())
         change = (
             update(jobs).where(condition).values({**values, **changes}).returning(jobs.c.events, jobs.c.cancel_asked)
@@ -275,10 +293,10 @@ class Claim:
                 if rows:
                     connection.execute(insert(records), rows)
                 connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
-                if rest is not None:
-                    rest(connection)
+                if also_write is not None:
+                    also_write(connection)
             elif not tried or connection.scalar(select(jobs.c.writes).where(self._mine)) != self._writes + 1:
-                raise self._lost()  # otherwise already written: only the answer to an earlier attempt was lost
+                raise self._lease_lost_error()  # otherwise written: only the answer to an earlier attempt was lost
         self._renewed, self.astray = started, False
         self._writes += 1
         self._records += len(rows)
@@ -289,7 +307,7 @@ class Claim:
     def _mine(self) -> ColumnElement[bool]:
         return and_(jobs.c.id == self.job.id, jobs.c.fence == self.job.fence)
 
-    def _lost(self) -> LeaseLost:
+    def _lease_lost_error(self) -> LeaseLost:
         return LeaseLost(
             f"only the holder of a lease may write to a job; claim {self.job.fence} of job {self.job.id} has lost "
             "it; leave the job: another worker continues from what was committed"

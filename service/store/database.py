@@ -23,8 +23,8 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from ...model.errors import StoreError
 from ...model.extras import NamingExtra
 from ...model.file_names import path_text
-from ..resources.disk import LEAST, free, free_space_text
-from .address import HIDDEN, address_without_secrets, file_of, is_there, secrets_of, url_of
+from ..resources.disk import LEAST, free_bytes, free_space_text
+from .address import HIDDEN, address_without_secrets, file_of, secrets_of, store_file_exists, url_of
 
 _PATIENCE = 30.0  # s to wait for other writers
 _POOL = {"pool_size": 20, "pool_use_lifo": True}  # as many stay open as API threads use simultaneously
@@ -68,12 +68,12 @@ class Database:
         self._file = file_of(address)
         alone = False
         if self._file is not None:
-            is_there(self._file)
+            store_file_exists(self._file)
             with contextlib.suppress(OSError):  # if it cannot be created, opening it reports why
                 # The files beside it, of the write-ahead log, get its permissions. An existing file is left alone:
                 # closing it would release the locks that SQLite holds on it for other connections of this process.
                 os.close(os.open(self._file, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o600))
-            self._known, self._open = _file_identity(self._file), may_use(self._file)
+            self._known, self._open = _file_identity(self._file), is_readable_and_writable(self._file)
             log, shared = (Path(f"{self._file}{end}") for end in ("-wal", "-shm"))
             if not self._open and log.exists() and not shared.exists():
                 raise StoreError(
@@ -94,8 +94,8 @@ class Database:
 
     def require_disk_space(self) -> None:
         """Raise `Full` if the disk of a file is full; the disk of a server is unknown."""
-        if self._folder is not None and free(self._folder) < LEAST:
-            raise self._full("its disk is full")
+        if self._folder is not None and free_bytes(self._folder) < LEAST:
+            raise self._full_error("its disk is full")
 
     def require_ready(self) -> None:
         """Raise `StoreError` if the disk of a file is full, or a server accepts no changes."""
@@ -110,7 +110,7 @@ class Database:
                     "server, or switch default_transaction_read_only off there"
                 )
 
-    def _full(self, reason: str) -> Full:
+    def _full_error(self, reason: str) -> Full:
         self.last_full = time.monotonic()
         free_space = "" if self._folder is None else f"; {free_space_text(self._folder)}"
         return Full(f"the store needs free space on its disk; {self.name} gave: {reason}{free_space}; free some space")
@@ -121,7 +121,7 @@ class Database:
             return getattr(cause, "sqlstate", None) == _DISK_FULL
         code = (getattr(cause, "sqlite_errorcode", None) or 0) & 0xFF
         lacking = (sqlite3.SQLITE_IOERR, sqlite3.SQLITE_CANTOPEN)  # the message if its log has no space
-        return code == sqlite3.SQLITE_FULL or (code in lacking and free(self._folder) < LEAST)
+        return code == sqlite3.SQLITE_FULL or (code in lacking and free_bytes(self._folder) < LEAST)
 
     def close(self) -> None:
         """Close all connections."""
@@ -160,7 +160,7 @@ class Database:
                 "put it back, or stop what uses it and start again"
             )
         # Open transactions would continue, but no new one could begin.
-        if self._file is not None and self._open and not may_use(self._file):
+        if self._file is not None and self._open and not is_readable_and_writable(self._file):
             raise StoreError(
                 f"the file of a store must stay readable and writable while it is used; {self.name} is no longer; "
                 f"{remedy_of_rights(self._file)}"
@@ -173,8 +173,8 @@ class Database:
         except (ArgumentError, DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
             if self._is_full(error):
                 # Its own message contains the secrets.
-                raise self._full(self._without_secrets(_reason(error))) from None
-            kind = Unavailable if _may_pass(error) else StoreError
+                raise self._full_error(self._without_secrets(_reason(error))) from None
+            kind = Unavailable if _is_temporary(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
                 f"{self._without_secrets(_reason(error))}; check that it runs, that the disk has space and that "
@@ -215,7 +215,7 @@ def _file_identity(file: Path) -> tuple[int, int] | None:
     return status.st_dev, status.st_ino
 
 
-def may_use(path: Path) -> bool:
+def is_readable_and_writable(path: Path) -> bool:
     """Whether this user may read and write the file of a store."""
     return os.access(path, os.R_OK | os.W_OK)
 
@@ -259,11 +259,11 @@ def _postgresql_engine(url: URL) -> Engine:
         engine = create_engine(url.difference_update_query(["options"]), connect_args=used_arguments, **_POOL)
 
     @event.listens_for(engine, "checkin")
-    def rest(_connection: Any, record: Any) -> None:
+    def note_return(_connection: Any, record: Any) -> None:
         record.info["since"] = time.monotonic()
 
     @event.listens_for(engine, "checkout")
-    def prove(connection: Any, record: Any, _proxy: Any) -> None:
+    def check_connection(connection: Any, record: Any, _proxy: Any) -> None:
         # Not every time, as the pool would: that takes as long as using the connection.
         if time.monotonic() - record.info.get("since", math.inf) > _IDLE and not _is_alive(engine, connection):
             raise InvalidatePoolError  # makes the pool drop its connections and open a new one
@@ -278,7 +278,7 @@ def _is_alive(engine: Engine, connection: Any) -> bool:
         return False
 
 
-def _may_pass(error: Exception) -> bool:
+def _is_temporary(error: Exception) -> bool:
     passing = isinstance(error, OperationalError | InterfaceError | PoolTimeoutError | sqlite3.OperationalError)
     return passing or (isinstance(error, DBAPIError) and error.connection_invalidated)
 

@@ -31,7 +31,7 @@ def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
     return Job.from_row(row)
 
 
-def become(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
+def change_state(connection: Connection, job: Job, state: State, reason: str, **changes: Any) -> Job:
     """Change the state of a job, add the event, and return the job."""
     values = {"state": state, "reason": reason, "events": job.events + 1, **changes}
     connection.execute(update(jobs).where(jobs.c.id == job.id).values(values))
@@ -45,7 +45,7 @@ def require_resumable(job: Job) -> None:
         raise InputError(f"only a cancelled or failed job can continue; job {job.id} is {job.state}; submit it again")
 
 
-def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
+def result_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
     """Return the record of a job's result, and the checksum of its designs, empty if there is none.
 
     Raises `RunError` if the result is missing or damaged.
@@ -55,28 +55,28 @@ def the_record(connection: Connection, job: Job) -> tuple[dict[str, Any], str]:
     if text is None:
         raise RunError(f"job {job.id} has no result: it is {job.state}; wait for it, or see its events")
     try:
-        require_sum((sums or "")[:64], tables, text, summary)
+        require_checksum((sums or "")[:64], tables, text, summary)
         record = json.loads(text)
     except ValueError as error:
-        raise damaged(job.id, error) from error
+        raise damaged_result_error(job.id, error) from error
     if not isinstance(record, dict):
-        raise damaged(job.id, TypeError("no record"))
+        raise damaged_result_error(job.id, TypeError("no record"))
     return record, (sums or "")[64:]
 
 
-def require_sum(expected: str, *parts: str | bytes | None) -> None:
+def require_checksum(expected: str, *parts: str | bytes | None) -> None:
     """Raise ValueError if parts of a result do not match their checksum; an empty checksum is not checked."""
     if expected and checksum(*parts) != expected:
         raise ValueError("it differs from its checksum, so its numbers may be wrong")
 
 
-def records_of(connection: Connection, number: int) -> list[Record]:
+def evaluation_records(connection: Connection, number: int) -> list[Record]:
     """Return the records of a job's evaluations so far, in order."""
     query = select(records.c.content).where(records.c.job == number).order_by(records.c.number)
     return [unpacked(content) for content in connection.execute(query).scalars()]
 
 
-def damaged(number: int, error: Exception) -> RunError:
+def damaged_result_error(number: int, error: Exception) -> RunError:
     """Return the error for an unreadable result."""
     return RunError(f"the result of job {number} is damaged: {type(error).__name__}: {error}; submit the job again")
 

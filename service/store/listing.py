@@ -20,7 +20,7 @@ _KEYS: dict[Order, Any] = {
 }
 
 
-def in_order(query: Select[Any], order: Order, before: int | None) -> Select[Any]:
+def ordered_jobs(query: Select[Any], order: Order, before: int | None) -> Select[Any]:
     """Return a query for jobs in an order; jobs with equal keys are sorted newest first.
 
     before: number of a job; only jobs after it in this order, for paging. None for all.

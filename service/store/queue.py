@@ -11,11 +11,11 @@ from sqlalchemy import Connection, and_, delete, exists, func, insert, not_, or_
 
 from ...model.errors import InputError, QueueFull
 from .database_clock import JUMP, Jumps, later, now
-from .job_rows import add_events, become, state_event
+from .job_rows import add_events, change_state, state_event
 from .records import JOB_COLUMNS, LIMITS, Artefact, Job, Limits
 from .schema import artefacts, jobs, workers
 from .schema_version import LOCK
-from .serialisation import plain, text_of
+from .serialisation import database_text, text_of
 
 MOST_DELAY = 60.0
 """s after which a job is due again at the latest: a later due time comes from a clock that was set back since."""
@@ -49,7 +49,7 @@ def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
         raise InputError(f"a key must have 1 to 255 printable characters; got {key[:300]!r}; choose another one")
 
 
-def take_turns(connection: Connection) -> None:
+def lock_submissions(connection: Connection) -> None:
     """Wait until no other PostgreSQL session is submitting; SQLite sessions take turns anyway."""
     if connection.dialect.name == "postgresql":
         connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK + 1})
@@ -86,8 +86,8 @@ def add_job(
 ) -> int:
     """Insert a queued job and return its number. run: name of its folder, changed if already used."""
     row = {
-        "name": plain(name),
-        "run": _free(connection, run),
+        "name": database_text(name),
+        "run": _free_run_name(connection, run),
         "tables": text_of(tables),
         "state": "queued",
         "submitted": now(),
@@ -102,7 +102,7 @@ def add_job(
     return int(number)
 
 
-def in_hand(worker: str, lease: float) -> dict[str, Any]:
+def claim_changes(worker: str, lease: float) -> dict[str, Any]:
     """Return the changes, apart from the state, to a job that a worker claims for `lease` s."""
     return {
         "attempts": jobs.c.attempts + 1,
@@ -124,7 +124,7 @@ def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> boo
     return clock_steady and connection.execute(_CLAIMABLE).first() is not None
 
 
-def running(connection: Connection) -> int:
+def count_running(connection: Connection) -> int:
     """Return the number of jobs held by workers whose lease has not ended."""
     in_hands = and_(jobs.c.state == "running", not_(ENDED_LEASE))
     return connection.scalar(select(func.count()).where(in_hands)) or 0
@@ -150,7 +150,12 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
             update(jobs)
             .where(jobs.c.id == foremost.id)
             .values(
-                {"state": "running", "reason": "", **in_hand(worker, lease), "events": jobs.c.events + len(new_events)}
+                {
+                    "state": "running",
+                    "reason": "",
+                    **claim_changes(worker, lease),
+                    "events": jobs.c.events + len(new_events),
+                }
             )
             .returning(*JOB_COLUMNS)
         ).one()
@@ -162,7 +167,7 @@ def _set_aside(connection: Connection, job: Job) -> None:
     times = "once" if job.attempts == 1 else f"{job.attempts} times in a row"
     end = f"its worker stopped without a report {times}, the last one was {job.worker}"
     left = {"worker": None, "lease_until": None, "finished": now()}
-    become(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)
+    change_state(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)
 
 
 def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
@@ -173,7 +178,7 @@ def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> No
         connection.execute(insert(artefacts).values(job=job, at=now(), **row))
 
 
-def _free(connection: Connection, run: str) -> str:
+def _free_run_name(connection: Connection, run: str) -> str:
     start = jobs.c.run.startswith(run, autoescape=True)
     used_names = set(connection.execute(select(jobs.c.run).where(start)).scalars())
     return next(

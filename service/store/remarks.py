@@ -15,7 +15,7 @@ from .database import Database
 from .database_clock import now
 from .job_rows import the_job
 from .schema import bookmarks, wishes
-from .serialisation import plain
+from .serialisation import database_text
 
 MOST_BOOKMARKS = 500
 """Maximum number of bookmarks per job."""
@@ -75,7 +75,7 @@ def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
         return _all_bookmarks(connection, job)
 
 
-def keep_design(
+def bookmark_design(
     store: Database,
     job: int,
     *,
@@ -124,7 +124,7 @@ def remove_bookmark(store: Database, job: int, number: int) -> None:
 def _change_bookmark(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
     if remarks.get("decided"):
         connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
-    values = {name: plain(value) if isinstance(value, str) else value for name, value in remarks.items()}
+    values = {name: database_text(value) if isinstance(value, str) else value for name, value in remarks.items()}
     if values:
         connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
     return _the_bookmark(connection, job, number)

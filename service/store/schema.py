@@ -29,7 +29,7 @@ metadata = sa.MetaData(naming_convention=NAMES)
 _number = sa.BigInteger().with_variant(sa.Integer, "sqlite")  # SQLite auto-increments only keys of this type
 
 
-def _of_a_job() -> sa.Column[int]:
+def _job_column() -> sa.Column[int]:
     return sa.Column("job", _number, sa.ForeignKey("jobs.id", ondelete="CASCADE"), primary_key=True)
 
 
@@ -79,7 +79,7 @@ and summary, followed by that of its designs and exact designs; results of early
 events = sa.Table(
     "events",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
     sa.Column("at", sa.Double, nullable=False),
     sa.Column("kind", sa.String(16), nullable=False),
@@ -89,7 +89,7 @@ events = sa.Table(
 records = sa.Table(
     "records",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
     sa.Column("content", sa.LargeBinary, nullable=False),
 )
@@ -97,17 +97,17 @@ records = sa.Table(
 designs = sa.Table(
     "designs",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
     sa.Column("cells", sa.Text, nullable=False),
 )
 
-exact = sa.Table("exact", metadata, _of_a_job(), sa.Column("content", sa.LargeBinary, nullable=False))
+exact = sa.Table("exact", metadata, _job_column(), sa.Column("content", sa.LargeBinary, nullable=False))
 
 artefacts = sa.Table(
     "artefacts",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("name", sa.String(255), primary_key=True),
     sa.Column("media_type", sa.String(255), nullable=False),
     sa.Column("at", sa.Double, nullable=False),
@@ -117,7 +117,7 @@ artefacts = sa.Table(
 bookmarks = sa.Table(
     "kept",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
     sa.Column("name", sa.Text, nullable=False),
     sa.Column("note", sa.Text, nullable=False),
@@ -133,7 +133,7 @@ bookmarks = sa.Table(
 wishes = sa.Table(
     "wishes",
     metadata,
-    _of_a_job(),
+    _job_column(),
     sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
     sa.Column("wishes", sa.Text, nullable=False),
     sa.Column("design", sa.Integer),

@@ -67,7 +67,7 @@ def _alembic() -> tuple[Config, ScriptDirectory]:
     return config, ScriptDirectory.from_config(config)
 
 
-def strangers(database: Database) -> str:
+def foreign_tables_text(database: Database) -> str:
     """Return, in words, the tables of a foreign database; empty for a store or an empty database."""
     with database.reading() as connection:
         return _foreign_tables(connection, _alembic()[1])

@@ -127,7 +127,7 @@ def text_of(value: Any) -> str:
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
 
-def plain(text: str) -> str:
+def database_text(text: str) -> str:
     """Return a text that every database accepts: without NUL and lone surrogates, at most a page long."""
     text = text.replace("\0", "?").encode(errors="replace").decode()
     return text if len(text) <= _LONGEST else text[: _LONGEST - 4] + " ..."

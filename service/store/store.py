@@ -19,20 +19,20 @@ from .claim import Claim
 from .database_clock import Jumps, now
 from .job_rows import (
     add_events,
-    become,
-    damaged,
+    change_state,
+    damaged_result_error,
+    evaluation_records,
     news_of,
-    records_of,
+    require_checksum,
     require_resumable,
-    require_sum,
+    result_record,
     the_job,
-    the_record,
 )
-from .listing import Order, in_order
+from .listing import Order, ordered_jobs
 from .records import ENDED, JOB_COLUMNS, NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, Queueing, State
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import upgrade
-from .serialisation import plain, rows_of, unpacked_exact
+from .serialisation import database_text, rows_of, unpacked_exact
 from .workers import Workers
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Store(Workers):
     def require_writable(self) -> None:
         """Raise `StoreError` if jobs cannot be added."""
         with self.writing() as connection:
-            queue.take_turns(connection)
+            queue.lock_submissions(connection)
 
     def submit(
         self,
@@ -92,7 +92,7 @@ class Store(Workers):
         queue.require_bounds(**queueing_values)
         key, values = queueing_values["key"], {**queueing_values, "origin": origin}
         with self.writing() as connection:
-            queue.take_turns(connection)  # so that two submissions can neither share a key nor overfill the queue
+            queue.lock_submissions(connection)  # so that two submissions can neither share a key nor overfill the queue
             earlier = queue.submitted_before(connection, key, tables) if key else None
             if earlier is None:
                 queue.require_place_in_queue(connection, self.most_queued)
@@ -104,11 +104,11 @@ class Store(Workers):
     ) -> Claim:
         """Add a job that its submitter solves itself, in `run`, and return its claim. The job is never retried."""
         with self.writing() as connection:
-            queue.take_turns(connection)
+            queue.lock_submissions(connection)
             number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
             return self._claim(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
 
-    def go_on(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
+    def reclaim(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
         """Claim a cancelled or failed job immediately, to continue it.
 
         alone: also allow a running job whose worker is gone.
@@ -123,23 +123,25 @@ class Store(Workers):
 
     def _claim(self, connection: Connection, job: Job, worker: str, lease: float, reason: str) -> Claim:
         again = {"attempts": 1, "cancel_asked": False, "finished": None}
-        running_job = become(connection, job, "running", reason, **{**queue.in_hand(worker, lease), **again})
+        running_job = change_state(
+            connection, job, "running", reason, **{**queue.claim_changes(worker, lease), **again}
+        )
         return Claim(self, running_job, lease)
 
     def job(self, number: int) -> Job:
         """Return a job with its state; the reason of a waiting job says whether disk space or a worker is missing."""
         with self.reading() as connection:
             stored = the_job(connection, number)
-        return self._waiting([stored])[0]
+        return self._with_waiting_reasons([stored])[0]
 
-    def _waiting(self, listed: list[Job]) -> list[Job]:
+    def _with_waiting_reasons(self, listed: list[Job]) -> list[Job]:
         try:
             self.require_disk_space()
         except StoreError as error:
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
         if any(job.state == "queued" and not job.reason for job in listed):
-            crew = self.crew()
+            crew = self.count_workers()
             busy = f"every worker is busy ({crew.workers})" if crew.workers else "no worker is running"
             reason = busy if crew.busy == crew.workers else ""
             return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in listed]
@@ -148,9 +150,9 @@ class Store(Workers):
     def records(self, number: int) -> list[Record]:
         """Return the records of a job's evaluations so far, in order."""
         with self.reading() as connection:
-            return records_of(connection, number)
+            return evaluation_records(connection, number)
 
-    def find(self, run: str) -> Job | None:
+    def find_by_run(self, run: str) -> Job | None:
         """Return the job with a run folder name, or None."""
         with self.reading() as connection:
             row = connection.execute(select(*JOB_COLUMNS).where(jobs.c.run == run)).first()
@@ -171,18 +173,18 @@ class Store(Workers):
         before: number of a job; only jobs after it in this order, for paging. numbers: numbers to include, all if
         empty. limit: maximum number of jobs.
         """
-        query = in_order(select(*JOB_COLUMNS), order, before).limit(limit)
+        query = ordered_jobs(select(*JOB_COLUMNS), order, before).limit(limit)
         if numbers:
             query = query.where(jobs.c.id.in_(numbers))
         if states:
             query = query.where(jobs.c.state.in_(states))
         if name:
-            query = query.where(jobs.c.name.icontains(plain(name), autoescape=True))
+            query = query.where(jobs.c.name.icontains(database_text(name), autoescape=True))
         with self.reading() as connection:
             listed = [Job.from_row(row) for row in connection.execute(query)]
-        return self._waiting(listed)
+        return self._with_waiting_reasons(listed)
 
-    def counts(self) -> dict[str, int]:
+    def count_by_state(self) -> dict[str, int]:
         """Return the number of jobs in each state that occurs."""
         with self.reading() as connection:
             rows = connection.execute(select(jobs.c.state, func.count()).group_by(jobs.c.state)).all()
@@ -214,14 +216,14 @@ class Store(Workers):
         with self.reading() as connection:
             return news_of(connection, after, limit)
 
-    def record(self, number: int) -> dict[str, Any]:
+    def result_record(self, number: int) -> dict[str, Any]:
         """Return the result of a job as in `Result.record`, with "count" and "columns" in place of the designs.
 
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
         with self.reading() as connection:
             job = the_job(connection, number)
-            record, _ = the_record(connection, job)
+            record, _ = result_record(connection, job)
             if job.summary is not None:
                 return {**record, "count": job.summary["designs"]}
             # Only results in the earliest stores have none.
@@ -231,19 +233,19 @@ class Store(Workers):
     def result(self, number: int) -> Result:
         """Return the result of a job. Raises `RunError` if it has no result (yet), or a damaged one."""
         with self.reading() as connection:
-            stored, expected = the_record(connection, the_job(connection, number))
+            stored, expected = result_record(connection, the_job(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
             cell_texts = connection.execute(cells).scalars().all()
             content = connection.execute(select(exact.c.content).where(exact.c.job == number)).scalar_one_or_none()
         try:
-            require_sum(expected, *cell_texts, content)
+            require_checksum(expected, *cell_texts, content)
             columns = stored.pop("columns")
             exact_designs = None if content is None else unpacked_exact(content)
             return result_from(stored, rows_of(columns, cell_texts), str(stored["run"]), exact_designs)
         except (ValueError, KeyError, TypeError) as error:
-            raise damaged(number, error) from error
+            raise damaged_result_error(number, error) from error
 
-    def artefacts(self, number: int) -> list[str]:
+    def artefact_names(self, number: int) -> list[str]:
         """Return the names of a job's files, in alphabetical order."""
         with self.reading() as connection:
             the_job(connection, number)
@@ -268,7 +270,7 @@ class Store(Workers):
             ended = select(queue.ENDED_LEASE).where(jobs.c.id == number)
             if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
                 left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
-                return become(connection, job, "cancelled", NOT_DONE, **left)
+                return change_state(connection, job, "cancelled", NOT_DONE, **left)
             if job.state == "running" and not job.cancel_asked:
                 values = {"cancel_asked": True, "events": job.events + 1}
                 connection.execute(update(jobs).where(jobs.c.id == number).values(values))
@@ -284,7 +286,7 @@ class Store(Workers):
             job = the_job(connection, number, lock=True)
             require_resumable(job)
             again = {"attempts": 0, "cancel_asked": False, "due": now(), "finished": None}
-            become(connection, job, "queued", "resumed", **again)
+            change_state(connection, job, "queued", "resumed", **again)
         return self.job(number)
 
     def delete(self, number: int) -> None:
@@ -313,8 +315,8 @@ class Store(Workers):
         self.require_disk_space()
         with self.writing() as connection:
             if most_running is not None:
-                queue.take_turns(connection)
-                if queue.running(connection) >= most_running:
+                queue.lock_submissions(connection)
+                if queue.count_running(connection) >= most_running:
                     return None
             job = queue.claim_next(connection, worker, lease)
         return None if job is None else Claim(self, job, lease)

@@ -15,7 +15,7 @@ from ...model.errors import InputError, StoreError
 from ..runs.run_folder import sync
 from .database import Database, Unavailable
 from .database_clock import now
-from .job_rows import require_sum
+from .job_rows import require_checksum
 from .schema import designs, events, exact, jobs, records
 
 _MOST = 5  # maximum number named of each type of damage
@@ -30,7 +30,7 @@ def damages(database: Database) -> list[str]:
     """
     try:
         with database.reading() as connection:
-            damage = _of_sqlite(connection) if database.sqlite else _of_postgresql(connection)
+            damage = _sqlite_damage(connection) if database.sqlite else _postgresql_damage(connection)
             return (
                 damage or _jobs_with_miscounts(connection) or _damaged_results(connection)
             )  # damaged data need not be counted
@@ -56,7 +56,7 @@ def server_version(database: Database) -> str:
     return f"{'SQLite' if database.sqlite else 'PostgreSQL'} {number}"
 
 
-def _of_sqlite(connection: Connection) -> list[str]:
+def _sqlite_damage(connection: Connection) -> list[str]:
     damage = list(connection.execute(text(f"PRAGMA integrity_check({_MOST})")).scalars())
     if damage != ["ok"]:
         return damage
@@ -64,7 +64,7 @@ def _of_sqlite(connection: Connection) -> list[str]:
     return [f"{row[0]} has a row for a job that does not exist" for row in rows[:_MOST]]
 
 
-def _of_postgresql(connection: Connection) -> list[str]:
+def _postgresql_damage(connection: Connection) -> list[str]:
     broken = connection.execute(
         text(
             "SELECT c.relname FROM pg_index i JOIN pg_class c ON c.oid = i.indexrelid "
@@ -119,8 +119,8 @@ def _damaged_results(connection: Connection) -> list[str]:
         cells = select(designs.c.cells).where(designs.c.job == job).order_by(designs.c.number)
         content = connection.execute(select(exact.c.content).where(exact.c.job == job)).scalar_one_or_none()
         try:
-            require_sum(sums[:64], *parts)
-            require_sum(sums[64:], *connection.execute(cells).scalars(), content)
+            require_checksum(sums[:64], *parts)
+            require_checksum(sums[64:], *connection.execute(cells).scalars(), content)
         except ValueError as error:
             damage.append(f"the result of job {job} is damaged: {error}")
     return damage[:_MOST]

@@ -16,7 +16,7 @@ _FORGOTTEN = 7 * 86_400.0  # s
 class Workers(Database):
     """Database with its table of workers."""
 
-    def greet(self, worker: str) -> None:
+    def register(self, worker: str) -> None:
         """Record a worker as present; delete those without a heartbeat for days."""
         with self.writing() as connection:
             sign_of_life = update(workers).where(workers.c.id == worker).values(seen=now())
@@ -24,7 +24,7 @@ class Workers(Database):
                 connection.execute(delete(workers).where(workers.c.seen < now() - _FORGOTTEN))
                 connection.execute(insert(workers).values(id=worker, started=now(), seen=now()))
 
-    def part(self, worker: str) -> None:
+    def unregister(self, worker: str) -> None:
         """Record the departure of a worker."""
         with self.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
@@ -35,7 +35,7 @@ class Workers(Database):
         with self.reading() as connection:
             return connection.execute(query).first() is not None
 
-    def crew(self) -> Crew:
+    def count_workers(self) -> Crew:
         """Return the number of workers with a recent heartbeat, and the number of jobs that wait for one."""
         busy = [worker.busy for worker in self.workers() if worker.at_work]
         with self.reading() as connection:

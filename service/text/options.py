@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 
-def drawable(folder: Path | None) -> Path | None:
+def require_drawable(folder: Path | None) -> Path | None:
     """Raise an error before any computation if figures cannot be drawn."""
     if folder is not None:
         required("matplotlib", "figures need")
@@ -32,7 +32,7 @@ def drawable(folder: Path | None) -> Path | None:
 
 JobFile = Annotated[Path, typer.Argument(metavar="JOB")]
 File = Annotated[Path | None, typer.Option(metavar="FILE")]
-Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=drawable)]
+Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=require_drawable)]
 Output = Annotated[str | None, typer.Option(metavar="FILE")]
 """File name, or - for standard output."""
 Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]
@@ -71,7 +71,7 @@ AllowQuantity = Annotated[
 ]
 
 
-def for_typer(command: Callable[..., None]) -> Callable[..., None]:
+def typer_command(command: Callable[..., None]) -> Callable[..., None]:
     """Return a typer command from a function whose parameters have their help as text in `Annotated`.
 
     A parameter whose type is a dataclass of options stands for the fields of the dataclass. A parameter with several

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from ...model.file_names import path_text
 from ..runs.result import json_text
-from ..runs.run_folder import disk
+from ..runs.run_folder import translate_disk_errors
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -69,7 +69,7 @@ def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "
     """Write a figure as PNG, create its folder if missing, and print its path."""
     from ..figures.panels import save_figure
 
-    with disk(file.parent), show_activity("drawing the figure"):
+    with translate_disk_errors(file.parent), show_activity("drawing the figure"):
         file.parent.mkdir(parents=True, exist_ok=True)
         save_figure(draw(), file, units)
     print_message(f"figure: {file}")

@@ -49,7 +49,7 @@ class Output(io.TextIOWrapper):
         give_up_output()
 
 
-def reader_left() -> bool:
+def has_reader_left() -> bool:
     """Return whether the reader of standard output has stopped."""
     return isinstance(sys.stdout, Output) and sys.stdout.left
 

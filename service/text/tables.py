@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.column_keys import metric_key
 from ...objectives.count_text import counted
-from ..designs.columns import Column, chosen_columns, find_column
-from ..designs.rounding_noise import without_noise
+from ..designs.columns import Column, choice_column_keys, find_column
+from ..designs.rounding_noise import row_without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..render.terminal import print_table, table
 from ..runs.result import Cell, Result, Row, StoredObjective
@@ -83,7 +83,7 @@ def show_design(
 
     custom: custom quantities of its job, whose titles and units are more informative than their column keys.
     """
-    row, custom_by_column = without_noise(row), {quantity.field: quantity for quantity in custom}
+    row, custom_by_column = row_without_noise(row), {quantity.field: quantity for quantity in custom}
     rows = table("", ">", "")
     for key in only or row:
         value = row[key]
@@ -123,7 +123,7 @@ def usual_keys(result: Result) -> list[str]:
 
     names = list(result.designs[0])
     dimensions = [find_column(name, names).key for name in DIMENSIONS]
-    keys = [*dimensions, *chosen_columns(names), *(key for key in names if metric_key(key) == STROKE.field)]
+    keys = [*dimensions, *choice_column_keys(names), *(key for key in names if metric_key(key) == STROKE.field)]
     keys += ["slow_stroke"] if result.strokes_differ else []
     return keys + [objective.column for objective in result.objectives if objective.column not in keys]
 
@@ -163,7 +163,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
         rich_table.add_column(title, justify="right", vertical="bottom", no_wrap=True)
     rich_table.add_column("", no_wrap=True)
     best = {(row, objective.column) for objective in result.objectives for row in _best_rows(result, objective)}
-    designs = [without_noise(result.designs[row]) for row in rows]
+    designs = [row_without_noise(result.designs[row]) for row in rows]
     texts = [_align_decimals([design[column.key] for design in designs]) for column in columns]
     for row, line in zip(rows, zip(*texts, strict=True), strict=True):
         knee = row == result.knee and len(result.objectives) > 1
@@ -180,7 +180,7 @@ def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
     """Return the positions of the designs that are best in an objective, within rounding; none if all are equal."""
     from ...optimise.front.constant_numbers import SAME
 
-    ranks = [objective.rank(row) for row in result.designs]
+    ranks = [objective.minimised_value(row) for row in result.designs]
     least = min(ranks)
     best = [row for row, rank in enumerate(ranks) if math.isfinite(rank) and rank - least <= SAME * abs(least)]
     return best if len(best) < max(len(ranks), 2) else []

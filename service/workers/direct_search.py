@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.extras import is_installed
 from ...model.file_names import path_text
-from ..jobs.direct_run import begin, end_job_on_error, folder_of, stopped_job, take_up
+from ..jobs.direct_run import begin_run, claim_stopped_job, end_job_on_error, folder_of, stopped_job
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
 from .heartbeat import Budget, Heartbeat
@@ -41,7 +41,7 @@ def new_run(
 ) -> Iterator[Opened]:
     """Enter the run of a new job. files: the job and the files that it names, for the run folder."""
     with RunFolder(place, problem.name) as folder:
-        yield folder, problem, begin(store, folder, tables, problem.name, files)
+        yield folder, problem, begin_run(store, folder, tables, problem.name, files)
 
 
 @contextlib.contextmanager
@@ -58,9 +58,9 @@ def resumed_run(
     with folder_of(store, job, place) as folder:
         problem = read(store.tables(job.id), folder.path)
         require_resumable(problem, store.records(job.id))
-        claim = take_up(store, job)
+        claim = claim_stopped_job(store, job)
         with end_job_on_error(claim):
-            folder.go_on()
+            folder.resume()
         yield folder, problem, claim
 
 
@@ -96,7 +96,7 @@ def search(
         stages=report,
         cancelled=lambda: cancelled() or claim.cancel_asked,
         resume=tuple(claim.records()),
-        keep=claim.keep,
+        keep=claim.keep_record,
         engine=engine,
     )
 
@@ -105,7 +105,7 @@ def keep_front(opened: Opened, front: ParetoFront, budget: Budget | None = None)
     """Write the result of a search to its run folder and the store, and return it. budget: budget of the search."""
     run, _, claim = opened
     result = result_of(front, path_text(run.path))
-    result = result if budget is None else budget.explained(result)
+    result = result if budget is None else budget.with_limit_named(result)
     versions = dict(front.versions)
     if is_installed("matplotlib"):
         from importlib.metadata import version

@@ -36,7 +36,7 @@ class EngineOptions:
     tls_cert: Annotated[File, "Certificate of this client, for tls://."] = None
     tls_key: Annotated[File, "Key of that certificate, for tls://."] = None
 
-    def checked(self) -> EngineOptions:
+    def validated(self) -> EngineOptions:
         """Return the options. Raises `InputError` for options that exclude each other."""
         files = (self.tls_ca, self.tls_cert, self.tls_key)
         if self.scheduler is None and any(files):
@@ -57,7 +57,7 @@ class EngineOptions:
             required("distributed", "a Dask cluster needs")
         return self
 
-    def shared_by(self, workers: int) -> EngineOptions:
+    def divided_among(self, workers: int) -> EngineOptions:
         """Return the options for each of several workers on this machine, which share the processors."""
         return replace(self, cores=self.cores or max(1, (os.cpu_count() or 1) // workers))
 

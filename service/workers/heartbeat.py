@@ -53,7 +53,7 @@ class Budget:
         """Whether the search must end with its result so far."""
         return bool(self.reason())
 
-    def explained(self, result: Result) -> Result:
+    def with_limit_named(self, result: Result) -> Result:
         """Return a result whose message names the limit that ended its search, if any."""
         reason = self.reason() if result.status == "cancelled" else ""
         return replace(result, message=f"{result.message}; {reason}") if reason else result
@@ -96,7 +96,7 @@ class Heartbeat:
         self._end = threading.Event()
         beat = contextvars.copy_context().run  # so that its log lines name the same job
         self._thread = threading.Thread(
-            target=beat, args=(self._beat,), name=f"heartbeat of job {self.claim.job.id}", daemon=True
+            target=beat, args=(self._beat_until_end,), name=f"heartbeat of job {self.claim.job.id}", daemon=True
         )
 
     def __enter__(self) -> Heartbeat:
@@ -107,39 +107,39 @@ class Heartbeat:
         self._end.set()
         self._thread.join()
 
-    def _beat(self) -> None:
+    def _beat_until_end(self) -> None:
         lease = self.claim.lease
         while not self.lost and not self._end.wait(min(PULSE, lease / 10.0)):
-            self._look_at_memory()
-            self._look_at_stop()
-            self._look_at_deaf()
+            self._check_memory()
+            self._check_stop()
+            self._check_unresponsive_search()
             try:
-                if self.claim.age > lease / 3.0 or self.claim.astray:
+                if self.claim.seconds_since_renewal > lease / 3.0 or self.claim.astray:
                     self.claim.renew()
                 else:
-                    self.claim.look()
-                self._look_at_cancel()
+                    self.claim.check_cancellation()
+                self._check_cancellation()
             except LeaseLost:
                 if not self._end.is_set():  # at the end of a job the claim is released on purpose
                     self.lost = "its lease has expired; another worker continues from the last committed round"
             except StoreError:
                 pass  # the writes of the search will show whether it is still valid
 
-    def _waited(self, condition: str) -> float:
+    def _seconds_since_first(self, condition: str) -> float:
         """Return the time that a condition has held, s, since the first call."""
         now = time.monotonic()
         return now - self._since.setdefault(condition, now)
 
-    def _look_at_cancel(self) -> None:
+    def _check_cancellation(self) -> None:
         if self.patience is None or not self.claim.cancel_asked or self.claim.has_started or self._end.is_set():
             return
-        if self._waited("cancelled") >= self.patience:
-            self.claim.give_up()
+        if self._seconds_since_first("cancelled") >= self.patience:
+            self.claim.end_as_cancelled()
             self.lost = "it was cancelled before its search began"
 
-    def _look_at_memory(self) -> None:
+    def _check_memory(self) -> None:
         allowed = self.budget.limits.memory
-        if allowed is None or (used := self.memory.of_the_job()) <= allowed or self._end.is_set():
+        if allowed is None or (used := self.memory.used_by_job()) <= allowed or self._end.is_set():
             return
         reason = (
             f"it may use {size_text(allowed)} of memory; its worker used {size_text(used)}; give it a higher "
@@ -148,28 +148,28 @@ class Heartbeat:
         _log.error("set aside: %s", reason)
         with contextlib.suppress(LeaseLost, StoreError):  # otherwise its lease expires, and the attempt counts
             self.claim.fail(reason, again=False)
-        leave(EXHAUSTED)
+        end_process_tree(EXHAUSTED)
 
-    def _look_at_deaf(self) -> None:
+    def _check_unresponsive_search(self) -> None:
         reason = NOT_DONE if self.claim.cancel_asked else self.budget.reason()
         if self.claim.waits:  # waits for space: then it cannot end
             self._since.pop("told to end", None)
             return
         if self.grace is None or not reason:
             return
-        if self._waited("told to end") < _STOP_PATIENCE or self._end.is_set():
+        if self._seconds_since_first("told to end") < _STOP_PATIENCE or self._end.is_set():
             return
         _log.error("ended: its search did not stop within %g s of being asked to", _STOP_PATIENCE)
         try:
-            self.claim.give_up(f"{reason}; its search did not stop when asked to")
+            self.claim.end_as_cancelled(f"{reason}; its search did not stop when asked to")
         except (LeaseLost, StoreError):
             return  # it has ended after all, or its writes will show
-        leave(DEAF)
+        end_process_tree(DEAF)
 
-    def _look_at_stop(self) -> None:
+    def _check_stop(self) -> None:
         if self.grace is None or not self.stop():
             return
-        waited = self._waited("worker stops")
+        waited = self._seconds_since_first("worker stops")
         has_started = self.claim.has_started or self.patience is None
         grace = self.grace if has_started else min(self.grace, self.patience or 0.0)
         if waited < grace or self._end.is_set():
@@ -178,10 +178,10 @@ class Heartbeat:
         _log.warning("handed back: its worker stopped %s", moment)
         with contextlib.suppress(LeaseLost, StoreError):
             self.claim.hand_back(f"its worker stopped {moment}; another one continues")
-        leave(0)
+        end_process_tree(0)
 
 
-def leave(code: int) -> NoReturn:
+def end_process_tree(code: int) -> NoReturn:
     """End the children with their process groups, then this process, immediately, regardless of its other threads."""
     end_children()
     os._exit(code)

@@ -66,10 +66,10 @@ class Supervisor:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.leave()
+        self.request_stop()
         self._thread.join()
 
-    def leave(self) -> None:
+    def request_stop(self) -> None:
         """Ask the workers to stop, without waiting for them."""
         self._leaving.set()
 
@@ -87,13 +87,13 @@ class Supervisor:
             while not self._leaving.wait(_LOOK):
                 for place in self._places:
                     try:
-                        self._look_after(place)
+                        self._supervise_worker(place)
                     except Exception:  # noqa: BLE001 - whatever it is, the other workers are looked after
                         _log.exception("worker %d could not be supervised; trying again", place.number)
         finally:
             self._stop()
 
-    def _look_after(self, place: _Place) -> None:
+    def _supervise_worker(self, place: _Place) -> None:
         if place.process is None:
             if not place.is_drained and time.monotonic() >= place.due:
                 self._start(place)

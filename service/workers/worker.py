@@ -15,8 +15,13 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import ForeignRecords, InfeasibleError, InputError, LeaseLost, StoreError
-from ..jobs.submission import LONGEST_CALL, bounded, ending_custom_functions, parse_allowed
-from ..resources.disk import full_places, is_full
+from ..jobs.submission import (
+    LONGEST_CALL,
+    end_custom_processes_on_exit,
+    parse_with_allowed_functions,
+    with_time_limit_per_call,
+)
+from ..resources.disk import full_places_text, is_full
 from ..resources.memory import TOLERATED, Memory
 from ..runs.result import json_text, result_of, unsearched_result
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
@@ -99,7 +104,7 @@ def work(
         while not stop():
             try:
                 if time.monotonic() - greeted > lease / 3.0:
-                    store.greet(name)
+                    store.register(name)
                     greeted = time.monotonic()
                 claim = store.claim(name, lease=lease, most_running=most_running)
             except StoreError as error:
@@ -117,7 +122,7 @@ def work(
                 memory.begin()
                 if _is_out_of_memory(claim, memory, terms):
                     with contextlib.suppress(StoreError):
-                        store.part(name)
+                        store.unregister(name)
                     raise Stale
                 solve_claimed(store, claim, stop, terms, engine, memory)
                 count += 1
@@ -126,7 +131,7 @@ def work(
             else:
                 time.sleep(PULSE)
         with contextlib.suppress(StoreError):  # if it cannot be reached, the worker's heartbeat simply stops
-            store.part(name)
+            store.unregister(name)
     return count
 
 
@@ -162,14 +167,14 @@ def solve_claimed(
         )
         try:
             with heartbeat:
-                _end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
+                _solve_and_end(claim, lambda: _solve(store, claim, budget, terms, engine, heartbeat, stop))
         except (LeaseLost, StoreError) as error:
             _log.warning("left as it is: %s", error)
             with contextlib.suppress(StoreError):  # otherwise its lease expires
-                claim.let_go()
+                claim.release()
 
 
-def _end(claim: Claim, solve: Callable[[], None]) -> None:
+def _solve_and_end(claim: Claim, solve: Callable[[], None]) -> None:
     """Solve a job; after a failure, return it to the queue with the reason."""
     try:
         solve()
@@ -184,7 +189,7 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         _log.warning("failed: %s", error)
     except Full as error:  # the job or its worker is to end while a write waits for space
         if claim.cancel_asked:
-            claim.give_up()
+            claim.end_as_cancelled()
         else:
             claim.hand_back(f"waits: {error}")
         _log.warning("given back: %s", error)
@@ -194,8 +199,8 @@ def _end(claim: Claim, solve: Callable[[], None]) -> None:
         if not is_full(error):
             _fail_and_retry(claim, error)
             return
-        claim.hand_back(f"waits: Disk full: {full_places(error)}", delay=_FULL)
-        _log.warning("handed back: %s; trying again in %g s", full_places(error), _FULL)
+        claim.hand_back(f"waits: Disk full: {full_places_text(error)}", delay=_FULL)
+        _log.warning("handed back: %s; trying again in %g s", full_places_text(error), _FULL)
     except Exception as error:  # noqa: BLE001 - whatever it is, the job and not the worker ends
         _fail_and_retry(claim, error)
     except BaseException:
@@ -219,8 +224,8 @@ def _solve(
     from ...optimise.solve import solve
 
     _report_loading(claim, 1)
-    problem = parse_allowed(store.tables(claim.job.id), terms.allowed_quantities)
-    problem = bounded(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
+    problem = parse_with_allowed_functions(store.tables(claim.job.id), terms.allowed_quantities)
+    problem = with_time_limit_per_call(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
     latest: list[Array] = []
 
@@ -232,11 +237,11 @@ def _solve(
         budget.count(at.evaluations)
 
     def should_end() -> bool:
-        return _ends(claim, heartbeat, stop) or budget.spent()
+        return _must_end(claim, heartbeat, stop) or budget.spent()
 
     solve_and_report = partial(solve, problem, progress=report, stages=report, fronts=show)
-    search = partial(solve_and_report, cancelled=should_end, keep=claim.keep, engine=engine)
-    with ending_custom_functions(problem, engine):
+    search = partial(solve_and_report, cancelled=should_end, keep=claim.keep_record, engine=engine)
+    with end_custom_processes_on_exit(problem, engine):
         try:
             front = search(resume=claim.records())
         except ForeignRecords as error:  # from an earlier release, or another type of machine
@@ -244,7 +249,7 @@ def _solve(
             front = search(resume=[])
         result = result_of(front, claim.job.run)
     if not claim.cancel_asked:
-        result = budget.explained(result)
+        result = budget.with_limit_named(result)
     claim.finish(result, [versions_file(front.versions)])
     _log.info("%s: %s", result.status, result.message)
 
@@ -282,7 +287,7 @@ def versions_file(versions: Mapping[str, str]) -> Artefact:
     return Artefact(name="versions.json", media_type="application/json", content=json_text(versions).encode())
 
 
-def _ends(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
+def _must_end(claim: Claim, heartbeat: Heartbeat, stop: Stop) -> bool:
     """Whether the search must end with its result so far; raises the error that ends it without a result."""
     if heartbeat.lost:
         raise LeaseLost(f"job {claim.job.id}: {heartbeat.lost}")

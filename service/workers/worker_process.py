@@ -20,7 +20,7 @@ from pydantic import TypeAdapter
 from ...model.errors import SlidercrankError
 from ..store import LEASE, Store
 from ..store.database import Unavailable
-from .heartbeat import leave
+from .heartbeat import end_process_tree
 from .logs import Format, set_up_logs
 from .worker import Stale, Terms, work
 
@@ -129,7 +129,7 @@ def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
         pass
     stop.set()
     time.sleep((grace or 0.0) + MARGIN)
-    leave(1)
+    end_process_tree(1)
 
 
 if __name__ == "__main__":

@@ -45,7 +45,7 @@ def clocks(kind: Kind, count: int, seed: int) -> Verdict:
                             end = time.monotonic() + _PATIENCE
                     if not workers.drained():
                         verdict.violate("late", "a worker that drains has not ended")
-                waiting = store.counts().get("queued", 0)
+                waiting = store.count_by_state().get("queued", 0)
                 if waiting:
                     verdict.violate("lost", f"{waiting} of {_JOBS} jobs wait though all workers ended: no job waits")
             verdict.add(judge(where.address, numbers, expected, journal))

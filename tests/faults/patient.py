@@ -83,7 +83,7 @@ def _follow(served: Api, claim: Claim, pause: Pause) -> None:
         events, number = there.makefile("rb"), 0
         while not pause():
             number += 1
-            claim.say(f"message {number}")
+            claim.add_message(f"message {number}")
             while '"text"' not in (line := events.readline().decode()):
                 assert line, f"the stream ended before message {number}"
             assert f'"message {number}"' in line, f"{line!r} came instead of message {number}"

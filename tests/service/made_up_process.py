@@ -39,11 +39,11 @@ def solve(
     for number in range(claim.job.records, ROUNDS):
         if claim.job.name == "loads":
             time.sleep(1000.0)
-        if worker._ends(claim, heartbeat, stop):
+        if worker._must_end(claim, heartbeat, stop):
             claim.finish(_result("cancelled"))
             return
         time.sleep(0.05)
-        claim.keep(_record(number))
+        claim.keep_record(_record(number))
         claim.report(Progress("evolving", number + 1, ROUNDS, 4 * number, number, 0.5, 0.05 * number))
         if claim.job.name == "greedy":
             taken = np.ones(300_000_000, dtype=np.uint8)

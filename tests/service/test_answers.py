@@ -89,7 +89,7 @@ def _some_value(name: str, words: Any, crank: float, random: Random) -> Any:
 
 def asked_of(question: DesignQuestion, problem: sc.Problem, design: Sequence[float], random: Random) -> BoundQuestion:
     machine = problem.mechanism.with_values(list(design[3:]))
-    return question.for_problem(
+    return question.bind_to_problem(
         machine, linkage_of(problem, design), problem, some_inputs(question, problem, design, random)
     )
 
@@ -174,7 +174,7 @@ def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name:
     answers = 0
     for asked, numbers in answers_of(name):
         answers += 1
-        inch = asked.numbers_in(numbers, "inch")
+        inch = asked.numbers_in_units(numbers, "inch")
         assert_declared(asked.question.record_type, json_ready(numbers))
         if name != "sensitivity":  # whose entries have units of their own: see test_topics_in_inches
             assert_in_inches(numbers, inch)
@@ -186,13 +186,13 @@ def test_answers_of_random_machines_are_as_declared_and_the_same_in_inches(name:
 @pytest.mark.slow
 def test_impacts_in_a_loose_joint_are_as_declared_and_the_same_in_inches() -> None:
     problem = sc.load_job(JOBS / "loose.toml", require_feasible=False)
-    asked = TOPICS["clearance"].for_design(problem.mechanism.nominal, sc.Linkage(0.03, 0.16, 0.01))
-    analysis = asked.question.analysis
-    stopped = analysis.simulated(asked.mechanism, asked.linkage, cancelled=lambda: True)
-    done = analysis.simulated(asked.mechanism, asked.linkage, cycles=3, discard=1)
+    asked = TOPICS["clearance"].bind_to_design(problem.mechanism.nominal, sc.Linkage(0.03, 0.16, 0.01))
+    analysis = asked.question.analysis_module
+    stopped = analysis.run_simulation(asked.mechanism, asked.linkage, cancelled=lambda: True)
+    done = analysis.run_simulation(asked.mechanism, asked.linkage, cycles=3, discard=1)
     for run in (stopped, done, replace(done, discard=2)):
         numbers = analysis.numbers(asked.mechanism, asked.linkage, run=run)
-        inch = asked.numbers_in(numbers, "inch")
+        inch = asked.numbers_in_units(numbers, "inch")
         assert_declared(asked.question.record_type, json_ready(numbers))
         assert_in_inches(numbers, inch)
         assert_shown_in_inches(asked.blocks(numbers), inch)
@@ -209,10 +209,10 @@ def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(so
     noisy = [curve.kind.metric.factor * curve.values * random.uniform(0.9, 1.1, 12) for curve in curves]
     rows = np.column_stack([np.degrees(angles), *noisy]).tolist()
     text = "\n".join([",".join(heads), *(",".join(map(repr, row)) for row in rows)])
-    asked = MEASURED.for_design(machine, linkage, {"measured": read_measured(text, machine, linkage)})
+    asked = MEASURED.bind_to_design(machine, linkage, {"measured": read_measured(text, machine, linkage)})
     numbers = asked.numbers()
     assert len(numbers["curves"]) == len(curves)
-    inch = asked.numbers_in(numbers, "inch")
+    inch = asked.numbers_in_units(numbers, "inch")
     assert_declared(MEASURED.record_type, json_ready(numbers))
     assert_in_inches(numbers, inch)
     assert_shown_in_inches(asked.blocks(numbers)[:4], inch)  # below, what was read of the file is said in its units

@@ -13,9 +13,9 @@ import pytest
 
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.service.cases import case_2, figures
-from slidercrank.service.cases.case_table import collect
+from slidercrank.service.cases.case_table import collect_cases
 from slidercrank.service.cases.figures import draw_cases
-from slidercrank.service.cases.printed_values import CASES, Case, Row, confirmed, read_table
+from slidercrank.service.cases.printed_values import CASES, Case, Row, is_confirmed, read_table
 from slidercrank.service.figures.style import new_figure
 from tests.model.virtual_work import path
 from tests.service.conftest import Command
@@ -23,7 +23,7 @@ from tests.service.conftest import Command
 
 @pytest.fixture(scope="module")
 def cases() -> list[Case]:
-    return collect()
+    return collect_cases()
 
 
 def rows(cases: list[Case], number: int) -> dict[str, Row]:
@@ -161,7 +161,7 @@ def test_verdicts(cases: list[Case], case: int, key: str, verdict: str) -> None:
 def test_a_number_is_confirmed_to_a_unit_of_its_last_printed_digit(
     entry: dict[str, object], exact: float, agrees: bool
 ) -> None:
-    assert confirmed(entry, exact) == agrees
+    assert is_confirmed(entry, exact) == agrees
 
 
 def test_reasons_hold(cases: list[Case]) -> None:

@@ -214,7 +214,7 @@ def test_no_two_texts_of_a_sheet_overlap(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["polygons", "static_forces", "approximations"])
 def test_figures_are_written(name: str, tmp_path: Path) -> None:
-    file = TOPICS[name].for_design(MACHINE, LINKAGE).draw(tmp_path)
+    file = TOPICS[name].bind_to_design(MACHINE, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
 
 

@@ -21,8 +21,8 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
 from slidercrank.service.figures.panels import figure_of
 from slidercrank.service.figures.style import figure_bytes
-from slidercrank.service.questions.clearance.analysis import blocks, figure, numbers, simulated
-from slidercrank.service.questions.clearance.figure import loose_curves, speed_runs, speeds_figure
+from slidercrank.service.questions.clearance.analysis import blocks, figure, numbers, run_simulation
+from slidercrank.service.questions.clearance.figure import loose_joint_curves, speed_runs, speeds_figure
 from slidercrank.service.render.terminal import print_blocks
 
 BAR = Bar(width=0.03, depth=0.02, density=7800.0)
@@ -39,7 +39,7 @@ MACHINE = Mechanism(
 
 @pytest.fixture(scope="module")
 def run() -> ClearanceRun:
-    return simulated(MACHINE, LINKAGE, cycles=4, discard=1)
+    return run_simulation(MACHINE, LINKAGE, cycles=4, discard=1)
 
 
 def text_of(found: dict[str, object]) -> str:
@@ -108,7 +108,7 @@ def test_ideal_joints_are_refused() -> None:
 
 
 def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
-    curves = loose_curves(run)
+    curves = loose_joint_curves(run)
     assert (curves.angles[0], curves.angles[-1]) == pytest.approx((0.0, 360.0), abs=1e-9)
     last = run.times >= 3.0 * run.period * (1.0 - 1e-12)
     np.testing.assert_allclose(curves.curves[LENGTH], run.slider_position[last])
@@ -150,6 +150,6 @@ def test_speeds_are_compared_in_the_direction_of_the_machine() -> None:
 
 def test_a_run_without_a_complete_turn_is_not_drawn() -> None:
     asked = iter([False, True])
-    short = simulated(MACHINE, LINKAGE, cancelled=lambda: next(asked))
+    short = run_simulation(MACHINE, LINKAGE, cancelled=lambda: next(asked))
     with pytest.raises(InputError, match="complete turn"):
-        loose_curves(short)
+        loose_joint_curves(short)

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.designs.selection import parse_condition, select
+from slidercrank.service.designs.selection import parse_condition, select_rows
 from slidercrank.service.runs.result import Row
 
 ROWS: list[Row] = [
@@ -57,23 +57,23 @@ ROWS: list[Row] = [
     ],
 )
 def test_a_condition_selects(text: str, expected: list[int]) -> None:
-    assert select(ROWS, [text]) == expected
+    assert select_rows(ROWS, [text]) == expected
 
 
 @pytest.mark.parametrize(("given", "unit"), [("300", "with its unit"), ("300 USD", "in EUR")])
 def test_an_amount_of_a_catalogue_needs_its_own_unit(given: str, unit: str) -> None:
     with pytest.raises(InputError, match=rf"an amount in EUR.*got \"{given}\"; write it like \"100 EUR\"") as refused:
-        select(ROWS, [f"price <= {given}"])
+        select_rows(ROWS, [f"price <= {given}"])
     assert unit in str(refused.value)
 
 
 def test_conditions_add_up() -> None:
-    assert select(ROWS, ["transmission_angle >= 40 deg", "peak_torque < 35 N m"]) == [1]
+    assert select_rows(ROWS, ["transmission_angle >= 40 deg", "peak_torque < 35 N m"]) == [1]
 
 
 def test_no_condition_selects_all_and_no_designs_none() -> None:
-    assert select(ROWS, []) == [0, 1, 2]
-    assert select([], ["anything"]) == []
+    assert select_rows(ROWS, []) == [0, 1, 2]
+    assert select_rows([], ["anything"]) == []
 
 
 @pytest.mark.parametrize(

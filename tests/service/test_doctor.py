@@ -49,7 +49,7 @@ def test_a_fresh_machine_is_healthy_and_stays_as_it_is(runs: Path, command: Comm
 
 def test_a_store_in_use_is_healthy(file: Path, command: Command) -> None:
     with Store(file) as store:
-        store.greet("one")
+        store.register("one")
         add(store)
         taken(store).finish(result())
         add(store)
@@ -73,7 +73,7 @@ def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Comm
 def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) -> None:
     with Store(file) as store:
         for name in ("one", "lost"):
-            store.greet(name)
+            store.register(name)
         add(store)
         taken(store, "lost")
         database = Database(file)
@@ -164,7 +164,7 @@ def test_a_model_that_would_be_compiled_anew_every_time_is_a_problem(
 
 def test_a_backup_is_made_and_checked_in_one_go(file: Path, tmp_path: Path, command: Command) -> None:
     with Store(file) as store:
-        store.greet("one")
+        store.register("one")
         add(store)
         done = command("doctor", "--backup", tmp_path / "backup.db")
     assert done.exit_code == 0

@@ -165,7 +165,7 @@ def test_panels_mark_the_extremes_on_their_curves(name: str, count: int, tmp_pat
             assert np.all(distances < 1e-7)
         assert bool(marks) != ("undefined" in format_text(panel.note))
     assert overlaps(draw_panel_figure(sheet)) == []
-    file = TOPICS["extremes"].for_design(MACHINES[name], LINKAGE).draw(tmp_path)
+    file = TOPICS["extremes"].bind_to_design(MACHINES[name], LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
 
 

@@ -25,12 +25,12 @@ from slidercrank.objectives.tables.analysis import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.datasheet import Curves, cycle_curves, design_datasheet
-from slidercrank.service.figures.design_marks import marks
+from slidercrank.service.figures.design_marks import marked_designs
 from slidercrank.service.figures.front import draw_front
 from slidercrank.service.figures.panel_figure import Panel, panel_in_units
 from slidercrank.service.figures.parallel import parallel_coordinates
 from slidercrank.service.figures.scatter import scatter_matrix
-from slidercrank.service.figures.style import add_axes, colours, new_figure, style_axes
+from slidercrank.service.figures.style import add_axes, colour_map, new_figure, style_axes
 from slidercrank.service.render.formatting import format_text
 from slidercrank.service.render.numerals import format_number
 from tests.service import fronts
@@ -302,7 +302,7 @@ def test_lines_of_parallel_coordinates_have_better_objectives_higher() -> None:
 
 def test_a_design_that_is_best_twice_is_marked_once() -> None:
     front = fronts.front()
-    found = marks(front)
+    found = marked_designs(front)
     assert len({mark.row for mark in found}) == len(found)
     names = [name for mark in found for name in mark.names]
     assert sorted(names) == sorted([*(f"best_{name}" for name in fronts.FOUR), "knee"])
@@ -353,7 +353,7 @@ def test_drawing_again_gives_the_same_files_and_leaves_matplotlib_as_it_was(tmp_
 
 def test_the_colour_scale_is_as_clear_in_grey() -> None:
     """Luminance by ITU-R BT.709; a reader of a black-and-white print sees the same order."""
-    grey = [0.2126 * red + 0.7152 * green + 0.0722 * blue for red, green, blue in map(to_rgb, colours().colors)]  # type: ignore[arg-type]
+    grey = [0.2126 * red + 0.7152 * green + 0.0722 * blue for red, green, blue in map(to_rgb, colour_map().colors)]  # type: ignore[arg-type]
     assert np.all(np.diff(grey) > -1e-3)
     assert grey[-1] - grey[0] > 0.6
 

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.service.designs.row_formulas import RowFormula, find_formula
-from slidercrank.service.designs.selection import no_match_message, parse_condition, select
+from slidercrank.service.designs.selection import no_match_message, parse_condition, select_rows
 from slidercrank.service.runs.result import Result
 
 ROWS: list[dict[str, Any]] = [
@@ -36,13 +36,13 @@ INCH: list[dict[str, Any]] = [{"crank_in": 1.0, "offset_in": 1.5, "peak_torque_l
     ],
 )
 def test_conditions_take_formulas_of_columns(condition: str, chosen: list[int]) -> None:
-    assert select(ROWS, [condition]) == chosen
+    assert select_rows(ROWS, [condition]) == chosen
 
 
 def test_formulas_read_columns_of_either_system_of_units() -> None:
-    assert select(INCH, ["offset - crank >= 0.5 inch"]) == [0]
-    assert select(INCH, ["offset - crank > 12.8 mm"]) == []
-    assert select(INCH, ["peak_torque / crank <= 801 lbf"]) == [0]
+    assert select_rows(INCH, ["offset - crank >= 0.5 inch"]) == [0]
+    assert select_rows(INCH, ["offset - crank > 12.8 mm"]) == []
+    assert select_rows(INCH, ["peak_torque / crank <= 801 lbf"]) == [0]
 
 
 def test_a_formula_that_has_a_column_is_that_column() -> None:
@@ -72,7 +72,7 @@ def test_a_formula_that_has_a_column_is_that_column() -> None:
 )
 def test_a_wrong_formula_in_a_condition_is_refused(condition: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        select(ROWS, [condition])
+        select_rows(ROWS, [condition])
 
 
 def test_a_condition_that_is_not_defined_is_not_met() -> None:
@@ -82,7 +82,7 @@ def test_a_condition_that_is_not_defined_is_not_met() -> None:
 
 @pytest.mark.parametrize("condition", ["crank / 0 > 5 mm", "1 m / (crank - crank) < 5", "sqrt(-crank / offset) > 0"])
 def test_a_formula_without_a_value_is_met_by_none_and_said_so(condition: str) -> None:
-    assert select(ROWS, [condition]) == []
+    assert select_rows(ROWS, [condition]) == []
     said = no_match_message(STORED, [condition])
     assert "none of the 3 designs meets" in said
     assert said.endswith(" has no value for any of them")

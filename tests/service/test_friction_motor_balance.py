@@ -141,6 +141,6 @@ def test_curves_of_the_figures_are_those_of_the_model(machine: Mechanism) -> Non
 @pytest.mark.parametrize("topic", ["friction", "motor", "balance"])
 @pytest.mark.parametrize("machine", [MACHINE, LOCKED])
 def test_figures_are_written(topic: str, machine: Mechanism, tmp_path: Path) -> None:
-    file = DECLARED[topic].for_design(machine, LINKAGE).draw(tmp_path)
+    file = DECLARED[topic].bind_to_design(machine, LINKAGE).draw(tmp_path)
     assert file.read_bytes().startswith(b"\x89PNG")
     assert file.stat().st_size > 10_000

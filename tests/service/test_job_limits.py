@@ -25,7 +25,7 @@ def test_a_search_without_limits_is_never_over() -> None:
     budget = Budget(NO_LIMITS)
     budget.count(10**12)
     assert not budget.spent()
-    assert budget.explained(result("cancelled")) == result("cancelled")
+    assert budget.with_limit_named(result("cancelled")) == result("cancelled")
 
 
 def test_evaluations_are_spent_when_as_many_were_made() -> None:
@@ -34,7 +34,10 @@ def test_evaluations_are_spent_when_as_many_were_made() -> None:
     assert not budget.spent()
     budget.count(100)
     assert budget.spent()
-    assert budget.explained(result("cancelled")).message == "2 designs; its search reached its limit of 100 evaluations"
+    assert (
+        budget.with_limit_named(result("cancelled")).message
+        == "2 designs; its search reached its limit of 100 evaluations"
+    )
 
 
 def test_time_is_spent_when_it_has_passed() -> None:
@@ -42,14 +45,14 @@ def test_time_is_spent_when_it_has_passed() -> None:
     assert not budget.spent()
     time.sleep(0.06)
     assert budget.spent()
-    message = budget.explained(result("cancelled")).message
+    message = budget.with_limit_named(result("cancelled")).message
     assert message == "2 designs; its search reached its time limit of 0.05 s"
 
 
 def test_a_search_that_was_done_in_time_says_nothing_of_limits() -> None:
     budget = Budget(Limits(evaluations=1))
     budget.count(1)
-    assert budget.explained(result("done")) == result("done")
+    assert budget.with_limit_named(result("done")) == result("done")
 
 
 @pytest.mark.parametrize(

@@ -92,13 +92,13 @@ def test_answers_of_random_levers_are_as_declared_and_the_same_in_inches(pytestc
         if random.random() < 0.5:
             inputs |= {"piston_rod": 0.07, "closed_length": 1.6, "cylinder_stroke": 1.55, "seal_friction": 90.0}
         try:
-            asked = question.for_problem(support.mechanism.nominal, sc.Linkage(1.0, 2.3, 0.1), support, inputs)
+            asked = question.bind_to_problem(support.mechanism.nominal, sc.Linkage(1.0, 2.3, 0.1), support, inputs)
             numbers = asked.numbers()
         except InputError:
             continue
         answers += 1
         assert_declared(question.record_type, json_ready(numbers))
-        assert_in_inches(numbers, asked.numbers_in(numbers, "inch"))
+        assert_in_inches(numbers, asked.numbers_in_units(numbers, "inch"))
     assert answers >= 4
 
 

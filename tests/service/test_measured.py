@@ -188,7 +188,9 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
         said = ""
         try:
             measured = read_measured(text, fronts.MACHINE, LINKAGE)
-            numbers: Any = MEASURED.for_design(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(lambda: False)
+            numbers: Any = MEASURED.bind_to_design(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(
+                lambda: False
+            )
             assert json.loads(json_text(numbers)) == numbers
         except InputError as error:
             said = str(error)
@@ -324,7 +326,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
     locked = replace(fronts.MACHINE, friction=Friction(guide=1.5))
     text = "crank_angle_deg,torque_Nm\n,3\n" + "\n".join(f"{angle},1" for angle in range(0, 360, 5))
     measured = read_measured(text, locked, LINKAGE)
-    numbers: Any = MEASURED.for_design(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
+    numbers: Any = MEASURED.bind_to_design(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
     assert numbers["rows_without_crank_angle"] == 1
     assert numbers["curves"]["torque"]["rms_Nm"] is None
     stream = io.StringIO()

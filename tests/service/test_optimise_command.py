@@ -242,10 +242,12 @@ def test_a_store_that_cannot_be_used_does_not_keep_a_job_from_running(
 
 
 def test_the_command_that_goes_on_names_the_places_that_were_named() -> None:
-    assert Places().command_again("a-run") == "slidercrank optimise --resume a-run"
-    named = Places(Path("my runs"), "my store.db").command_again("a-run")
+    assert Places().resume_command("a-run") == "slidercrank optimise --resume a-run"
+    named = Places(Path("my runs"), "my store.db").resume_command("a-run")
     assert named == "slidercrank optimise --resume a-run --runs 'my runs' --store 'my store.db'"
-    secret = Places(store="postgresql://clerk:geheim@host/jobs?sslmode=require&sslpassword=auch").command_again("a-run")
+    secret = Places(store="postgresql://clerk:geheim@host/jobs?sslmode=require&sslpassword=auch").resume_command(
+        "a-run"
+    )
     assert "geheim" not in secret
     assert "auch" not in secret
     assert "--store 'postgresql://clerk:***@host/jobs?" in secret

@@ -68,7 +68,7 @@ def test_a_job_that_needs_a_file_beside_it_is_kept_whole(
     (tmp_path / "points.csv").write_text("crank_angle_deg,position_mm\n0,400\n90,350\n180,200\n270,300\n")
     job.write_text(f'{fronts.JOB}\n[target_motion]\nfile = "points.csv"\n')
     assert command("submit", job).exit_code == 0
-    assert store.artefacts(1) == ["job.json"]
+    assert store.artefact_names(1) == ["job.json"]
     assert len(json.loads(store.artefact(1, "job.json").content)["target_motion"]["positions"]) == 4
 
 
@@ -363,6 +363,6 @@ def test_jobs_that_wait_for_a_worker_are_told_of(
     threading.Timer(0.5, lambda: store.cancel(1)).start()
     assert idle in command("watch", "latest").stderr
     assert idle not in command("jobs").stderr, "nothing waits"
-    store.greet("one")
+    store.register("one")
     assert idle not in command("submit", job).stderr
     assert idle not in command("jobs").stderr

@@ -238,10 +238,10 @@ def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
         RunFolder(tmp_path, "x") as run,
         pytest.raises(InputError, match="a run may only be used by one process; another one uses"),
     ):
-        RunFolder.again(run.path)
-    with RunFolder.again(run.path) as again:
+        RunFolder.reopen(run.path)
+    with RunFolder.reopen(run.path) as again:
         assert not (again.path / MARK).exists()
-        again.go_on()
+        again.resume()
         assert (again.path / MARK).exists()
     assert not (again.path / MARK).exists()
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.api.server import is_loopback, listen, names_of, url_of
+from slidercrank.service.api.server import host_names_of, is_loopback, listen, url_of
 from slidercrank.service.store import Store
 from tests.service.conftest import Command
 
@@ -83,10 +83,10 @@ def test_limits_that_are_none_are_refused(name: str, command: Command) -> None:
 
 
 def test_the_service_answers_to_the_names_of_this_machine_only() -> None:
-    assert names_of("127.0.0.1") == names_of("localhost") == ("127.0.0.1", "localhost", "[::1]")
-    assert names_of("10.0.0.5") == ("127.0.0.1", "localhost", "[::1]", "10.0.0.5")
-    assert names_of("0.0.0.0")[-1] == socket.gethostname()
-    assert names_of("fe80::1")[-1] == "[fe80::1]"
+    assert host_names_of("127.0.0.1") == host_names_of("localhost") == ("127.0.0.1", "localhost", "[::1]")
+    assert host_names_of("10.0.0.5") == ("127.0.0.1", "localhost", "[::1]", "10.0.0.5")
+    assert host_names_of("0.0.0.0")[-1] == socket.gethostname()
+    assert host_names_of("fe80::1")[-1] == "[fe80::1]"
 
 
 def test_the_address_has_the_port_that_was_free_and_the_token_once_it_is_made() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.objectives.column_keys import split_unit
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.rounding_noise import without_noise
+from slidercrank.service.designs.rounding_noise import row_without_noise
 from slidercrank.service.runs.result import Result, StoredObjective
 from slidercrank.service.text.screen import console
 from slidercrank.service.text.tables import show_design, show_front
@@ -32,7 +32,7 @@ ROW: dict[str, float | str | None] = {
 
 def test_numbers_below_the_rounding_of_their_unit_are_zero_and_others_stay() -> None:
     expected = ROW | {"mean_torque_Nm": 0.0, "slack_peak_torque_Nm": 0.0, "slack_time_ratio": 0.0}
-    assert without_noise(ROW) == expected
+    assert row_without_noise(ROW) == expected
 
 
 def test_a_design_is_shown_without_rounding(capsys: pytest.CaptureFixture[str]) -> None:

@@ -194,6 +194,6 @@ def test_tornado_draws_the_percentages_most_sensitive_first(offset: float) -> No
 
 def test_figures_are_written_where_they_are_wanted(tmp_path: Path) -> None:
     for name in ("tolerances", "sensitivity"):
-        file = TOPICS[name].for_design(PUBLISHED, SUPPORT).draw(tmp_path)
+        file = TOPICS[name].bind_to_design(PUBLISHED, SUPPORT).draw(tmp_path)
         assert file == tmp_path / f"{name}.png"
         assert imread(file).shape[1] > 800

@@ -25,7 +25,7 @@ from slidercrank.objectives.kinds import (
     System,
     unit_text,
 )
-from slidercrank.service.designs.display_units import record_in
+from slidercrank.service.designs.display_units import convert_record
 from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, panel_in_units
 from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
@@ -123,7 +123,7 @@ def test_heads_of_a_table_have_their_lines_in_both_systems(command: Command) -> 
 
 
 def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() -> None:
-    topic = TOPICS["approximations"].for_design(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
+    topic = TOPICS["approximations"].bind_to_design(fronts.MACHINE, Linkage(0.12, 0.35, 0.08))
     record = topic.numbers(lambda: False)
     expected: tuple[tuple[System, str], ...] = (("metric", "115 mm"), ("inch", "4.528 in"))
     for units, farthest in expected:
@@ -133,10 +133,10 @@ def test_offsets_of_approximations_are_fractions_of_one_length_in_either_unit() 
 
 
 def test_sensitivities_are_per_inch_in_text_and_json() -> None:
-    topic = TOPICS["sensitivity"].for_design(Mechanism(speed=30.0, slider_mass=0.8), Linkage(0.12, 0.35, 0.08))
+    topic = TOPICS["sensitivity"].bind_to_design(Mechanism(speed=30.0, slider_mass=0.8), Linkage(0.12, 0.35, 0.08))
     record = topic.numbers(lambda: False)
     metric, inch = (
-        {row["quantity"]: row for row in of["quantities"]} for of in (record, topic.numbers_in(record, "inch"))
+        {row["quantity"]: row for row in of["quantities"]} for of in (record, topic.numbers_in_units(record, "inch"))
     )
     for name, unit, factor in (
         ("peak_torque", "lbf in", 1.0 / LBF_IN),
@@ -202,4 +202,4 @@ def test_what_sizes_one_design_says_in_inches_the_metric_numbers(
     assert unit.search(said(*figures))
     assert not unit.search(said(*figures, "--units", "inch"))
     metric = json.loads(said("--json"))
-    assert json.loads(said("--json", "--units", "inch")) == record_in(metric, "inch") != metric
+    assert json.loads(said("--json", "--units", "inch")) == convert_record(metric, "inch") != metric

@@ -128,14 +128,14 @@ def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> No
 
 def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float) -> tuple[Panel, ...]:
     """Return the panels of a topic's figure, which is drawn too."""
-    file = TOPICS[topic.__name__.split(".")[-2]].for_design(machine, LINKAGE, options).draw(folder)
+    file = TOPICS[topic.__name__.split(".")[-2]].bind_to_design(machine, LINKAGE, options).draw(folder)
     assert file.stat().st_size > 10_000
     return tuple(panel_in_units(panel, "metric") for panel in topic.figure(machine, LINKAGE, **options).panels)
 
 
 def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:
     speed, turning, torque, _ = drawn(start_up, MACHINE, tmp_path)
-    run, running, _ = start_up.start(MACHINE, LINKAGE)
+    run, running, _ = start_up.simulate_start(MACHINE, LINKAGE)
     assert running is not None
     np.testing.assert_array_equal(speed.lines[0].x, run.time)
     np.testing.assert_array_equal(torque.lines[0].y, run.motor_torque)

@@ -19,7 +19,7 @@ from slidercrank.objectives.column_keys import key_in, metric_key, split_unit
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
 from slidercrank.objectives.units import kind_for, per_si, to_si
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.display_units import record_in, result_in, row_in
+from slidercrank.service.designs.display_units import convert_record, convert_result, convert_row
 from slidercrank.service.runs.result import result_of, rows_from_csv
 from tests.service import fronts
 from tests.service.conftest import Command
@@ -62,8 +62,8 @@ def test_both_units_of_a_kind_measure_the_same() -> None:
     ],
 )
 def test_keys_carry_the_unit_of_their_values(key: str, shown: str, metric: float, inch: float) -> None:
-    assert row_in({key: metric}, "metric") == {key: metric}
-    assert row_in({key: metric}, "inch") == {shown: pytest.approx(inch, rel=1e-15)}
+    assert convert_row({key: metric}, "metric") == {key: metric}
+    assert convert_row({key: metric}, "inch") == {shown: pytest.approx(inch, rel=1e-15)}
     assert metric_key(shown) == key
     assert find_column(shown, [shown]).title == find_column(key, [key]).title
     assert split_unit(shown)[2] / split_unit(key)[2] == pytest.approx(key_in(key, "inch")[1])
@@ -76,8 +76,8 @@ def test_what_is_no_number_stays_at_any_depth() -> None:
         "c": {"d_mm": {"e_kg": 0.45359237}, "ok_W": True},
         "n": 3,
     }
-    assert record_in(record, "metric") is record
-    assert record_in(record, "inch") == {
+    assert convert_record(record, "metric") is record
+    assert convert_record(record, "inch") == {
         "a_in": [pytest.approx(1.0), None, [math.inf]],
         "b_lbf": "none",
         "c": {"d_in": {"e_lb": 1.0}, "ok_hp": True},
@@ -87,15 +87,18 @@ def test_what_is_no_number_stays_at_any_depth() -> None:
 
 def test_a_unit_of_an_own_quantity_stays() -> None:
     assert metric_unit_in("EUR", "inch") == ("EUR", 1.0)
-    assert row_in({"price_EUR": 2.0}, "inch") == {"price_EUR": 2.0}
+    assert convert_row({"price_EUR": 2.0}, "inch") == {"price_EUR": 2.0}
 
 
 def test_the_order_the_marks_and_the_ranks_are_those_of_the_metric_result() -> None:
     result = result_of(fronts.front(), "run")
-    inch = result_in(result, "inch")
+    inch = convert_result(result, "inch")
     assert (inch.knee, inch.extremes) == (result.knee, result.extremes)
     for wanted, shown in zip(result.objectives, inch.objectives, strict=True):
-        ranks = [[item.rank(row) for row in rows] for item, rows in ((wanted, result.designs), (shown, inch.designs))]
+        ranks = [
+            [item.minimised_value(row) for row in rows]
+            for item, rows in ((wanted, result.designs), (shown, inch.designs))
+        ]
         assert np.argsort(ranks[0]).tolist() == np.argsort(ranks[1]).tolist()
         assert split_unit(shown.column)[1] == shown.unit
 

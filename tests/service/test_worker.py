@@ -129,7 +129,7 @@ def test_a_job_that_goes_on_tells_at_once_that_it_loads_beside_what_it_had(store
     job = submit(store, TABLES)
     first = store.claim("first")
     assert first is not None
-    first.keep(search_record(0))
+    first.keep_record(search_record(0))
     first.report(at_round(1), {"columns": ["time_ratio"], "points": [[1.5]]})
     first.hand_back("")
     shown: list[Any] = []

@@ -17,7 +17,19 @@ from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.input_words import Kind
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
-from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, joined, recorded, sentence, words
+from ...render.blocks import (
+    Block,
+    Table,
+    Text,
+    Unit,
+    Value,
+    column,
+    heading,
+    joined,
+    sentence,
+    value_from_record,
+    words,
+)
 from ..peaks import peak
 from ..record_types import Note, Record
 
@@ -81,7 +93,7 @@ _STEP = replace(
 """A length step to which a saving refers, as a unit of its own."""
 
 
-def prepare(
+def compute_shared_options(
     mechanism: Mechanism,
     linkage: Linkage,
     *,
@@ -167,17 +179,19 @@ def blocks(numbers: Tolerances) -> list[Block]:
     """Return the answer for people."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
     rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
-    rows.append(("together", "", recorded(numbers, "cost", digits=5), "", _cost_in_job(numbers)))
+    rows.append(("together", "", value_from_record(numbers, "cost", digits=5), "", _job_cost_text(numbers)))
     columns = column("tolerance of", left=True), column("±"), column("costs"), column("share"), column(left=True)
-    limit = recorded(numbers, "limit_mm")
+    limit = value_from_record(numbers, "limit_mm")
     exact: Text = ""
     if numbers["exact_worst_case_mm"] is not None:
-        exact = words("; exact worst case {size}", size=recorded(numbers, "exact_worst_case_mm"))
+        exact = words("; exact worst case {size}", size=value_from_record(numbers, "exact_worst_case_mm"))
     holds = sentence("the limit is not active: every tolerance is at its upper bound")
     if numbers["active_angles"]:
         holds = sentence(
             "the limit is reached at {angles} {unit}; raising it by {step} saves {saving}",
-            angles=joined([recorded(at, "crank_angle_deg", digits=4, bare=True) for at in numbers["active_angles"]]),
+            angles=joined(
+                [value_from_record(at, "crank_angle_deg", digits=4, bare=True) for at in numbers["active_angles"]]
+            ),
             unit=Unit(ANGLE),
             step=Unit(_STEP),
             saving=_saving_per_step(numbers["saving_per_um"]),
@@ -185,7 +199,7 @@ def blocks(numbers: Tolerances) -> list[Block]:
     return [
         heading(f"Least-cost tolerances for a position error of {{limit}}, {kind}", limit=limit),
         Table(columns, tuple(rows)),
-        sentence("largest error {error}{exact}", error=recorded(numbers, "error_mm"), exact=exact),
+        sentence("largest error {error}{exact}", error=value_from_record(numbers, "error_mm"), exact=exact),
         holds,
     ]
 
@@ -200,8 +214,8 @@ def _row(tolerance: Tolerance) -> tuple[Text, ...]:
             saving=_saving_per_step(tolerance["bound_saving_per_um"]) if length else saved,
             step=Unit(_STEP) if length else "0.001 deg",
         )
-    size = recorded(tolerance, "tolerance_mm" if length else "tolerance_deg", digits=5)
-    cost = recorded(tolerance, "cost", digits=5)
+    size = value_from_record(tolerance, "tolerance_mm" if length else "tolerance_deg", digits=5)
+    cost = value_from_record(tolerance, "cost", digits=5)
     share = f"{tolerance['share_of_cost_percent']:.1f} %"
     return tolerance["name"].replace("_", " "), (size,), cost, share, remark
 
@@ -212,8 +226,11 @@ def _saving_per_step(per_um: float | None) -> Value:
     return Value(None if per_um is None else 1e6 * per_um, per, 4)
 
 
-def _cost_in_job(numbers: Tolerances) -> Text:
+def _job_cost_text(numbers: Tolerances) -> Text:
     if numbers["cost_before"] is None:
         return ""
-    cost, error = recorded(numbers, "cost_before", digits=5), recorded(numbers, "error_before_mm", digits=4)
+    cost, error = (
+        value_from_record(numbers, "cost_before", digits=5),
+        value_from_record(numbers, "error_before_mm", digits=4),
+    )
     return words("in the job: cost {cost}, error {error}", cost=cost, error=error)

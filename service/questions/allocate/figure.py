@@ -85,7 +85,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     count = len(data.names)
     foot = 0.55 + 0.42 * count
     figure = style.new_figure(9.2, foot + 4.25)
-    gaps = _gaps(data.counted)
+    gaps = _uncounted_ranges(data.counted)
     note = f"{data.kind} within {format_number(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
     style.heading(figure, "Least-cost tolerances", note)
     error = style.add_axes(figure, 0.8, foot + 0.85, 5.9, 2.7)
@@ -135,7 +135,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     return figure
 
 
-def _gaps(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
+def _uncounted_ranges(counted: tuple[tuple[float, float], ...]) -> list[tuple[float, float]]:
     """Return the crank angle ranges within 0 to 360 deg that do not count."""
     counted_spans = sorted(
         (max(start + shift, 0.0), min(end + shift, 360.0))

@@ -14,7 +14,19 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
-from ...render.blocks import Block, Table, Text, Unit, column, dimensions, heading, joined, note, recorded, recorded_all
+from ...render.blocks import (
+    Block,
+    Table,
+    Text,
+    Unit,
+    column,
+    dimensions,
+    heading,
+    joined,
+    note,
+    value_from_record,
+    values_from_record,
+)
 from ...render.numerals import format_number
 from ..record_types import Note, Record
 
@@ -129,19 +141,19 @@ def blocks(numbers: Approximations) -> list[Block]:
         note(
             "Errors: greatest over the cycle, relative to the exact peak; on the right for other offsets, in % of "
             "{most}.",
-            most=recorded_all(numbers, "offset_mm", digits=4)[-1],
+            most=values_from_record(numbers, "offset_mm", digits=4)[-1],
         ),
     ]
 
 
 def _exact_row(numbers: Approximations, key: str, kind: Kind) -> tuple[Text, ...]:
-    return recorded(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TABULATED)
+    return value_from_record(numbers, key, digits=5), Unit(kind), *[""] * (1 + _TABULATED)
 
 
 def _approximation_row(approximation: Approximation, key: str, kind: Kind) -> tuple[Text, ...]:
     errors = (approximation["error_percent"], *approximation["error_over_offset_percent"])
     cells = ("-" if percent is None else f"{percent:.3g} %" for percent in errors)
-    return f"  {approximation['name']}", recorded(approximation, key, digits=5), Unit(kind), *cells
+    return f"  {approximation['name']}", value_from_record(approximation, key, digits=5), Unit(kind), *cells
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:

@@ -19,8 +19,8 @@ from ....model.signals.signals import Signal
 from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.machine_needs import MOTION
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, NamedNumber, compared, joined, named_number, number_list
-from ..peaks import Peak, peak, row_of
+from ...render.blocks import Block, NamedNumber, joined, named_number, number_list, remark_with_value
+from ..peaks import Peak, lengths_row, peak
 from ..record_types import Note, PeakAngle, Record
 
 Bare = Annotated[float | None, Note("null without a counterweight")]
@@ -87,7 +87,7 @@ class _Shaking(NamedTuple):
 
 
 def _shaking_of(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
-    rms = average(mechanism, signal, row_of(linkage)).rms[0]
+    rms = average(mechanism, signal, lengths_row(linkage)).rms[0]
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 
@@ -106,7 +106,10 @@ def blocks(numbers: Shaking) -> list[Block]:
     for name, unit, _ in _CURVES:
         for statistic in ("peak", "rms"):
             bare_key = f"{statistic}_{name}_without_counterweight_{unit}"
-            remarks = ("over time" if statistic == "rms" else "", compared(numbers, bare_key, "without counterweight"))
+            remarks = (
+                "over time" if statistic == "rms" else "",
+                remark_with_value(numbers, bare_key, "without counterweight"),
+            )
             lines.append(named_number(numbers, f"{statistic}_{name}_{unit}", joined(remarks)))
     title = "Balance (inertia forces on the frame, without gravity and loads; moment about the crank pivot)"
     return number_list(title, lines)

@@ -15,7 +15,7 @@ from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ....optimise.certificate.infeasible import prove_infeasible
 from ....optimise.front.front import ParetoFront
 from ....optimise.problem.problem import Problem
-from ...designs.display_units import record_in
+from ...designs.display_units import convert_record
 from ...render.blocks import Block, Value, heading, joined, sentence, words
 from ...runs.result import rows_of
 from ..front_or_job_question import Answer, SearchListener
@@ -45,7 +45,7 @@ def analyse(
     )
     record = _certificate_record(certificate, front.problem)
     return Answer(
-        record=lambda units: record_in(record, units),
+        record=lambda units: convert_record(record, units),
         blocks=_certificate_blocks(certificate, front),
         is_satisfied=certificate.proven,
         message=certificate.message,

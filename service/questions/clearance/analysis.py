@@ -15,7 +15,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Joint, Law
 from ....model.machine.mechanism import Mechanism
-from ...render.blocks import Block, Table, Text, Unit, column, heading, note, recorded, sentence, words
+from ...render.blocks import Block, Table, Text, Unit, column, heading, note, sentence, value_from_record, words
 from ..record_types import Keys, Note
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ Impacts = Annotated[
 ]
 
 
-def simulated(
+def run_simulation(
     mechanism: Mechanism,
     linkage: Linkage,
     *,
@@ -93,17 +93,19 @@ def simulated(
         return simulate(mechanism, linkage, mechanism.clearance, **options)
 
 
-def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
+def compute_shared_options(
+    mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any
+) -> dict[str, Any]:
     """Return the simulation that numbers and figure share."""
-    return {"run": simulated(mechanism, linkage, cancelled=cancelled)}
+    return {"run": run_simulation(mechanism, linkage, cancelled=cancelled)}
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None, **options: Any) -> Impacts:
     """Return the statistics of a simulation, ready for JSON: each with its uncertainty, None if undefined.
 
-    run: finished simulation; by default `simulated` runs one with the options.
+    run: finished simulation; by default `run_simulation` runs one with the options.
     """
-    run = run or simulated(mechanism, linkage, **options)
+    run = run or run_simulation(mechanism, linkage, **options)
     clearance = run.clearance
     summary = summarise(run) if run.cycles > run.discard else None
     record: dict[str, Any] = {
@@ -131,14 +133,14 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the statistics for people."""
     head = heading(
         f"Radial clearance {{size}} at the {numbers['joint']} (contact law: {numbers['law']})",
-        size=recorded(numbers, "radial_clearance_mm"),
+        size=value_from_record(numbers, "radial_clearance_mm"),
     )
     if not numbers["turns"]:
         return [head, sentence("cancelled before a turn could be counted")]
     rows: list[tuple[Text, ...]] = []
     for _, key, unit, _, title, percent in ROWS:
-        value = recorded(numbers, f"{key}{unit}", digits=4)
-        certain = recorded(numbers, f"{key}_uncertainty{unit}", digits=2, bare=True)
+        value = value_from_record(numbers, f"{key}{unit}", digits=4)
+        certain = value_from_record(numbers, f"{key}_uncertainty{unit}", digits=2, bare=True)
         if value.number == 0.0 and not certain.number:
             continue
         spread = "" if certain.number is None else words("± {certain}", certain=certain)
@@ -155,11 +157,11 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None = None) -> Callable[[System], Figure]:
     """Return the figure for the last revolution of a simulation.
 
-    run: finished simulation; by default `simulated` runs one.
+    run: finished simulation; by default `run_simulation` runs one.
     """
     from .figure import clearance_figure
 
-    return partial(clearance_figure, run or simulated(mechanism, linkage))
+    return partial(clearance_figure, run or run_simulation(mechanism, linkage))
 
 
 @contextlib.contextmanager

@@ -50,7 +50,7 @@ class LooseCurves:
     touching: NDArray[np.bool_]
 
 
-def loose_curves(run: ClearanceRun) -> LooseCurves:
+def loose_joint_curves(run: ClearanceRun) -> LooseCurves:
     """Return the curves of the last revolution of a run. Raises `InputError` if there is no complete revolution."""
     if run.cycles < 1:
         raise InputError("a figure needs a complete turn of the crank; got none; simulate longer")
@@ -71,7 +71,7 @@ def loose_curves(run: ClearanceRun) -> LooseCurves:
 
 def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     """Return slider motion and contact force over the last revolution of a run, and the path of the journal."""
-    curves = loose_curves(run)
+    curves = loose_joint_curves(run)
     figure = new_figure(12.4, 7.6)
     title = words("{clearance}, {speed}", clearance=_clearance_text(run), speed=_speed_value(run))
     subtitle = f"turn {run.cycles} of the crank; solid: loose joint, dashed: ideal joints"
@@ -97,7 +97,7 @@ def speeds_figure(runs: Sequence[ClearanceRun]) -> PanelFigure:
     """Return displacement, velocity and acceleration of the slider with a loose joint, one column per run."""
     columns = []
     for run in runs:
-        curves = loose_curves(run)
+        curves = loose_joint_curves(run)
         first, *other_panels = (_motion_panel(curves, kind) for kind in _TITLES)
         columns.append([replace(first, note=(_speed_value(run),)), *other_panels])
     panels = tuple(panel for row in zip(*columns, strict=True) for panel in row)

@@ -16,7 +16,7 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
 from ....optimise.decisions.compare import compare
 from ...designs.choice_options import minimised_values
-from ...designs.display_units import objective_in
+from ...designs.display_units import convert_objective
 from ...designs.front_comparison import comparison_sentences
 from ...preview.partial_job import ranges_of
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
@@ -75,7 +75,7 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
 
 def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[str | None]]]) -> list[str]:
     """Return a sentence that names the differing data and requirements of the jobs; empty if they are equal."""
-    names = list(dict.fromkeys(_given_name(place) for place, _ in places if place.split(".")[0] not in _SEARCHED))
+    names = list(dict.fromkeys(_path_name(place) for place, _ in places if place.split(".")[0] not in _SEARCHED))
     if not names:
         return []
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
@@ -83,7 +83,7 @@ def _different_jobs_sentence(count: int, places: Sequence[tuple[str, Sequence[st
     return [f"{jobs} state different problems: {', '.join(names[:_MOST_NAMES])}{more}; only the numbers are compared"]
 
 
-def _given_name(place: str) -> str:
+def _path_name(place: str) -> str:
     """Return the name of a path in a job: "speed", "load", or the quantity or formula of a bound."""
     table, _, key = place.partition(".")
     if table == "constraints":  # a formula may contain a point
@@ -94,26 +94,28 @@ def _given_name(place: str) -> str:
 def _objectives_message(runs: Sequence[ComparedRun]) -> str:
     """Return the rule if a run has other objectives than the first one."""
     for run in runs[1:]:
-        if {_key(item) for item in run.result.objectives} != {_key(item) for item in runs[0].result.objectives}:
+        if {_objective_identity(item) for item in run.result.objectives} != {
+            _objective_identity(item) for item in runs[0].result.objectives
+        }:
             words = [f"{one.name} has {_objectives(one.result)}" for one in (runs[0], run)]
             return f"the runs must have the same objectives; {', '.join(words)}"
     return ""
 
 
-def _key(objective: StoredObjective) -> tuple[str, str, float | None]:
+def _objective_identity(objective: StoredObjective) -> tuple[str, str, float | None]:
     return objective.quantity, objective.sense, objective.target
 
 
 def _reorder_objectives(result: Result, first: Result) -> Result:
     """Return a result with its objectives in the order of the first result."""
-    by_key = {_key(item): item for item in result.objectives}
-    return replace(result, objectives=tuple(by_key[_key(item)] for item in first.objectives))
+    by_key = {_objective_identity(item): item for item in result.objectives}
+    return replace(result, objectives=tuple(by_key[_objective_identity(item)] for item in first.objectives))
 
 
 def _objectives(result: Result, system: System = "metric") -> str:
     return ", ".join(
         f"{item.sense} {item.quantity}" + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
-        for item in (objective_in(objective, system) for objective in result.objectives)
+        for item in (convert_objective(objective, system) for objective in result.objectives)
     )
 
 
@@ -136,7 +138,7 @@ def _better_blocks(runs: Sequence[ComparedRun], sentences: Mapping[System, Seque
 
 def _front_measures(solved: Sequence[ComparedRun], comparison: Comparison, units: System) -> dict[str, Any]:
     return {
-        "objectives": [objective_record(objective_in(item, units)) for item in solved[0].result.objectives],
+        "objectives": [objective_record(convert_objective(item, units)) for item in solved[0].result.objectives],
         "tolerance": comparison.tolerance,
         "union_hypervolume": comparison.union,
         "runs": [
@@ -281,11 +283,11 @@ def _leaves(value: Any, place: str) -> list[tuple[str, str]]:
     if isinstance(value, list | tuple) and any(isinstance(part, Mapping) for part in value):
         return [leaf for number, part in enumerate(value, 1) for leaf in _leaves(part, f"{place}.{number}")]
     if isinstance(value, list | tuple):
-        return [(place, (" to " if len(value) == 2 else ", ").join(map(_text, value)))]
-    return [(place, _text(value))]
+        return [(place, (" to " if len(value) == 2 else ", ").join(map(_value_text, value)))]
+    return [(place, _value_text(value))]
 
 
-def _text(value: Any) -> str:
+def _value_text(value: Any) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return f"{value:.12g}" if isinstance(value, float) else str(value)

@@ -22,11 +22,11 @@ from ...render.blocks import (
     Text,
     Unit,
     Value,
-    compared,
     joined,
     note,
     number_list,
-    recorded,
+    remark_with_value,
+    value_from_record,
     words,
 )
 from ...render.numerals import format_number
@@ -84,7 +84,7 @@ class BalanceNumbers(Record):
 _SAMPLES = 1441
 
 
-def prepare(
+def compute_shared_options(
     mechanism: Mechanism,
     linkage: Linkage,
     *,
@@ -104,12 +104,12 @@ def prepare(
         arm=arm,
         radius=at,
         greatest_moment=None if mass is None else mass * at,
-        rod=_rod_space(inputs, words or {}),
+        rod=_rod_balance_space(inputs, words or {}),
     )
     return {"optimum": optimum}
 
 
-def _rod_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
+def _rod_balance_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> RodSpace | None:
     """Return the space for a balance mass on the rod. Raises `InputError` if only one of radius and mass is given."""
     names = [item.name for item in QUESTION.inputs if item.name.startswith("rod_")]
     (first, radius), (second, mass) = ((labels.get(name, name), inputs.get(name)) for name in names)
@@ -172,8 +172,10 @@ def _shaking_numbers(shaking: Shaking) -> ShakingNumbers:
 
 def blocks(numbers: BalanceNumbers) -> list[Block]:
     """Return the answer for people."""
-    mass, radius, angle = (recorded(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg"))
-    moment = recorded(numbers, "counterweight_moment_kg_m")
+    mass, radius, angle = (
+        value_from_record(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg")
+    )
+    moment = value_from_record(numbers, "counterweight_moment_kg_m")
     saving = numbers["saving_N_per_kg"]
     remark: Text = ""
     if saving:
@@ -189,14 +191,16 @@ def blocks(numbers: BalanceNumbers) -> list[Block]:
     rod = numbers["rod_balance"]
     if rod is not None:
         lines += [
-            ("added to the rod", recorded(rod, "mass_kg"), _centre_text(rod)),
-            ("its inertia about the crank pin", recorded(rod, "inertia_kg_m2"), ""),
+            ("added to the rod", value_from_record(rod, "mass_kg"), _centre_text(rod)),
+            ("its inertia about the crank pin", value_from_record(rod, "inertia_kg_m2"), ""),
         ]
     for name, unit in (("shaking_force", "N"), ("shaking_moment", "Nm")):
         for statistic in ("peak", "rms"):
             key, called = f"{statistic}_{name}_{unit}", name.replace("_", " ")
             title = f"RMS {called} over time" if statistic == "rms" else f"{statistic} {called}"
-            lines.append((title, recorded(numbers["after"], key), compared(numbers["before"], key, "before")))
+            lines.append(
+                (title, value_from_record(numbers["after"], key), remark_with_value(numbers["before"], key, "before"))
+            )
     line = '  in the job: counterweight = {{ mass = "{mass}", radius = "{radius}", angle = "{angle}" }}'
     return [
         *number_list(f"Balance with least {numbers['measure']} shaking (moment about the crank pivot)", lines),

@@ -16,7 +16,7 @@ from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, Table, Text, column, compared, named_number, number_list, recorded
+from ...render.blocks import Block, Table, Text, column, named_number, number_list, remark_with_value, value_from_record
 from ..peaks import peak
 from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
@@ -112,15 +112,15 @@ def _degrees(extreme: Extreme) -> float | None:
 def blocks(numbers: Cylinders) -> list[Block]:
     """Return the answer for people."""
     remarks: dict[str, Text] = {
-        "peak_torque_Nm": compared(numbers["cylinders"][0], "peak_torque_Nm", "of the first cylinder"),
+        "peak_torque_Nm": remark_with_value(numbers["cylinders"][0], "peak_torque_Nm", "of the first cylinder"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),
         "mean_torque_Nm": "over the crank angle",
         "rms_torque_Nm": "over time; determines motor heating",
         "torque_fluctuation_Nm": "RMS deviation from the mean, over the crank angle",
         "energy_change_J": "range of the integral of torque minus mean; determines the flywheel",
-        "peak_shaking_force_N": compared(numbers, "peak_shaking_force_of_one_N", "of one cylinder"),
+        "peak_shaking_force_N": remark_with_value(numbers, "peak_shaking_force_of_one_N", "of one cylinder"),
         "rms_shaking_force_N": "over time",
-        "peak_shaking_moment_Nm": compared(numbers, "peak_shaking_moment_of_one_Nm", "of one cylinder"),
+        "peak_shaking_moment_Nm": remark_with_value(numbers, "peak_shaking_moment_of_one_Nm", "of one cylinder"),
         "rms_shaking_moment_Nm": "over time",
         "peak_rocking_couple_Nm": "about the origin of the shaft, from the axial positions of the cylinders",
     }
@@ -131,7 +131,7 @@ def blocks(numbers: Cylinders) -> list[Block]:
         column("peak torque", TORQUE),
         *(column(title, FORCE) for title in ("crank pin", "slider pin", "guide")),
     )
-    rows = tuple(tuple(recorded(cylinder, key) for key in cylinder) for cylinder in numbers["cylinders"])
+    rows = tuple(tuple(value_from_record(cylinder, key) for key in cylinder) for cylinder in numbers["cylinders"])
     title = f"{len(rows)} cylinders on one crankshaft, in total"
     return [*number_list(title, together), Table(columns, rows)]
 

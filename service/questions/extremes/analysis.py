@@ -26,8 +26,8 @@ from ...render.blocks import (
     heading,
     joined,
     number_list,
-    recorded,
     sentence,
+    value_from_record,
     words,
 )
 from ...render.extremes_table import extremes_table
@@ -156,12 +156,14 @@ def blocks(numbers: Extremes) -> list[Block]:
     strokes, lines = numbers["strokes"], list[NamedNumber]()
     for name in _STROKES:
         stroke = strokes[name]
-        lines.append((f"{name} stroke", recorded(stroke, "crank_angle_deg"), ""))
+        lines.append((f"{name} stroke", value_from_record(stroke, "crank_angle_deg"), ""))
         if "duration_s" in stroke:
-            at = recorded(stroke, "greatest_speed_at_crank_angle_deg", decimals=2)
+            at = value_from_record(stroke, "greatest_speed_at_crank_angle_deg", decimals=2)
             if stroke["duration_s"] is not None:
                 lines.append(("  duration", Value(stroke["duration_s"], TIME), ""))
-            lines.append(("  greatest slider speed", recorded(stroke, "greatest_speed_m_s"), words("at {at}", at=at)))
+            lines.append(
+                ("  greatest slider speed", value_from_record(stroke, "greatest_speed_m_s"), words("at {at}", at=at))
+            )
     for title, key, kind in (
         ("ratio of crank angles", "angle_ratio", RATIO),
         ("ratio of durations", "duration_ratio", RATIO),
@@ -180,7 +182,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     Curves have gaps where friction leaves them undetermined.
     """
     extremes = {extreme_curve.name: extreme_curve for extreme_curve in curve_extremes(mechanism, linkage)}
-    marked = [e.crank_angle for name in _PANELS if name in extremes for e in _ends(extremes[name])]
+    marked = [e.crank_angle for name in _PANELS if name in extremes for e in _minimum_and_maximum(extremes[name])]
     theta = sampled_turn(
         cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)], turns=cycle_turns(mechanism)
     )
@@ -192,13 +194,13 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     )
 
 
-def _ends(curve: CurveExtremes) -> tuple[Extreme, Extreme]:
+def _minimum_and_maximum(curve: CurveExtremes) -> tuple[Extreme, Extreme]:
     return curve.least, curve.greatest
 
 
 def _curve_panel(curve: CurveExtremes, degrees: np.ndarray, values: np.ndarray) -> Panel:
     lines = [Line("", degrees, values)]
-    ends = [end for end in _ends(curve) if math.isfinite(end.crank_angle)]
+    ends = [end for end in _minimum_and_maximum(curve) if math.isfinite(end.crank_angle)]
     note: Text = "constant" if math.isfinite(curve.least.value) else "undefined where friction locks"
     if ends:
         angles, sizes = np.degrees([end.crank_angle for end in ends]), [end.value for end in ends]

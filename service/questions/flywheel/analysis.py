@@ -14,10 +14,10 @@ from ....model.transient.flywheel import design_flywheel
 from ....model.transient.steady import Runner, SteadyRunning
 from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
-from ...render.blocks import Block, Table, Text, Value, column, recorded, sentence, words
+from ...render.blocks import Block, Table, Text, Value, column, sentence, value_from_record, words
 from ...render.numerals import format_number
 from ..record_types import Note, Record
-from ..start_up.analysis import RPM, SteadyNumbers, in_order, steady_numbers
+from ..start_up.analysis import RPM, SteadyNumbers, sort_by_crank_angle, steady_numbers
 from . import FLUCTUATION
 
 Bare = Annotated[float | None, Note("null where no steady running was found without a flywheel")]
@@ -85,14 +85,16 @@ def blocks(numbers: Flywheel) -> list[Block]:
     """Return the answer for people."""
     inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
     purpose = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
-    needed = sentence(f"No flywheel is needed {purpose}: without one {{without}}.", without=_without_one(numbers))
+    needed = sentence(
+        f"No flywheel is needed {purpose}: without one {{without}}.", without=_without_flywheel_text(numbers)
+    )
     if inertia:
         needed = sentence(
             f"Flywheel on the crank shaft {purpose}: {{inertia}} (classical estimate {{estimate}}); "
             "without one {without}.",
             inertia=Value(inertia, INERTIA, 5),
             estimate=Value(numbers["classical_estimate_kgm2"], INERTIA, 5),
-            without=_without_one(numbers),
+            without=_without_flywheel_text(numbers),
         )
     return [
         needed,
@@ -100,9 +102,9 @@ def blocks(numbers: Flywheel) -> list[Block]:
         sentence(
             "{so}: mean speed {speed}, motor torque up to {torque} at the crank, mean power {power}.",
             so="With the flywheel" if inertia else "So",
-            speed=recorded(steady, "mean_speed_rpm", digits=5),
-            torque=recorded(steady, "peak_motor_torque_Nm", digits=4),
-            power=recorded(steady, "mean_power_W", digits=4),
+            speed=value_from_record(steady, "mean_speed_rpm", digits=5),
+            torque=value_from_record(steady, "peak_motor_torque_Nm", digits=4),
+            power=value_from_record(steady, "mean_power_W", digits=4),
         ),
         Table(
             (column("fluctuation"), column("flywheel", INERTIA), column("classical", INERTIA)),
@@ -119,12 +121,12 @@ def blocks(numbers: Flywheel) -> list[Block]:
     ]
 
 
-def _without_one(numbers: Flywheel) -> Text:
+def _without_flywheel_text(numbers: Flywheel) -> Text:
     """Return a sentence on operation without a flywheel."""
     bare = numbers["fluctuation_without_flywheel"]
     if bare is None:
         return f"steady running was not reached: {numbers['reason_without_flywheel']}"
-    slowest = recorded(numbers, "least_speed_without_flywheel_rpm", digits=4)
+    slowest = value_from_record(numbers, "least_speed_without_flywheel_rpm", digits=4)
     if slowest.number:
         return words(f"it is {bare:.4g} (least speed {{slowest}})", slowest=slowest)
     return f"it is {bare:.4g}: the crank nearly stops, below a millionth of its maximum speed"
@@ -159,7 +161,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
         turns.append(("with half the inertia", small, FAINT))
     speeds = []
     for name, running, style in turns:
-        angle, (speed,) = in_order(running, running.speed)
+        angle, (speed,) = sort_by_crank_angle(running, running.speed)
         speeds.append(Line(name, angle, speed, style))
     reached = format_number(design.running.fluctuation)
     size: Text = f"none needed for {format_number(fluctuation)}"

@@ -20,9 +20,19 @@ from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
 from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, NamedNumber, Value, compared, joined, named_number, number_list, recorded, words
+from ...render.blocks import (
+    Block,
+    NamedNumber,
+    Value,
+    joined,
+    named_number,
+    number_list,
+    remark_with_value,
+    value_from_record,
+    words,
+)
 from ...text.tables import finite_or_none
-from ..peaks import peak, row_of
+from ..peaks import lengths_row, peak
 from ..record_types import Note, NullIfLocked, Record
 
 Smooth = Annotated[float | None, Note("null where it is not determined")]
@@ -83,7 +93,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
         finite_or_none(peak(machine, Signal.TORQUE, linkage).value) for machine in (mechanism, smooth)
     )
     mean, smooth_mean = (
-        finite_or_none(average_torque(machine, row_of(linkage)).mean[0]) for machine in (mechanism, smooth)
+        finite_or_none(average_torque(machine, lengths_row(linkage)).mean[0]) for machine in (mechanism, smooth)
     )
     guide, smooth_guide = (
         finite_or_none(peak(machine, Signal.GUIDE_FORCE, linkage).value) for machine in (mechanism, smooth)
@@ -91,7 +101,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     work = None if locking.locks else energies(mechanism, linkage)
     return {
         "one_cylinder_at_constant_speed": has_several,
-        "verdict": "drives" if locking.holds is None and not locking.locks else _locking_in_words(locking.holds),
+        "verdict": "drives" if locking.holds is None and not locking.locks else _locking_verdict(locking.holds),
         "self_locking_margin_deg": finite_or_none(math.degrees(locking.margin)),
         "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
         "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
@@ -114,7 +124,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     }
 
 
-def _locking_in_words(holds: float | None) -> Verdict:
+def _locking_verdict(holds: float | None) -> Verdict:
     if holds is None:  # a single angle, if the margin is exactly zero
         return "may jam"
     return "locks" if holds == 1.0 else "may jam" if holds == 0.0 else "locks or may jam"
@@ -133,27 +143,29 @@ def blocks(numbers: FrictionNumbers) -> list[Block]:
     shares = ", ".join(f"{name} {100.0 * part / heat:.3g} %" for name, part in heats.items() if heat and part)
     least = words(
         "least transmission angle {angle} minus the friction angles",
-        angle=recorded(numbers, "least_transmission_angle_deg", digits=4),
+        angle=value_from_record(numbers, "least_transmission_angle_deg", digits=4),
     )
     lines: list[NamedNumber] = [
-        ("self-locking margin", recorded(numbers, "self_locking_margin_deg"), least),
-        ("friction angle, guide", recorded(numbers, "guide_friction_angle_deg"), ""),
-        ("friction angle, pins", recorded(numbers, "pin_friction_angle_deg"), ""),
+        ("self-locking margin", value_from_record(numbers, "self_locking_margin_deg"), least),
+        ("friction angle, guide", value_from_record(numbers, "guide_friction_angle_deg"), ""),
+        ("friction angle, pins", value_from_record(numbers, "pin_friction_angle_deg"), ""),
     ]
     for key, smooth, averaging in (
         ("peak_torque_Nm", "peak_torque_without_friction_Nm", ""),
         ("mean_torque_Nm", "mean_torque_without_friction_Nm", _OVER),
         ("peak_guide_force_N", "peak_guide_force_without_friction_N", ""),
     ):
-        lines.append(named_number(numbers, key, joined([averaging, compared(numbers, smooth, "without friction")])))
+        lines.append(
+            named_number(numbers, key, joined([averaging, remark_with_value(numbers, smooth, "without friction")]))
+        )
     why = "the load does no net work" if heat is not None else "all values are undefined"
     delivered = "of the load's work is delivered at the crank" if drives else ""
     efficiency = numbers["efficiency"]
     side = "negative: the load drives the machine" if drives else "against the load"
     lines += [
-        ("input work per cycle", recorded(numbers, "input_work_J"), ""),
-        ("useful work per cycle", recorded(numbers, "useful_work_J"), side),
-        ("friction heat per cycle", recorded(numbers, "friction_heat_J"), shares),
+        ("input work per cycle", value_from_record(numbers, "input_work_J"), ""),
+        ("useful work per cycle", value_from_record(numbers, "useful_work_J"), side),
+        ("friction heat per cycle", value_from_record(numbers, "friction_heat_J"), shares),
         ("efficiency", Value(efficiency, PERCENT), why if efficiency is None else delivered),
     ]
     scope = " of one cylinder at constant speed" if numbers["one_cylinder_at_constant_speed"] else ""

@@ -17,7 +17,7 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, NamedNumber, number_list, recorded
+from ...render.blocks import Block, NamedNumber, number_list, value_from_record
 from ..record_types import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
@@ -87,14 +87,14 @@ def blocks(numbers: Indicator) -> list[Block]:
     result_blocks: list[Block] = []
     for cylinder in numbers["cylinders"]:
         lines: list[NamedNumber] = [
-            ("least volume", recorded(cylinder, "least_volume_cm3"), ""),
-            ("greatest volume", recorded(cylinder, "greatest_volume_cm3"), ""),
-            ("least pressure", recorded(cylinder, "least_pressure_bar"), ""),
-            ("greatest pressure", recorded(cylinder, "greatest_pressure_bar"), ""),
+            ("least volume", value_from_record(cylinder, "least_volume_cm3"), ""),
+            ("greatest volume", value_from_record(cylinder, "greatest_volume_cm3"), ""),
+            ("least pressure", value_from_record(cylinder, "least_pressure_bar"), ""),
+            ("greatest pressure", value_from_record(cylinder, "greatest_pressure_bar"), ""),
         ]
         valve, falls = "a valve opens", "the pressure falls from its peak"
         for name, event in (("expansion", valve), ("compression", valve), ("burning", falls)):
-            angle = recorded(cylinder, f"{name}_ends_deg")
+            angle = value_from_record(cylinder, f"{name}_ends_deg")
             if angle.number is not None:
                 lines.append((f"{name} ends", angle, event))
         result_blocks += number_list(f"Indicator diagram of load {cylinder['load']} (pressures are absolute)", lines)

@@ -17,7 +17,7 @@ from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_points, placed, require_swing
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
-from ...render.blocks import Block, Table, column, joined, recorded, sentence, words
+from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
 from ..record_types import Note, Record
 
 _NEAR = 1e-9  # rad beyond an end of a swing that count as rounding
@@ -130,7 +130,7 @@ def _degrees(angle: float) -> str:
 
 def blocks(record: CrankAngles) -> list[Block]:
     """Return the slider's motion and the crank angles, for people."""
-    motion = {key: recorded(record, key) for key in _GIVEN}
+    motion = {key: value_from_record(record, key) for key in _GIVEN}
     motion_texts = [
         words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)
         for key, value in motion.items()
@@ -146,8 +146,8 @@ def blocks(record: CrankAngles) -> list[Block]:
     ]
     rows = []
     for solution in record["solutions"]:
-        rates = (recorded(solution, key) for key, _ in rate_columns)
-        rows.append((recorded(solution, "crank_angle_deg"), solution["stroke"] or "dead centre", *rates))
+        rates = (value_from_record(solution, key) for key, _ in rate_columns)
+        rows.append((value_from_record(solution, "crank_angle_deg"), solution["stroke"] or "dead centre", *rates))
     heads = (column("crank angle", ANGLE), column("stroke (counter-clockwise)", left=True))
     return [
         sentence("slider: {given}", given=joined(motion_texts)),

@@ -19,10 +19,10 @@ from ....optimise.motion_law.law_limits import LawRequest
 from ....optimise.motion_law.optimal_law import OptimalLaw, optimal_law
 from ....optimise.motion_law.words import LawObjective, Timing
 from ....optimise.problem.problem import Problem
-from ...designs.display_units import rows_in
-from ...designs.rounding_noise import without_noise
+from ...designs.display_units import convert_rows
+from ...designs.rounding_noise import row_without_noise
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, NamedNumber, compared, joined, named_number, note, number_list, sentence
+from ...render.blocks import Block, NamedNumber, joined, named_number, note, number_list, remark_with_value, sentence
 from ...render.numerals import format_number
 from ...runs.result import Row
 from ..record_types import Note, Record
@@ -57,7 +57,7 @@ class LawNumbers(Record):
     relaxed: Annotated[bool, Note("whether the bound comes from a relaxation, which even the best law may not reach")]
 
 
-def prepare(
+def compute_shared_options(
     mechanism: Mechanism,
     linkage: Linkage,
     *,
@@ -98,7 +98,7 @@ def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: A
         "proven": optimum.proven,
         "relaxed": optimum.relaxed,
     }
-    return cast(LawNumbers, without_noise(record))
+    return cast(LawNumbers, row_without_noise(record))
 
 
 def _at_constant_speed(optimum: OptimalLaw) -> Mechanism:
@@ -118,25 +118,27 @@ def blocks(numbers: LawNumbers) -> list[Block]:
     """Return the answer for people."""
     even = "at constant speed"
     lines: list[NamedNumber] = [
-        named_number(numbers, "peak_torque_Nm", compared(numbers, "peak_torque_at_constant_speed_Nm", even)),
+        named_number(numbers, "peak_torque_Nm", remark_with_value(numbers, "peak_torque_at_constant_speed_Nm", even)),
         named_number(
             numbers,
             "rms_torque_Nm",
-            joined(["over time", compared(numbers, "rms_torque_at_constant_speed_Nm", even)]),
+            joined(["over time", remark_with_value(numbers, "rms_torque_at_constant_speed_Nm", even)]),
         ),
-        named_number(numbers, "peak_power_W", compared(numbers, "peak_power_at_constant_speed_W", even)),
+        named_number(numbers, "peak_power_W", remark_with_value(numbers, "peak_power_at_constant_speed_W", even)),
         named_number(numbers, "cycle_time_s"),
         named_number(numbers, "least_speed_rpm"),
         named_number(numbers, "greatest_speed_rpm"),
         named_number(numbers, "peak_crank_acceleration_rad_s2"),
         named_number(
-            numbers, "peak_slider_speed_m_s", compared(numbers, "peak_slider_speed_at_constant_speed_m_s", even)
+            numbers,
+            "peak_slider_speed_m_s",
+            remark_with_value(numbers, "peak_slider_speed_at_constant_speed_m_s", even),
         ),
         named_number(numbers, "work_J", "of the drive in a turn"),
     ]
     found: list[Block] = [
         *number_list(f"Motion law with the least {_name(numbers['objective'])} (torques at the crank)", lines),
-        sentence(f"{_gain(numbers)}"),
+        sentence(f"{_gain_text(numbers)}"),
     ]
     if numbers["proven"]:
         margin = f" by more than {100.0 * numbers['gap']:.2g} %" if numbers["gap"] else ""
@@ -144,7 +146,7 @@ def blocks(numbers: LawNumbers) -> list[Block]:
     return found
 
 
-def _gain(numbers: LawNumbers) -> str:
+def _gain_text(numbers: LawNumbers) -> str:
     """Return the gain over constant speed in a sentence."""
     changes = []
     for key, title in (("peak_torque", "peak torque"), ("rms_torque", "RMS torque")):
@@ -162,7 +164,7 @@ def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **o
     """Return the rows of the cam table."""
     table = cam_table(optimum.law)
     rows = zip(table.time, table.crank_angle, table.speed, table.acceleration, strict=True)
-    return rows_in(
+    return convert_rows(
         [
             {
                 "time_s": float(time),

@@ -14,8 +14,8 @@ from ....model.turning_cylinder.summary import LeverPoint, LeverSummary, summari
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind
 from ...designs.design_curves import lever_rows
-from ...designs.display_units import rows_in
-from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, recorded, sentence, words
+from ...designs.display_units import convert_rows
+from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, sentence, value_from_record, words
 from ..record_types import Keys, Note
 from .request import LeverRequest, lever_request
 
@@ -64,11 +64,11 @@ def _type_of(name: str) -> Any:
     return Annotated[float | None, Note(_LACKS[name])] if name in _LACKS else float
 
 
-def _keys(names: Mapping[str, Kind]) -> dict[str, Any]:
+def _record_keys(names: Mapping[str, Kind]) -> dict[str, Any]:
     return {f"{name}{kind.metric.suffix}": _type_of(name) for name, kind in names.items()}
 
 
-def _places(name: str) -> dict[str, Any]:
+def _place_keys(name: str) -> dict[str, Any]:
     kind = Annotated[float | None, Note("null where the value is")]
     return {f"{name}_at_lever_angle_deg": kind, f"{name}_at_length_mm": kind}
 
@@ -79,31 +79,33 @@ LeverNumbers = Annotated[
         "LeverNumbers",
         "A lever and the cylinder that moves it out and back.",
         {
-            **_keys({"crank": LENGTH, "frame": LENGTH, "frame_angle": ANGLE, "offset": LENGTH, "pin_angle": ANGLE}),
-            **_keys({"start_lever_angle": ANGLE, "end_lever_angle": ANGLE}),
+            **_record_keys(
+                {"crank": LENGTH, "frame": LENGTH, "frame_angle": ANGLE, "offset": LENGTH, "pin_angle": ANGLE}
+            ),
+            **_record_keys({"start_lever_angle": ANGLE, "end_lever_angle": ANGLE}),
             "law": LeverLaw,
             "duration_s": _type_of("duration"),
-            **_keys({"start_length": LENGTH, "end_length": LENGTH, "travel": LENGTH, "extension_ratio": RATIO}),
+            **_record_keys({"start_length": LENGTH, "end_length": LENGTH, "travel": LENGTH, "extension_ratio": RATIO}),
             "single_stage": bool,
-            **_keys({"push_at_start": FORCE, "push_at_end": FORCE}),
+            **_record_keys({"push_at_start": FORCE, "push_at_end": FORCE}),
             **{
                 key: type_
                 for name, kind in _POINTS.items()
-                for key, type_ in (_keys({name: kind}) | _places(name)).items()
+                for key, type_ in (_record_keys({name: kind}) | _place_keys(name)).items()
             },
             "dead_point_margin_deg": float,
             "work_out_J": float,
             "work_back_J": float,
-            **_keys({"push_pressure": PRESSURE, "pull_pressure": PRESSURE}),
-            **_keys({"extending_flow": VOLUME_FLOW, "retracting_flow": VOLUME_FLOW}),
-            **_keys({"time_ratio": RATIO, "fitting_lesser": LENGTH, "fitting_greater": LENGTH}),
+            **_record_keys({"push_pressure": PRESSURE, "pull_pressure": PRESSURE}),
+            **_record_keys({"extending_flow": VOLUME_FLOW, "retracting_flow": VOLUME_FLOW}),
+            **_record_keys({"time_ratio": RATIO, "fitting_lesser": LENGTH, "fitting_greater": LENGTH}),
             "notes": Annotated[list[str], Note("what is left out or cannot be built, and why")],
         },
     ),
 ]
 
 
-def prepare(
+def compute_shared_options(
     mechanism: Mechanism, linkage: Linkage, *, cancelled: Any = None, request: LeverRequest | None = None, **inputs: Any
 ) -> dict[str, Any]:
     """Return the request that numbers, curves and figure share. inputs: by name, in SI, with `swing` and `words`."""
@@ -141,7 +143,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
         *(summary.angle_error, summary.speed, summary.power, summary.buckling_margin),
     )
     for (name, kind), point in zip(_POINTS.items(), points, strict=True):
-        record |= _with_place(name, kind, point)
+        record |= _value_and_place(name, kind, point)
     push_pressure, pull_pressure = summary.pressures or (None, None)
     extending, retracting = summary.flows or (None, None)
     lesser, greater = sorted(summary.fitting_sizes or ()) or (None, None)
@@ -149,29 +151,29 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
         "dead_point_margin_deg": math.degrees(summary.dead_point_margin),
         "work_out_J": summary.energy_out,
         "work_back_J": summary.energy_back,
-        **_metric("push_pressure", PRESSURE, push_pressure),
-        **_metric("pull_pressure", PRESSURE, pull_pressure),
-        **_metric("extending_flow", VOLUME_FLOW, extending),
-        **_metric("retracting_flow", VOLUME_FLOW, retracting),
+        **_metric_entry("push_pressure", PRESSURE, push_pressure),
+        **_metric_entry("pull_pressure", PRESSURE, pull_pressure),
+        **_metric_entry("extending_flow", VOLUME_FLOW, extending),
+        **_metric_entry("retracting_flow", VOLUME_FLOW, retracting),
         "time_ratio": summary.time_ratio,
-        **_metric("fitting_lesser", LENGTH, lesser),
-        **_metric("fitting_greater", LENGTH, greater),
+        **_metric_entry("fitting_lesser", LENGTH, lesser),
+        **_metric_entry("fitting_greater", LENGTH, greater),
         "notes": _notes(mechanism, request, summary),
     }
     return record
 
 
-def _metric(name: str, kind: Kind, value: float | None) -> dict[str, float | None]:
+def _metric_entry(name: str, kind: Kind, value: float | None) -> dict[str, float | None]:
     return {f"{name}{kind.metric.suffix}": None if value is None else kind.metric.factor * value + 0.0}
 
 
-def _with_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[str, float | None]:
+def _value_and_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[str, float | None]:
     """Return a value with the lever angle and the length at which it occurs; no location for zero."""
     place = None if point is None or point.value == 0.0 else point
     return {
-        **_metric(name, kind, None if point is None else point.value),
-        **_metric(f"{name}_at_lever_angle", ANGLE, None if place is None else place.lever_angle),
-        **_metric(f"{name}_at_length", LENGTH, None if place is None else place.length),
+        **_metric_entry(name, kind, None if point is None else point.value),
+        **_metric_entry(f"{name}_at_lever_angle", ANGLE, None if place is None else place.lever_angle),
+        **_metric_entry(f"{name}_at_length", LENGTH, None if place is None else place.length),
     }
 
 
@@ -207,27 +209,27 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
     for key in keys:
         if record[key] is not None and not key.startswith("fitting"):
             name, value, _ = named_number(record, key)
-            lines.append((name, value, _place(record, kind_of_key(key)[0])))
+            lines.append((name, value, _place_text(record, kind_of_key(key)[0])))
     found = number_list(f"Lever moved by a cylinder that turns, {how}", lines)
     if record["fitting_lesser_mm"] is not None:
         crank, frame = ("lesser", "greater") if record["crank_mm"] < record["frame_mm"] else ("greater", "lesser")
         found.append(
             sentence(
                 "The swing uses the whole stroke of the cylinder if crank and frame are {crank} and {frame}.",
-                crank=recorded(record, f"fitting_{crank}_mm"),
-                frame=recorded(record, f"fitting_{frame}_mm"),
+                crank=value_from_record(record, f"fitting_{crank}_mm"),
+                frame=value_from_record(record, f"fitting_{frame}_mm"),
             )
         )
     return found
 
 
-def _place(record: Mapping[str, Any], name: str) -> Text:
+def _place_text(record: Mapping[str, Any], name: str) -> Text:
     if record.get(f"{name}_at_lever_angle_deg") is None:
         return ""
     return words(
         "at {angle}, cylinder {length} long",
-        angle=recorded(record, f"{name}_at_lever_angle_deg", decimals=2),
-        length=recorded(record, f"{name}_at_length_mm"),
+        angle=value_from_record(record, f"{name}_at_lever_angle_deg", decimals=2),
+        length=value_from_record(record, f"{name}_at_length_mm"),
     )
 
 
@@ -235,7 +237,7 @@ def curves(
     mechanism: Mechanism, linkage: Linkage, *, units: System, request: LeverRequest, **_: Any
 ) -> list[dict[str, Any]]:
     """Return rows of the curves from start to end, at evenly spaced times."""
-    return rows_in(lever_rows(request.machine, request.swing), units)
+    return convert_rows(lever_rows(request.machine, request.swing), units)
 
 
 def figure(

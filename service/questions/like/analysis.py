@@ -15,10 +15,10 @@ from ....optimise.front.front import ParetoFront
 from ....optimise.front.hypervolume import scaling
 from ....optimise.problem.problem import Problem
 from ....optimise.problem.requirements import Constraint
-from ...designs.display_units import record_in
+from ...designs.display_units import convert_record
 from ...designs.judged_requirements import quantity_names
 from ...designs.selection import Condition, parse_condition
-from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, recorded
+from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, value_from_record
 from ...runs.result import Row, rows_of
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
@@ -48,7 +48,7 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
         where=" and ".join(text.strip() for text in where),
     )
     return Answer(
-        record=lambda units: record_in(record, units),
+        record=lambda units: convert_record(record, units),
         blocks=[title, *_like_blocks(front, record, row)],
         message=similar.message,
     )
@@ -110,8 +110,10 @@ def _like_blocks(front: ParetoFront, record: Mapping[str, Any], row: int) -> lis
     for key in keys:
         span = float(np.ptp(front.columns[key])) if key in objectives else 0.0
         share: Text = Value(100.0 * moved[key] / span, decimals=2, sign=True) if span else ""
-        change = recorded(moved, key, digits=3, sign=True)
-        rows.append((*title_and_unit(key, after), recorded(before, key), recorded(after, key), change, share))
+        change = value_from_record(moved, key, digits=3, sign=True)
+        rows.append(
+            (*title_and_unit(key, after), value_from_record(before, key), value_from_record(after, key), change, share)
+        )
     heads = (f"design {row % len(front) + 1}", "now", "change", "% of range")
     columns = (column("quantity", left=True), column("unit", left=True), *map(column, heads))
     bold = tuple(place for place, key in enumerate(keys) if key in objectives)

@@ -19,7 +19,19 @@ from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
 from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, Sentence, Table, Text, Unit, Value, column, dimensions, heading, recorded, words
+from ...render.blocks import (
+    Block,
+    Sentence,
+    Table,
+    Text,
+    Unit,
+    Value,
+    column,
+    dimensions,
+    heading,
+    value_from_record,
+    words,
+)
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
 from ..record_types import Keys, Note, Record, keys_of_kinds
@@ -127,7 +139,7 @@ def blocks(numbers: Deviations) -> list[Block]:
 
 def curve_value(entry: Mapping[str, Any], name: str, **look: Any) -> Value:
     """Return a number of a curve by its name without unit. look: further fields of `Value`."""
-    return recorded(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
+    return value_from_record(entry, next(key for key in entry if kind_of_key(key)[0] == name), **look)
 
 
 def file_notes(numbers: Mapping[str, Any]) -> list[str]:

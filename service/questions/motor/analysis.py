@@ -28,7 +28,7 @@ from ....objectives.machine_needs import SPEED
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none
-from ..peaks import peak, row_of
+from ..peaks import lengths_row, peak
 from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
 Moving = Annotated[float | None, Note("null where friction locks or may jam the linkage, and without a crank speed")]
@@ -62,7 +62,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
     None if friction locks the linkage; power is also None without a speed. For several cylinders the values are totals.
     """
-    design = row_of(linkage)
+    design = lengths_row(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
     averages, moves = average_torque(mechanism, design), SPEED.is_met(mechanism)
@@ -88,12 +88,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
 def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
     """Return the minimum of the moving inertia and its crank angle, rad; the first of equal minima."""
     angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
-    values, step = _moving_inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
+    values, step = _reflected_inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES
     dips = np.flatnonzero((values <= np.roll(values, 1)) & (values <= np.roll(values, -1)))
     size, rise = values.max(), np.abs(values - np.roll(values, 1)).max()
     minima = [
         minimize_scalar(
-            lambda angle: float(_moving_inertia(mechanism, linkage, angle)[0]),
+            lambda angle: float(_reflected_inertia(mechanism, linkage, angle)[0]),
             bounds=(lowest - step, lowest + step),
             method="bounded",
             options={"xatol": 1e-10},
@@ -105,7 +105,7 @@ def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float
     return float(min(at.fun for at in minima)), angle_in_cycle(float(first.x), TURN)
 
 
-def _moving_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
+def _reflected_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     """Return the moving inertia of all cylinders at crank angles (n,), rad."""
     curves = (
         shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinders_of(mechanism)
@@ -131,7 +131,7 @@ def blocks(numbers: Motor) -> list[Block]:
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return torque, power and reflected inertia over the cycle; torque and power are absent where friction locks."""
-    design = row_of(linkage)
+    design = lengths_row(linkage)
     locks = not locking_margin(mechanism.friction, design)[0][0] > 0.0
     turns = cycle_turns(mechanism)
     theta = sampled_turn(
@@ -142,7 +142,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     torque = (multi_cylinder_curves if several else cycle)(mechanism, linkage, theta).torque
     averages = average_torque(mechanism, design)
     rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * mean_speed_ratio(mechanism))
-    inertia = Line("inertia", degrees, _moving_inertia(mechanism, linkage, theta))
+    inertia = Line("inertia", degrees, _reflected_inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
     power = Line("power", degrees, torque * crank_speed(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))

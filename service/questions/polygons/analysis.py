@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.panel_figure import Line, Panel, PanelFigure
-from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, recorded
+from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, value_from_record
 from ...render.numerals import format_number
 from ..record_types import Record
 from . import AT
@@ -99,7 +99,7 @@ def blocks(numbers: Mapping[str, Any]) -> list[Block]:
     return [
         heading(
             "Kinematic polygons at {angle}, {speed} rad/s",
-            angle=recorded(numbers, "crank_angle_deg"),
+            angle=value_from_record(numbers, "crank_angle_deg"),
             speed=Value(numbers["speed_rad_s"]),
         ),
         Table(

@@ -19,8 +19,8 @@ from ....objectives.dead_centre import DWELL_ANGLE, before_dead_centre
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.panel_figure import Line, Panel, PanelFigure
-from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, recorded_all
-from ..peaks import row_of
+from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, values_from_record
+from ..peaks import lengths_row
 from ..record_types import Note, Record
 
 _ROWS = 10
@@ -111,7 +111,7 @@ def _touch_distance(mechanism: Mechanism, distance: float | None) -> float:
 
 
 def _rated_or_peak_torque(mechanism: Mechanism, linkage: Linkage, rated: float | None) -> float:
-    torque = float(PEAK_TORQUE.evaluate(mechanism, row_of(linkage)).values[0]) if rated is None else rated
+    torque = float(PEAK_TORQUE.evaluate(mechanism, lengths_row(linkage)).values[0]) if rated is None else rated
     if not torque > 0.0:
         raise InputError(
             "the press force needs a torque, but the peak torque of this design is zero; give a rated torque, such as "
@@ -125,13 +125,13 @@ def _angles_before_dead_centre(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before the dead centre, m."""
     _require_stroke(distances[-1], float(linkage.stroke))
-    return before_dead_centre(mechanism, row_of(linkage)[0], distances)
+    return before_dead_centre(mechanism, lengths_row(linkage)[0], distances)
 
 
 def _dwell_angle(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:
     _require_stroke(distance, float(linkage.stroke))
     near = replace(mechanism, slider=replace(mechanism.slider, dwell=distance))
-    return float(DWELL_ANGLE.evaluate(near, row_of(linkage)).values[0])
+    return float(DWELL_ANGLE.evaluate(near, lengths_row(linkage)).values[0])
 
 
 def _require_stroke(distance: float, stroke: float) -> None:
@@ -168,7 +168,7 @@ def blocks(numbers: Press) -> list[Block]:
     }
     defined = [key for key, value in numbers.items() if value is not None]
     heads = {key: head for key, head in columns.items() if key in defined}
-    rows = tuple(zip(*(recorded_all(numbers, key) for key in heads), strict=True))
+    rows = tuple(zip(*(values_from_record(numbers, key) for key in heads), strict=True))
     return [
         *number_list("Press", lines),
         Table(tuple(heads.values()), rows, ruled=True),

@@ -22,7 +22,7 @@ from ....objectives.peak_torque import PEAK_TORQUE
 from ....objectives.quantity import Quantity
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
-from ..peaks import row_of
+from ..peaks import lengths_row
 from ..record_types import Note, Record
 from ..static_forces.analysis import massless
 
@@ -49,17 +49,17 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     alone = _with_pressures_only(mechanism)
     return {
         "flow_L_min": VOLUME_FLOW.metric.factor * _value(FLOW, mechanism, linkage),
-        "flow_ripple": _value(FLOW_RIPPLE, mechanism, linkage) if _is_even(mechanism) else None,
+        "flow_ripple": _value(FLOW_RIPPLE, mechanism, linkage) if _has_ripple(mechanism) else None,
         "mean_torque_Nm": _value(MEAN_TORQUE, alone, linkage),
         "peak_torque_Nm": _value(PEAK_TORQUE, alone, linkage),
     }
 
 
 def _value(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
-    return float(quantity.evaluate(mechanism, row_of(linkage)).values[0])
+    return float(quantity.evaluate(mechanism, lengths_row(linkage)).values[0])
 
 
-def _is_even(mechanism: Mechanism) -> bool:
+def _has_ripple(mechanism: Mechanism) -> bool:
     """Whether the flow has a ripple, as for liquid at constant speed."""
     return not FLOW_RIPPLE.undefined_because([mechanism])
 
@@ -98,7 +98,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     alone = _with_pressures_only(shaft)
     theta = sampled_turn(multi_cylinder_breakpoints(alone, linkage))
     degrees, panels = np.degrees(theta), []
-    if _is_even(mechanism):
+    if _has_ripple(mechanism):
         flows = _flow_curves(shaft, linkage, theta)
         single = [
             Line("each" if k == 0 else "", degrees, flow, FAINT) for k, flow in enumerate(flows) if len(flows) > 1

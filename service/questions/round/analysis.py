@@ -15,9 +15,21 @@ from ....objectives.units import kind_of, quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
-from ...designs.display_units import record_in
+from ...designs.display_units import convert_record
 from ...designs.selection import parse_value
-from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, joined, recorded, words
+from ...render.blocks import (
+    Block,
+    Phrase,
+    Sentence,
+    Table,
+    Text,
+    Value,
+    column,
+    heading,
+    joined,
+    value_from_record,
+    words,
+)
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer, SearchListener
 from ..typed_input import TypedInput, texts_by_name
@@ -149,7 +161,7 @@ def _rounding_record(rounded: Rounded) -> dict[str, Any]:
 
 def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
     """Return the answer in a unit system, with round numbers as entered in that system."""
-    converted: dict[str, Any] = record_in(deepcopy(record), units) | {"message": rounded.message_in(units)}
+    converted: dict[str, Any] = convert_record(deepcopy(record), units) | {"message": rounded.message_in(units)}
     keys = [key_in(rounded.names[name][0], units)[0] for name in rounded.steps]
     for row in (converted["steps"], *converted["designs"]):
         row.update({key: drop_conversion_rounding(row[key]) for key in keys})
@@ -164,7 +176,7 @@ def _rounding_blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list
     """Return the designs as the columns of a table, and the requirements that each misses or nearly misses."""
     original, designs, steps = record["given"], record["designs"], record["steps"]
     step_texts = [
-        words("{title} {step}", title=find_column(key, original).title, step=recorded(steps, key, digits=4))
+        words("{title} {step}", title=find_column(key, original).title, step=value_from_record(steps, key, digits=4))
         for key in steps
     ]
     objectives = {
@@ -175,10 +187,12 @@ def _rounding_blocks(rounded: Rounded, record: dict[str, Any], row: int) -> list
         title, unit = title_and_unit(key, original)
         if key in objectives:
             title = objectives[key].title  # of a formula, as written
-        rows.append((title, unit, recorded(original, key), *(recorded(design, key) for design in designs)))
+        rows.append(
+            (title, unit, value_from_record(original, key), *(value_from_record(design, key) for design in designs))
+        )
         if key in objectives:
             stem = objectives[key].stem
-            changes = (recorded(design, f"change_{key}", digits=3, sign=True) for design in designs)
+            changes = (value_from_record(design, f"change_{key}", digits=3, sign=True) for design in designs)
             rows.append(("  change", unit, "", *changes))
             rows.append(("", "%", "", *(_format_loss(design[f"change_{stem}_percent"]) for design in designs)))
     range_ = "% of range" if len(objectives) > 1 else "% of value"
@@ -211,7 +225,7 @@ def _requirements_text(design: Mapping[str, Any], rounded: Rounded) -> Text:
     quantity = rounded.problem.quantity(design["tightest"])
     if any(item.equality for item in rounded.constraints if item.quantity == design["tightest"]):
         return f"tightest is {quantity.title}, which is required exactly"
-    slack = recorded(design, f"slack_{quantity.field}", digits=4)
+    slack = value_from_record(design, f"slack_{quantity.field}", digits=4)
     return words("tightest is {title}, slack {slack}", title=quantity.title, slack=slack)
 
 

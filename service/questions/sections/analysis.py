@@ -10,7 +10,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.sections import size_sections
-from ...render.blocks import Block, Sentence, Table, Value, column, recorded, sentence, words
+from ...render.blocks import Block, Sentence, Table, Value, column, sentence, value_from_record, words
 from ..record_types import Record
 
 
@@ -74,7 +74,7 @@ def blocks(numbers: Sections) -> list[Block]:
     """Return the answer for people."""
 
     def size(bar: str) -> Sentence:
-        sides = {side: recorded(numbers, f"{bar}_{side}_mm", digits=4) for side in ("width", "depth")}
+        sides = {side: value_from_record(numbers, f"{bar}_{side}_mm", digits=4) for side in ("width", "depth")}
         return sentence(f"{bar}: width {{width}}, depth {{depth}}", **sides)
 
     remark = "" if numbers["settled"] else "; not converged"
@@ -85,5 +85,5 @@ def blocks(numbers: Sections) -> list[Block]:
         saved = words("{rate} % of mass", rate=rate) if (rate.number or 0.0) > _ACTIVE else ""
         rows.append((name, Value(100.0 * utilisation, digits=4), saved))
     columns = column("limit", left=True), column("utilisation, %"), column("raising it by 1 % saves")
-    mass = recorded(numbers, "mass_kg", digits=5)
+    mass = value_from_record(numbers, "mass_kg", digits=5)
     return [size("crank"), size("rod"), sentence(together, mass=mass), Table(columns, tuple(rows))]

@@ -15,7 +15,7 @@ from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of
-from ..peaks import row_of
+from ..peaks import lengths_row
 from ..record_types import Keys, Note, Record
 
 if TYPE_CHECKING:
@@ -58,7 +58,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
     (<dimension>_per_mm), percent per percent (<dimension>_percent) and change for its tolerance
     (<dimension>_tolerance), in the unit of the entry; again with _below for the derivative towards smaller values.
     """
-    return {"quantities": json_ready(rows_of(sensitivity(mechanism, row_of(linkage)[0]).to_dict("list")), gaps=True)}
+    return {
+        "quantities": json_ready(rows_of(sensitivity(mechanism, lengths_row(linkage)[0]).to_dict("list")), gaps=True)
+    }
 
 
 def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:

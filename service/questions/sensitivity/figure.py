@@ -15,7 +15,7 @@ from ....objectives.kinds import System
 from ....objectives.tables.sensitivity import sensitivity
 from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, add_axes, heading, new_figure, style_axes
 from ...render.numerals import format_number
-from ..peaks import row_of
+from ..peaks import lengths_row
 
 _STEPS: dict[System, tuple[str, float]] = {"metric": ("1 mm", 1.0), "inch": ("0.01 in", 0.254)}
 """Step of the offset, as text and in mm, for which percentages are given if the offset is zero."""
@@ -27,7 +27,7 @@ def tornado_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing | None = N
     swing: swing of a crank that does not rotate fully. For a zero offset the percentages are per 1 mm.
     <dimension>_percent_below: percentages towards smaller values.
     """
-    table = sensitivity(mechanism, row_of(linkage)[0], swing)
+    table = sensitivity(mechanism, lengths_row(linkage)[0], swing)
     columns = [f"{name}_percent{side}" for name in DIMENSIONS for side in ("", "_below")]
     if float(linkage.offset) == 0.0:
         # Quantities with percentages: nonzero, and not the crank angle of a dead centre.

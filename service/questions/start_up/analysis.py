@@ -15,7 +15,7 @@ from ....model.transient.record import Transient, Verdict
 from ....model.transient.steady import SteadyRunning, steady_running
 from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
-from ...render.blocks import Block, Table, Unit, column, recorded, sentence
+from ...render.blocks import Block, Table, Unit, column, sentence, value_from_record
 from ...render.numerals import format_number
 from ..record_types import Note, Record
 
@@ -70,7 +70,9 @@ STEADY = 1e-4
 RPM = ANGULAR_SPEED.metric.factor
 
 
-def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Transient, SteadyRunning | None, str]:
+def simulate_start(
+    mechanism: Mechanism, linkage: Linkage, **options: Any
+) -> tuple[Transient, SteadyRunning | None, str]:
     """Return the start from rest at the inner dead centre, and steady running or the reason why there is none.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
@@ -84,14 +86,16 @@ def start(mechanism: Mechanism, linkage: Linkage, **options: Any) -> tuple[Trans
         return run, None, str(error)
 
 
-def prepare(mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any) -> dict[str, Any]:
+def compute_shared_options(
+    mechanism: Mechanism, linkage: Linkage, cancelled: Callable[[], bool], **_: Any
+) -> dict[str, Any]:
     """Return the option that cancels a simulation."""
     return {"cancelled": cancelled}
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Start:
     """Return the start from rest and the steady running, ready for JSON. options: options of `simulate`."""
-    run, running, reason = start(mechanism, linkage, **options)
+    run, running, reason = simulate_start(mechanism, linkage, **options)
     return {
         "verdict": run.verdict,
         "message": run.message,
@@ -148,12 +152,12 @@ def blocks(numbers: Start) -> list[Block]:
     }
     steady = numbers["steady"]
     lines = [
-        (title, recorded(numbers, key, digits=4))
+        (title, value_from_record(numbers, key, digits=4))
         for key, title in titles.items()
         if key != "friction_work_J" or numbers["friction_work_J"]
     ]
     if steady is not None:
-        lines += [(title, recorded(steady, key, digits=4)) for key, title in steady_titles.items()]
+        lines += [(title, value_from_record(steady, key, digits=4)) for key, title in steady_titles.items()]
     rows = tuple((title, value, Unit(value.kind)) for title, value in lines)
     result_blocks: list[Block] = [
         sentence("Start from rest: {message}.", message=numbers["message"]),
@@ -169,14 +173,16 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigur
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """
-    run, running, reason = start(mechanism, linkage, **options)
+    run, running, reason = simulate_start(mechanism, linkage, **options)
     message = run.message if not reason else f"{run.message}; no steady running"
     speed = Panel("crank speed", "time", (Line("", run.time, run.speed),), kind=ANGULAR_SPEED, x_kind=TIME)
     torques = (Line("motor", run.time, run.motor_torque), Line("mechanism", run.time, run.torque, FAINT))
     torque = Panel("torque on the crank", "time", torques, kind=TORQUE, x_kind=TIME)
     if running is None:
         return PanelFigure("Start from rest", message, (speed, torque), width=9.6, height=2.3, stacked=True)
-    angle, (speeds, motor, mechanism_torque) = in_order(running, running.speed, running.motor_torque, running.torque)
+    angle, (speeds, motor, mechanism_torque) = sort_by_crank_angle(
+        running, running.speed, running.motor_torque, running.torque
+    )
     note = f"fluctuation {format_number(running.fluctuation, 3)}"
     turning = crank_angle_panel("speed in steady running", Line("", angle, speeds), kind=ANGULAR_SPEED, note=note)
     pair = (Line("", angle, motor), Line("", angle, mechanism_torque, FAINT))
@@ -184,7 +190,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigur
     return PanelFigure("Start from rest", message, panels, columns=2, width=(5.9, 3.9), height=2.3, stacked=True)
 
 
-def in_order(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+def sort_by_crank_angle(running: SteadyRunning, *columns: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
     """Return the crank angles of steady running, deg, from 0 to 360 or 720, and its columns in order."""
     angle = np.degrees(running.crank_angle) % (360.0 * running.turns)
     order = np.argsort(angle, kind="stable")

@@ -28,9 +28,9 @@ from ...render.blocks import (
     dimensions,
     heading,
     joined,
-    recorded,
-    recorded_all,
     sentence,
+    value_from_record,
+    values_from_record,
     words,
 )
 from ..peaks import peak
@@ -134,7 +134,7 @@ def blocks(numbers: StaticForces) -> list[Block]:
         "crank_torque_Nm": column("crank torque", TORQUE),
         "mechanical_advantage": column("mechanical\nadvantage"),
     }
-    rows = zip(*(recorded_all(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
+    rows = zip(*(values_from_record(numbers, key, digits=4, missing="unbounded") for key in columns), strict=True)
     result_blocks: list[Block] = [
         heading("Static forces, without masses and friction ({load})", load=_load_text(numbers)),
         Table(tuple(columns.values()), tuple(rows), ruled=True),
@@ -144,12 +144,14 @@ def blocks(numbers: StaticForces) -> list[Block]:
         ("guide reaction", "peak_guide_reaction_N"),
         ("crank torque", "peak_crank_torque_Nm"),
     ):
-        at = recorded(numbers, f"{key.rpartition('_')[0]}_angle_deg", decimals=2)
-        result_blocks.append(sentence(f"greatest {force} {{value}} at {{at}}", value=recorded(numbers, key), at=at))
+        at = value_from_record(numbers, f"{key.rpartition('_')[0]}_angle_deg", decimals=2)
+        result_blocks.append(
+            sentence(f"greatest {force} {{value}} at {{at}}", value=value_from_record(numbers, key), at=at)
+        )
     least = sentence(
         "least mechanical advantage {value} at {at} (slider load over tangential crank pin force)",
-        value=recorded(numbers, "least_mechanical_advantage"),
-        at=recorded(numbers, "least_mechanical_advantage_angle_deg", decimals=2),
+        value=value_from_record(numbers, "least_mechanical_advantage"),
+        at=value_from_record(numbers, "least_mechanical_advantage_angle_deg", decimals=2),
     )
     return [*result_blocks, least]
 
@@ -157,7 +159,7 @@ def blocks(numbers: StaticForces) -> list[Block]:
 def _load_text(numbers: StaticForces) -> Text:
     if numbers["load"] == _JOB_LOADS:
         return _JOB_LOADS
-    return words("{load}, constant, positive outward", load=recorded_all(numbers, "load_N")[0])
+    return words("{load}, constant, positive outward", load=values_from_record(numbers, "load_N")[0])
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> PanelFigure:

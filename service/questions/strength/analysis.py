@@ -22,11 +22,11 @@ from ....objectives.link_strength import STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_values import missing_value_reason
-from ...designs.violations import violated_by
+from ...designs.violations import violations_of
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
-from ...render.blocks import Block, Table, Text, Value, column, number_list, recorded, words
+from ...render.blocks import Block, Table, Text, Value, column, number_list, value_from_record, words
 from ...text.tables import finite_or_none
-from ..peaks import row_of
+from ..peaks import lengths_row
 from ..record_types import Keys, Note, PossiblyInfinite
 
 _SIGNS = ("tension", "compression")
@@ -71,7 +71,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     an uncompressed bar is infinite. Raises `InputError` for a machine without material and pins.
     """
     _require_section(mechanism)
-    design = row_of(linkage)
+    design = lengths_row(linkage)
     record: dict[str, Any] = {}
     for quantity in QUANTITIES.values():
         if quantity.group is Group.STRENGTH and not (
@@ -85,7 +85,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
         for pin, (stress, angle) in eyes[name].items():
             bar[f"eye_at_{pin}_MPa"] = finite_or_none(1e-6 * stress)
             bar[f"eye_at_{pin}_at_crank_angle_deg"] = finite_or_none(math.degrees(angle_in_cycle(angle, cycle)))
-    return record | {"violated": violated_by(mechanism, record), "bars": bars}
+    return record | {"violated": violations_of(mechanism, record), "bars": bars}
 
 
 def _require_section(mechanism: Mechanism) -> None:
@@ -103,7 +103,7 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
     cycle = TURN * cycle_turns(mechanism)
     for place, (sign, criterion) in enumerate(zip(_SIGNS, STATIC, strict=True)):
         stress_path = (LinkBody(LINKS[name].part),)
-        (peak,) = stress_peaks(mechanism, stress_path, row_of(linkage), np.array([criterion]), limit=1)
+        (peak,) = stress_peaks(mechanism, stress_path, lengths_row(linkage), np.array([criterion]), limit=1)
         share, _, *angles = peak.places[0, 0]
         value = peak.values[0, 0]
         if not value > 0.0:  # the stress has the other sign everywhere and always
@@ -120,11 +120,11 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
 def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the answer for people."""
     titles = {stem.field: stem.title for stem in QUANTITIES.values()}
-    lines = [(titles[key], recorded(numbers, key), "") for key in numbers if key in titles]
+    lines = [(titles[key], value_from_record(numbers, key), "") for key in numbers if key in titles]
     rows: list[tuple[Text, ...]] = []
 
     def row(place: str, bar: dict[str, Any], *keys: str) -> tuple[Text, ...]:
-        return place, *(recorded(bar, key, missing="–") for key in keys)
+        return place, *(value_from_record(bar, key, missing="–") for key in keys)
 
     for name, bar in numbers["bars"].items():
         for sign in _SIGNS:
@@ -152,7 +152,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     _require_section(mechanism)
     panels: list[Panel] = []
     for name in _bar_names(mechanism):
-        stress = bar_stress(mechanism, LINKS[name].part, row_of(linkage))
+        stress = bar_stress(mechanism, LINKS[name].part, lengths_row(linkage))
         if not len(stress.theta):
             raise InputError("friction locks the design, so its stresses are undefined; reduce its friction")
         length, worst = float(getattr(linkage, name)), stress.worst

@@ -15,10 +15,10 @@ from ....objectives.kinds import ANGULAR_SPEED, LENGTH
 from ....objectives.registry import FACTS
 from ....objectives.tables.sweep import Axis, Parameter, sweep
 from ....objectives.units import closest
-from ...designs.display_units import rows_in
+from ...designs.display_units import convert_rows
 from ...designs.rotating_crank import require_rotating_crank
 from ...designs.selection import parse_value
-from ...render.blocks import Table, Value, column, recorded
+from ...render.blocks import Table, Value, column, value_from_record
 from ...runs.result import Row, rows_of
 from ...text.options import length_option
 from ..front_or_job_question import Answer
@@ -58,7 +58,7 @@ def analyse(
     rows = rows_of(table.to_dict("list"))
     stuck = [row["reason"] for row in rows if row["reason"]]
     return Answer(
-        record=lambda units: {"rows": rows_in(rows, units)},
+        record=lambda units: {"rows": convert_rows(rows, units)},
         blocks=[_sweep_table(rows, axes, quantities)],
         notes=[f"{len(stuck)} of {len(rows)} have no value; the first: {stuck[0]}"] if stuck else [],
         search_result=(table, axes, quantities),
@@ -89,7 +89,8 @@ def _sweep_table(rows: Sequence[Row], axes: Sequence[Axis], quantities: Sequence
     heads = [column(axis.parameter, kind_of_key(key)[1]) for axis, key in zip(axes, keys, strict=True)]
     heads += [column(quantity.title, quantity.kind) for quantity in quantities]
     cells = (
-        (*(recorded(row, key) for key in keys), *(value(row, quantity) for quantity in quantities)) for row in rows
+        (*(value_from_record(row, key) for key in keys), *(value(row, quantity) for quantity in quantities))
+        for row in rows
     )
     return Table(tuple(heads), tuple(cells))
 

@@ -22,7 +22,7 @@ from ...figures.style import (
     SHADE,
     TEXT,
     add_axes,
-    colours,
+    colour_map,
     heading,
     new_figure,
     padded_limits,
@@ -126,9 +126,9 @@ def _draw_contour(panel: Axes, scale: Axes, grids: list[Array], values: Array) -
     panel.grid(False)
     masked: Any = np.ma.masked_invalid(values.T)
     if is_constant(masked.compressed()):
-        panel.figure.colorbar(panel.pcolormesh(*grids, masked, cmap=colours(), shading="nearest"), cax=scale)
+        panel.figure.colorbar(panel.pcolormesh(*grids, masked, cmap=colour_map(), shading="nearest"), cax=scale)
     else:
-        filled = panel.contourf(*grids, masked, levels=_LEVELS, cmap=colours())
+        filled = panel.contourf(*grids, masked, levels=_LEVELS, cmap=colour_map())
         lines = panel.contour(*grids, masked, levels=list(filled.levels)[1::2], colors="white", linewidths=0.7)
         # A colour scale instead of contour labels, which crowd near locking.
         panel.figure.colorbar(filled, cax=scale).add_lines(lines)

@@ -25,8 +25,8 @@ from ....objectives.tables.swing_curves import (
     motion_and_drive,
 )
 from ...designs.design_curves import swing_rows
-from ...designs.display_units import rows_in
-from ...render.blocks import Block, NamedNumber, Text, heading, number_list, recorded, words
+from ...designs.display_units import convert_rows
+from ...render.blocks import Block, NamedNumber, Text, heading, number_list, value_from_record, words
 from ...render.extremes_table import extremes_table
 from ...text.tables import finite_or_none
 from ..record_types import Keys, Note, keys_of_kinds
@@ -146,7 +146,7 @@ def _swing_from_inputs(
 def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> list[dict[str, Any]]:
     """Return rows of the curves for both strokes."""
     machine, swing = _swing_from_inputs(mechanism, **options)
-    return rows_in(swing_rows(machine, linkage, swing), units)
+    return convert_rows(swing_rows(machine, linkage, swing), units)
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> Figure:
@@ -257,7 +257,9 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
         name, _ = kind_of_key(key)
         is_excluded = isinstance(value, str | list | dict | bool) or key == "duration_s"
         if not is_excluded and "_at_crank_angle" not in name and "_at_slider_position" not in name:
-            lines.append((_TITLES.get(name, name.replace("_", " ")), recorded(record, key), _place_text(record, name)))
+            lines.append(
+                (_TITLES.get(name, name.replace("_", " ")), value_from_record(record, key), _place_text(record, name))
+            )
     return [*lines, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
 
 
@@ -273,6 +275,6 @@ def _place_text(record: Mapping[str, Any], name: str) -> Text:
     return words(
         "{way}at {angle}, slider at {position}",
         way=f"{record[f'{name}_way']}, " if f"{name}_way" in record else "",
-        angle=recorded(record, f"{name}_at_crank_angle_deg", decimals=2),
-        position=recorded(record, f"{name}_at_slider_position_mm"),
+        angle=value_from_record(record, f"{name}_at_crank_angle_deg", decimals=2),
+        position=value_from_record(record, f"{name}_at_slider_position_mm"),
     )

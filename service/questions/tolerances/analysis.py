@@ -18,8 +18,8 @@ from ....model.tolerance.first_order import shares
 from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
 from ....model.tolerance.sources import SOURCES, limits, source_influences
 from ....objectives.kinds import LENGTH, System
-from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, recorded, words
-from ..peaks import row_of
+from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words
+from ..peaks import lengths_row
 from ..record_types import Note, Record
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def numbers(
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
     (worst_case, at), (rss, at_square) = (
         (float(values[0]), angles)
-        for values, angles in (first_peaks(mechanism, signal, row_of(linkage)) for signal in signals)
+        for values, angles in (first_peaks(mechanism, signal, lengths_row(linkage)) for signal in signals)
     )
     try:
         exact = worst(mechanism, linkage)
@@ -177,7 +177,7 @@ def blocks(numbers: PositionError) -> list[Block]:
     """Return the answer for people."""
 
     def size_and_angle(name: str) -> Text:
-        size, angle = (recorded(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
+        size, angle = (value_from_record(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))
         if size.number is None:
             return "undefined: a linkage within the tolerances does not rotate fully"
         return words("{size} at {angle}", size=size, angle=angle)
@@ -199,7 +199,9 @@ def blocks(numbers: PositionError) -> list[Block]:
         low, high = yield_record["yield_low_percent"], yield_record["yield_high_percent"]
         share = f"{yield_record['yield_percent']:.2f} %, between {low:.2f} and {high:.2f} %"
         limit = words(
-            "yield at {size} ({name})", size=recorded(yield_record, "limit_mm", digits=4), name=yield_record["limit"]
+            "yield at {size} ({name})",
+            size=value_from_record(yield_record, "limit_mm", digits=4),
+            name=yield_record["limit"],
         )
         rows.append((limit, f"{share} at {yield_record['confidence_percent']:g} % confidence"))
     result_blocks: list[Block] = [
@@ -219,9 +221,9 @@ def blocks(numbers: PositionError) -> list[Block]:
 def _source_table(contributions: list[Contribution]) -> Table:
     rows = []
     for row in contributions:
-        limit = recorded(row, "limit_deg" if row["limit_mm"] is None else "limit_mm", digits=4)
+        limit = value_from_record(row, "limit_deg" if row["limit_mm"] is None else "limit_mm", digits=4)
         of_worst, of_variance = row["share_of_worst_case_percent"], row["share_of_variance_percent"]
-        adds = recorded(row, "contribution_mm", digits=4)
+        adds = value_from_record(row, "contribution_mm", digits=4)
         rows.append((row["source"], (limit,), adds, f"{of_worst:.1f} %", f"{of_variance:.1f} %"))
     heads = column("limit"), column("adds", LENGTH), column("of worst case"), column("of variance")
     return Table((column("contributions", left=True), *heads), tuple(rows))

@@ -17,7 +17,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
-from ...render.blocks import Block, Value, compared, joined, named_number, number_list
+from ...render.blocks import Block, Value, joined, named_number, number_list, remark_with_value
 from ..record_types import Keys, Note, NullIfLocked, PeakAngle
 
 _RPM = 30.0 / math.pi
@@ -103,7 +103,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
 def blocks(numbers: dict[str, Any]) -> list[Block]:
     """Return the answer for people."""
     even = "at constant speed"
-    rms = joined(["over time", compared(numbers, "rms_torque_at_constant_speed_Nm", even)])
+    rms = joined(["over time", remark_with_value(numbers, "rms_torque_at_constant_speed_Nm", even)])
     lines = [
         *(named_number(numbers, key) for key in ("least_speed_rpm", "greatest_speed_rpm", "mean_speed_over_time_rpm")),
         named_number(numbers, "speed_fluctuation", "(greatest - least) / mean over time"),
@@ -115,7 +115,7 @@ def blocks(numbers: dict[str, Any]) -> list[Block]:
     ]
     for name, kind in _KINDS.items():
         suffix = kind.metric.suffix
-        remark = compared(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
+        remark = remark_with_value(numbers, f"peak_{name}_at_constant_speed{suffix}", even)
         lines.append(named_number(numbers, f"peak_{name}{suffix}", remark))
     return number_list("With the speed profile (constant speed: the mean over the crank angle)", lines)
 

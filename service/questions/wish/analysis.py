@@ -10,8 +10,8 @@ from ....objectives.kinds import System, metric_unit_in
 from ....optimise.decisions.wish import Wishes
 from ....optimise.decisions.wished import Outcome, Wished
 from ....optimise.front.front import ParetoFront
-from ...designs.display_units import row_in
-from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, recorded, words
+from ...designs.display_units import convert_row
+from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, value_from_record, words
 from ...runs.result import json_ready, rows_of
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
@@ -22,10 +22,10 @@ def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **
 
     Raises the errors of `optimise.decisions.wish.wish`.
     """
-    return answered(Wishes(front).wish(at, row=row), at)
+    return wish_answer(Wishes(front).wish(at, row=row), at)
 
 
-def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
+def wish_answer(wished: Wished, at: Mapping[str, object]) -> Answer:
     """Return a solved wish as an answer. at: wishes by objective, as entered.
 
     Its numbers: possible: whether every wish is met. sentences: the answer in words. achievement: value of the
@@ -41,7 +41,7 @@ def answered(wished: Wished, at: Mapping[str, object]) -> Answer:
             "sentences": wished.sentences(units),
             "achievement": json_ready(wished.value),
             "objectives": [_outcome_record(outcome, units) for outcome in wished.outcomes],
-            "design": json_ready(row_in(rows[0], units)) if rows else None,
+            "design": json_ready(convert_row(rows[0], units)) if rows else None,
         }
 
     description = wish_in_words(at, wished.row)
@@ -61,21 +61,21 @@ def wish_in_words(at: Mapping[str, object], row: int | None) -> str:
     return ", ".join([*(f"{name} {value}" for name, value in at.items()), *design])
 
 
-def sentences(wished: Wished) -> list[Phrase]:
+def outcome_sentences(wished: Wished) -> list[Phrase]:
     """Return whether a wish can be met, then wish and outcome of each objective, for people."""
     return [Phrase(*pair) for pair in zip(wished.sentences("metric"), wished.sentences("inch"), strict=True)]
 
 
 def _wish_blocks(wished: Wished, row: Mapping[str, Any]) -> list[Block]:
     """Return the answer in words, followed by the design as a table."""
-    head, *outcomes = sentences(wished)
+    head, *outcomes = outcome_sentences(wished)
     begin = f"{head.metric[0].upper()}{head.metric[1:]}:"
     objectives = {outcome.quantity.title for outcome in wished.outcomes}
     rows: list[tuple[Text, ...]] = []
     for key, value in row.items():
         undefined = isinstance(value, float) and not math.isfinite(value)
         if not undefined and not key.startswith("slack_") and key not in ("residual", "status"):
-            cell = recorded(row, key) if isinstance(value, float) else str(value)
+            cell = value_from_record(row, key) if isinstance(value, float) else str(value)
             rows.append((*title_and_unit(key, row), cell))
     bold = tuple(place for place, (title, *_) in enumerate(rows) if title in objectives)
     columns = (column("quantity", left=True), column("unit", left=True), column("value"))

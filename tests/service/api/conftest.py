@@ -40,7 +40,7 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
         add(store, files=[Artefact(name="job.toml", media_type="application/toml", content=b"secret = 1")])
         with client_of(store) as client:
             yield client
-            assert store.counts() == {"queued": 1}
+            assert store.count_by_state() == {"queued": 1}
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ from starlette.routing import Route
 from slidercrank.service.api.computing import Computing, LongRoute, QuickRoute
 from slidercrank.service.api.problem_documents import handle_expected_errors
 from slidercrank.service.store import Limits
-from slidercrank.service.workers.heartbeat import EXHAUSTED, leave
+from slidercrank.service.workers.heartbeat import EXHAUSTED, end_process_tree
 from tests.service.api.serving import serving
 
 _ROUTES = {"quick": QuickRoute, "long": LongRoute}
@@ -79,7 +79,7 @@ def demanding() -> Iterator[Starlette]:
         "endless": _endless,
     }
     routes = [Route(f"/{kind}/{name}", of) for kind in _ROUTES for name, of in endpoints.items()]
-    yield Starlette(routes=routes, exception_handlers={MemoryError: lambda *_: leave(EXHAUSTED)})
+    yield Starlette(routes=routes, exception_handlers={MemoryError: lambda *_: end_process_tree(EXHAUSTED)})
 
 
 @contextlib.contextmanager

@@ -17,7 +17,7 @@ from ezdxf.filemanagement import read as read_dxf
 
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.display_units import row_in
+from slidercrank.service.designs.display_units import convert_row
 from slidercrank.service.runs.result import rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
@@ -108,7 +108,7 @@ def test_a_report_is_in_the_units_that_are_asked_for(solved: Solved, client: htt
     page = client.get(f"{solved.path}/designs/3/report.html", params={"units": "inch"}).text
     cells = re.findall(r'<td class="right">([^<]*)</td><td>([a-zA-Z0-9_]+)</td></tr>', page)
     stored = {key: text for text, key in cells}
-    design = row_in(client.get(f"{solved.path}/designs/3").json()["design"], "inch")
+    design = convert_row(client.get(f"{solved.path}/designs/3").json()["design"], "inch")
     assert "crank_in" in stored
     assert list(stored) == kept(page, design)
     for key, text in stored.items():

@@ -25,7 +25,7 @@ def test_the_service_tells_whether_it_can_work(client: httpx.Client, store: Stor
     assert client.get("/health/live").json() == {"status": "live"}
     idle = {"status": "ready", "takes_jobs": False, "workers": 0, "busy": 0, "waiting": 0}
     assert client.get("/health/ready").json() == idle
-    store.greet("one")
+    store.register("one")
     add(store)
     ready = {"status": "ready", "takes_jobs": True, "workers": 1, "busy": 0, "waiting": 1}
     assert client.get("/health/ready").json() == ready
@@ -40,11 +40,11 @@ def test_no_worker_a_free_one_and_busy_ones_are_told_apart(client: httpx.Client,
     for _ in range(3):
         add(store)
     assert told() == (0, 0, 3, "no worker is running")
-    store.greet("one")
+    store.register("one")
     assert told() == (1, 0, 3, "")
     taken(store, "one")
     assert told() == (1, 1, 2, "every worker is busy (1)")
-    store.greet("two")
+    store.register("two")
     assert told() == (2, 1, 2, "")
     held = taken(store, "two")
     assert told() == (2, 2, 1, "every worker is busy (2)")
@@ -74,7 +74,7 @@ def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: 
     for _ in range(3):
         add(store)
     taken(store)
-    store.greet("one")
+    store.register("one")
     for _ in range(5):
         client.get("/jobs/1")
     client.get("/jobs/99")

@@ -169,7 +169,7 @@ def test_submissions_at_once_with_one_key_make_one_job(serve: Serve, store: Stor
         made = set(threads.map(again, range(160)))
     assert {(key, status) for key, status, _ in made} == {(str(key), 201) for key in range(10)}
     assert sorted(number for _, _, number in made) == list(range(1, 11))
-    assert store.counts() == {"queued": 10}
+    assert store.count_by_state() == {"queued": 10}
     other = client.post("/jobs", json={"job": {**EXAMPLE, "name": "Other"}}, headers=headers)
     assert "a key may only be used for one job" in refused(other, 422)
 

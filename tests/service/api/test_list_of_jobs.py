@@ -79,7 +79,7 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
             if state == "cancelled" and random.random() < 0.5:  # goes on, with what it has found
                 store.resume(claim.job.id)
                 taken(store, worker="machine-28238-788875").report(progress(9), front_progress())
-    assert min(store.counts()[state] for state in ("running", "done", "cancelled")) > 3
+    assert min(store.count_by_state()[state] for state in ("running", "done", "cancelled")) > 3
     assert sum(job.summary is not None for job in store.jobs(states=["running"])) > 3
     assert max(sizes(client)) <= ROW
 
@@ -164,7 +164,7 @@ def test_a_browser_keeps_points_until_a_front_changes(client: httpx.Client, stor
         assert (status, again(changed)) == (200, (304, changed))
         assert changed != tag
         tag = changed
-    claim.say("a message changes no front")
+    claim.add_message("a message changes no front")
     assert again(tag) == (304, tag)
     claim.finish(result())
     status, tag = again(tag)

@@ -218,4 +218,4 @@ def test_submissions_beyond_the_rate_are_told_when_to_come_again(serve: Serve, s
     assert 1 <= int(answers[2].headers["retry-after"]) <= 30
     assert client.get("/jobs").status_code == 200, "reading goes on"
     refused(client.post("/jobs/1/clone", json={}), 429)
-    assert store.counts() == {"queued": 2}
+    assert store.count_by_state() == {"queued": 2}

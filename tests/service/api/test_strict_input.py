@@ -114,11 +114,11 @@ def test_moderate_json_is_read_as_it_is() -> None:
 def test_a_rate_limit_lets_as_many_again_over_a_minute() -> None:
     now = 0.0
     limit = RateLimit(60, clock=lambda: now)
-    assert [limit.wait() for _ in range(60)] == [0.0] * 60
-    assert limit.wait() == pytest.approx(1.0)
+    assert [limit.seconds_until_admitted() for _ in range(60)] == [0.0] * 60
+    assert limit.seconds_until_admitted() == pytest.approx(1.0)
     now = 0.25
-    assert limit.wait() == pytest.approx(0.75)
+    assert limit.seconds_until_admitted() == pytest.approx(0.75)
     now = 2.0
-    assert [limit.wait() for _ in range(2)] == [0.0, 0.0]
-    assert limit.wait() > 0.0
-    assert RateLimit(0).wait() == 0.0
+    assert [limit.seconds_until_admitted() for _ in range(2)] == [0.0, 0.0]
+    assert limit.seconds_until_admitted() > 0.0
+    assert RateLimit(0).seconds_until_admitted() == 0.0

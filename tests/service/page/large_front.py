@@ -36,7 +36,7 @@ def large_result(count: int = 10_000) -> Result:
         for name, sense, key, title, unit in _OBJECTIVES
     )
     rows = rows_of(table.to_dict("list"))
-    extremes = {item.quantity: min(range(count), key=lambda row: item.rank(rows[row])) for item in wanted}
+    extremes = {item.quantity: min(range(count), key=lambda row: item.minimised_value(rows[row])) for item in wanted}
     return Result(
         run="",
         name="Large front",

@@ -14,7 +14,7 @@ from slidercrank.service.jobs.submission import submit
 from slidercrank.service.presets.jobs import shipped_jobs
 from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
-from slidercrank.service.store.remarks import keep_design
+from slidercrank.service.store.remarks import bookmark_design
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
 from tests.service.page.accessibility import require_accessible
@@ -168,14 +168,14 @@ def test_older_runs_are_on_further_pages(open_page: Open, store: Store) -> None:
 def test_runs_are_sorted_by_keyboard_with_decision_and_workers_in_sight(open_page: Open, store: Store) -> None:
     for name in ("Press", "Feeder", "Sieve"):
         add(store, name)
-    keep_design(store, 2, dimensions=(0.04, 0.1, 0.0), name="Rounded A", decided=True)
+    bookmark_design(store, 2, dimensions=(0.04, 0.1, 0.0), name="Rounded A", decided=True)
     claim = taken(store, worker="bench-7")
     claim.finish(result())
     page = open_page(store)
     names = page.get_by_role("listitem").locator(".name")
     expect(names).to_have_text(["Sieve", "Feeder", "Press"])
     expect(page.get_by_role("search")).to_contain_text("no worker, 2 waiting: start one with slidercrank worker")
-    store.greet("one")
+    store.register("one")
     expect(page.get_by_role("search")).to_contain_text("1 worker, 0 busy, 2 waiting")
     page.get_by_label("Sort by").press("n")  # as "name" begins
     expect(names).to_have_text(["Feeder", "Press", "Sieve"])

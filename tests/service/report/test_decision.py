@@ -7,7 +7,7 @@ from html import unescape
 from pathlib import Path
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.remarks import keep_design, update_bookmark
+from slidercrank.service.store.remarks import bookmark_design, update_bookmark
 from slidercrank.service.store.upkeep import back_up
 from tests.service.api.fixed_front import Solved
 from tests.service.conftest import Command
@@ -27,7 +27,7 @@ def test_the_report_of_a_command_has_the_decision_of_the_store(
         for name, number in (("Stock rod", 1), ("Least torque", 2)):
             row = solved.result.designs[number - 1]
             crank, rod, offset = (float(row[key] or 0.0) / 1e3 for key in ("crank_mm", "rod_mm", "offset_mm"))
-            keep_design(store, solved.number, dimensions=(crank, rod, offset), design=number, name=name)
+            bookmark_design(store, solved.number, dimensions=(crank, rod, offset), design=number, name=name)
         update_bookmark(store, solved.number, 1, reason="too tall")
         update_bookmark(store, solved.number, 2, decided=True, reason="fits the gearmotor")
     assert command(*arguments).exit_code == 0

@@ -18,7 +18,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.requirements import Range
 from slidercrank.optimise.solve import solve
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.render.numerals import as_stored, rounded
+from slidercrank.service.render.numerals import format_cell, format_cell_exactly
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Paragraph, Report, Section, Table
 from slidercrank.service.report.html import html_file
@@ -259,7 +259,7 @@ def test_the_pdf_is_whole_and_the_same_report_gives_the_same() -> None:
     ],
 )
 def test_values_are_written_for_people_and_as_stored(cell: float | str | None, text: str, stored: str) -> None:
-    assert (rounded(cell), as_stored(cell)) == (text, stored)
+    assert (format_cell(cell), format_cell_exactly(cell)) == (text, stored)
 
 
 def test_no_word_of_a_table_is_broken() -> None:

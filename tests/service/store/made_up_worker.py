@@ -31,7 +31,7 @@ def solve(claim: Claim) -> None:
     for number in range(len(records), ROUNDS):
         time.sleep(_ROUND)
         records.append(search_record(number))
-        claim.keep(records[-1])
+        claim.keep_record(records[-1])
         claim.report(progress(number + 1))
     claim.finish(result(rows=found(records)))
 

@@ -29,7 +29,7 @@ def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> N
     with Store(file) as store:
         add(store)
         claim = taken(store)
-        claim.keep(search_record(0))
+        claim.keep_record(search_record(0))
         claim.report(progress(1))
         claim.hand_back("the backup comes")
         before = everything(str(file))

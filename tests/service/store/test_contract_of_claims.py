@@ -29,9 +29,9 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     add(store)
     lost = taken(store)
     for number in (1, 2):
-        lost.keep(search_record(number))
+        lost.keep_record(search_record(number))
         lost.report(progress(number))
-    lost.keep(search_record(3))  # never written: its round was not told
+    lost.keep_record(search_record(3))  # never written: its round was not told
     assert store.claim("second") is None
     end_lease(address, lost.job.id)
     again = taken(store, "second")
@@ -41,7 +41,7 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     assert all(same(one, search_record(number)) for number, one in enumerate(found, 1))
     assert again.job.progress is not None
     assert again.job.progress["evaluations"] == 32
-    again.keep(search_record(3))
+    again.keep_record(search_record(3))
     again.report(progress(3))
     assert same(again.records()[2], search_record(3))
 
@@ -60,7 +60,7 @@ def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store)
 WRITES: dict[str, Callable[[Claim], None]] = {
     "report": lambda claim: claim.report(progress(2)),
     "renew": lambda claim: claim.renew(),
-    "say": lambda claim: claim.say("still here"),
+    "say": lambda claim: claim.add_message("still here"),
     "write_files": lambda claim: claim.write_files(Artefact(name="a", media_type="text/plain", content=b"stale")),
     "finish": lambda claim: claim.finish(result()),
     "fail": lambda claim: claim.fail("stale", again=True),
@@ -75,9 +75,9 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
 ) -> None:
     add(store)
     paused = taken(store)
-    paused.keep(search_record(1))
+    paused.keep_record(search_record(1))
     paused.report(progress(1))
-    paused.keep(search_record(2))
+    paused.keep_record(search_record(2))
     end_lease(address, paused.job.id)
     paused._renewed -= paused.lease + 1.0  # as its own clock tells it
     if claimed_again:
@@ -99,16 +99,16 @@ def test_every_write_renews_the_lease(store: Store) -> None:
         assert before is not None
         assert after is not None
         assert after > before + 300.0
-    assert claim.age < 60.0
+    assert claim.seconds_since_renewal < 60.0
 
 
 def test_progress_is_written_with_its_record_or_not_at_all(store: Store, address: str) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     claim.report(progress(1))
     before = everything(address)
-    claim.keep(search_record(2))
+    claim.keep_record(search_record(2))
     claim._records = 0  # the next record takes the number of the first, which the database refuses
     claim.lease = 0.0  # at once, not after many tries
     with pytest.raises(RunError, match="the store must be a database that can be"):
@@ -123,7 +123,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
     with pytest.raises(RunError, match="has no result: it is queued"):
         store.result(job.id)
     claim = taken(store)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     found = result(status, [] if status == "infeasible" else None)
     claim.finish(found, [Artefact(name="versions.json", media_type="application/json", content=b"{}\0")])
     read = store.result(job.id)
@@ -133,7 +133,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
     assert (ended.state, ended.reason, ended.worker, ended.lease_until) == (status, found.message, None, None)
     assert ended.finished is not None
     assert ended.records == (1 if status == "cancelled" else 0)
-    assert store.artefacts(job.id) == ["versions.json"]
+    assert store.artefact_names(job.id) == ["versions.json"]
     assert store.artefact(job.id, "versions.json").content == b"{}\0"
     assert store.claim("second") is None
     with pytest.raises(LeaseLost):
@@ -163,7 +163,7 @@ def test_any_text_is_taken(store: Store) -> None:
     assert job.name == "nul ? and surrogate ?"
     assert store.jobs(name="\0") == store.jobs(name="?") == [job]
     claim = taken(store)
-    claim.say("\0\ud800")
+    claim.add_message("\0\ud800")
     claim.fail("\0\ud800" + "x" * 10_000, again=False)
     failed = store.job(job.id)
     assert failed.reason.startswith("??xxx")
@@ -196,7 +196,7 @@ def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) ->
     job = add(store, most_attempts=2)
     for number in range(5):
         claim = taken(store)
-        claim.keep(search_record(number))
+        claim.keep_record(search_record(number))
         claim.report(progress(number))
         end_lease(address, job.id)
     assert store.job(job.id).records == 5
@@ -213,7 +213,7 @@ def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) ->
         "the machine goes down",
     )
     claim = taken(store)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     claim.hand_back("the machine goes down")
     assert same(taken(store).records()[0], search_record(1))
 
@@ -221,7 +221,7 @@ def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) ->
 def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: Store, address: str) -> None:
     job = add(store)
     gone = taken(store)
-    gone.keep(search_record(1))
+    gone.keep_record(search_record(1))
     gone.report(progress(1))
     end_lease(address, job.id)
     cancelled = store.cancel(job.id)
@@ -236,12 +236,12 @@ def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: St
 def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     claim.report(progress(1))
     assert not claim.cancel_asked
     assert store.cancel(job.id).cancel_asked
     assert store.cancel(job.id).state == "running"
-    claim.look() if hears == "look" else WRITES[hears](claim)
+    claim.check_cancellation() if hears == "look" else WRITES[hears](claim)
     assert claim.cancel_asked
     claim.finish(result("cancelled"))
     assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
@@ -260,7 +260,7 @@ def test_events_have_no_gaps_whoever_writes_them(store: Store) -> None:
     claim = taken(store)
 
     def tell(number: int) -> None:
-        claim.say(f"message {number}")
+        claim.add_message(f"message {number}")
         store.cancel(job.id)
 
     with ThreadPoolExecutor(4) as pool:

@@ -14,7 +14,7 @@ import pytest
 from slidercrank.model.errors import InputError, QueueFull
 from slidercrank.service.store import Artefact, Job, State, Store
 from slidercrank.service.store.listing import Order
-from slidercrank.service.store.remarks import keep_design
+from slidercrank.service.store.remarks import bookmark_design
 from tests.service.store.contents import (
     TABLES,
     add,
@@ -47,7 +47,7 @@ def test_jobs_are_listed_latest_first_in_pages_by_state_and_by_name(store: Store
     assert [job.id for job in store.jobs(name="0 %")] == [numbers[2]]
     assert [job.id for job in store.jobs(numbers=[numbers[0], 99, numbers[2]])] == [numbers[2], numbers[0]]
     assert store.jobs(numbers=[numbers[2]], before=numbers[2]) == []
-    assert store.counts() == {"queued": 2, "running": 1}
+    assert store.count_by_state() == {"queued": 2, "running": 1}
 
 
 def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> None:
@@ -58,7 +58,7 @@ def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> No
     for _ in range(4):
         taken(store)
     for number in random.choice(numbers, 6, replace=False):
-        keep_design(store, int(number), dimensions=(0.04, 0.1, 0.0), name="Rounded", decided=bool(number % 2))
+        bookmark_design(store, int(number), dimensions=(0.04, 0.1, 0.0), name="Rounded", decided=bool(number % 2))
     keys: dict[Order, Callable[[Job], Any]] = {
         "newest": lambda job: -job.id,
         "oldest": lambda job: job.id,
@@ -76,9 +76,9 @@ def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> No
     assert names == sorted(names)
     waiting = [job.id for job in store.jobs(order="state", states=["queued"], name="press")]
     assert waiting == [job.id for job in store.jobs(states=["queued"], name="press")]
-    assert str(store.crew()) == "no worker, 12 waiting: start one with slidercrank worker"
-    store.greet("one")
-    assert str(store.crew()) == "1 worker, 0 busy, 12 waiting"
+    assert str(store.count_workers()) == "no worker, 12 waiting: start one with slidercrank worker"
+    store.register("one")
+    assert str(store.count_workers()) == "1 worker, 0 busy, 12 waiting"
 
 
 def test_the_highest_priority_is_claimed_first_then_the_oldest(store: Store) -> None:
@@ -115,7 +115,7 @@ def test_a_waiting_job_is_cancelled_at_once(store: Store) -> None:
 def test_only_an_ended_job_is_deleted_and_nothing_of_it_stays(store: Store, address: str) -> None:
     job = add(store)
     claim = taken(store)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     with pytest.raises(InputError, match="job 1 is running; cancel it first"):
         store.delete(job.id)
     claim.finish(result("cancelled"), [Artefact(name="a", media_type="text/plain", content=b"")])
@@ -165,8 +165,8 @@ def test_a_key_submits_once(store: Store, address: str) -> None:
 
 
 def test_workers_are_known_while_they_are_there(store: Store) -> None:
-    store.greet("first")
-    store.greet("second")
+    store.register("first")
+    store.register("second")
     add(store)
     seen = {worker.id: worker.seen for worker in store.workers()}
     time.sleep(0.01)  # a clock that counts milliseconds has to go on
@@ -174,7 +174,7 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
     assert [worker.id for worker in store.workers()] == ["first", "second"]
     assert store.workers()[0].seen > seen["first"]
     assert 0.0 <= store.workers()[1].silent < 60.0
-    store.part("first")
+    store.unregister("first")
     assert [worker.id for worker in store.workers()] == ["second"]
 
 

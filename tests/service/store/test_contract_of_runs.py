@@ -28,7 +28,7 @@ def test_a_job_begun_by_its_submitter_is_running_in_its_hands(store: Store) -> N
     assert (job.state, job.worker, job.attempts, job.most_attempts, job.fence) == ("running", "desk", 1, 1, 1)
     assert store.claim("other") is None
     assert store.artefact(job.id, "job.toml") == FILE
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     claim.report(progress(1))
     claim.finish(result())
     assert store.job(job.id).state == "done"
@@ -42,10 +42,10 @@ def test_the_name_of_a_run_belongs_to_one_job(store: Store) -> None:
         "20260131-142501-feeder-2",
         "20260131-142501-feeder-3",
     )
-    found = store.find(second)
+    found = store.find_by_run(second)
     assert found is not None
     assert found.run == second
-    assert store.find("20260131") is None
+    assert store.find_by_run("20260131") is None
 
 
 def test_jobs_submitted_in_the_same_second_have_runs_of_their_own(store: Store) -> None:
@@ -57,25 +57,25 @@ def test_jobs_submitted_in_the_same_second_have_runs_of_their_own(store: Store) 
 
 def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
     first = begun(store)
-    first.keep(search_record(1))
+    first.keep_record(search_record(1))
     first.finish(result("cancelled"))
-    again = store.go_on(first.job.id, worker="desk", lease=60.0)
+    again = store.reclaim(first.job.id, worker="desk", lease=60.0)
     assert len(again.records()) == 1
     assert (again.job.state, again.job.fence) == ("running", 2)
     again.finish(result())
     with pytest.raises(LeaseLost):
-        first.say("stale")
+        first.add_message("stale")
     with pytest.raises(InputError, match="only a cancelled or failed job can continue; job 1 is done"):
-        store.go_on(first.job.id, worker="desk", lease=60.0)
+        store.reclaim(first.job.id, worker="desk", lease=60.0)
 
 
 def test_a_running_job_is_taken_from_its_worker_only_where_that_is_known_to_be_gone(store: Store) -> None:
     lost = begun(store)
-    lost.keep(search_record(1))
+    lost.keep_record(search_record(1))
     lost.report(progress(1))
     with pytest.raises(InputError, match="job 1 is running"):
-        store.go_on(lost.job.id, worker="second", lease=60.0)
-    again = store.go_on(lost.job.id, worker="second", lease=60.0, alone=True)
+        store.reclaim(lost.job.id, worker="second", lease=60.0)
+    again = store.reclaim(lost.job.id, worker="second", lease=60.0, alone=True)
     assert len(again.records()) == 1
     with pytest.raises(LeaseLost):
         lost.report(progress(2))
@@ -136,15 +136,15 @@ def test_the_record_of_a_result_has_columns_in_place_of_designs(store: Store) ->
     add(store)
     claim = taken(store)
     with pytest.raises(RunError, match="job 1 has no result: it is running"):
-        store.record(1)
+        store.result_record(1)
     claim.finish(result())
-    record = store.record(1)
+    record = store.result_record(1)
     assert record["columns"] == list(ROWS[0])
     assert record["count"] == len(ROWS)
     assert "designs" not in record
     with store.writing() as connection:
         connection.execute(update(jobs).values(summary=None, checksum=None))  # as the first stores left it
-    assert store.record(1) == record
+    assert store.result_record(1) == record
     assert record["message"] == "2 designs"
     with pytest.raises(NotFound, match="there is no job 2"):
-        store.record(2)
+        store.result_record(2)

@@ -79,7 +79,7 @@ def test_a_damaged_result_is_refused_and_named_by_the_doctor(
         solved.result(1)
     if part in ("job", "record", "summary"):
         with pytest.raises(RunError, match=SENTENCE):
-            solved.record(1)
+            solved.result_record(1)
     assert len(solved.result(2).designs) == 2
     assert [found[: len(SENTENCE)] for found in damages(solved)] == [SENTENCE]
     with client_of(solved) as client:
@@ -100,5 +100,5 @@ def test_a_damaged_result_is_refused_and_named_by_the_doctor(
 def test_a_result_without_a_checksum_is_read_as_before(solved: Store) -> None:
     with solved.writing() as connection:
         connection.execute(update(jobs).values(checksum=None))
-    assert len(solved.result(1).designs) == solved.record(1)["count"] == 2
+    assert len(solved.result(1).designs) == solved.result_record(1)["count"] == 2
     assert damages(solved) == []

@@ -120,12 +120,12 @@ def test_other_addresses_are_refused_without_telling_passwords(address: str) -> 
 
 def test_workers_that_never_said_that_they_leave_are_forgotten_in_the_end(store: Store, database: Database) -> None:
     for worker in ("long gone", "silent"):
-        store.greet(worker)
+        store.register(worker)
     with database.writing() as connection:
         connection.execute(text("UPDATE workers SET seen = seen - 700000 WHERE id = 'long gone'"))
-    store.greet("silent")
+    store.register("silent")
     assert len(store.workers()) == 2
-    store.greet("new")
+    store.register("new")
     assert [worker.id for worker in store.workers()] == ["new", "silent"]
 
 
@@ -183,7 +183,7 @@ def test_a_write_that_fails_for_a_while_takes_effect_once(
     failing.after_commit = after_commit
     for number in (1, 2, 3):
         failing.left = 3 - after_commit
-        claim.keep(search_record(number))
+        claim.keep_record(search_record(number))
         claim.report(progress(number))
     failing.left = 1
     claim.finish(result())
@@ -304,7 +304,7 @@ def test_a_claim_outlives_a_crash_of_the_server(server: Cluster) -> None:
         claim = store.claim("first")
         assert claim is not None
         for number in (1, 2, 3):
-            claim.keep(search_record(number))
+            claim.keep_record(search_record(number))
             claim.report(progress(number))
             if number < 3:
                 server.stop()
@@ -518,7 +518,7 @@ def test_a_store_on_a_disk_mounted_read_only_is_to_be_copied(
     file = tmp_path / "store.db"
     with Store(file) as store:
         add(store)
-    monkeypatch.setattr("slidercrank.service.store.database.may_use", lambda _path: False)
+    monkeypatch.setattr("slidercrank.service.store.database.is_readable_and_writable", lambda _path: False)
     found = os.statvfs(tmp_path)
     read_only = os.statvfs_result((*found[:8], found.f_flag | os.ST_RDONLY, *found[9:]))
     monkeypatch.setattr(os, "statvfs", lambda _path: read_only)
@@ -532,7 +532,7 @@ def test_commands_that_write_refuse_a_store_that_cannot_be_written(
 ) -> None:
     with Store(tmp_path / "store.db") as store:
         add(store)
-    monkeypatch.setattr("slidercrank.service.store.database.may_use", lambda _path: False)
+    monkeypatch.setattr("slidercrank.service.store.database.is_readable_and_writable", lambda _path: False)
     assert "Feeder" in command("jobs", "--store", tmp_path / "store.db").stdout
     done = command("doctor", "--store", tmp_path / "store.db")
     assert done.exit_code == 1

@@ -60,13 +60,13 @@ def test_killed_and_paused_workers_lose_and_double_nothing(store: Store, start: 
     chance = random.Random(5)
     jobs = [add(store, most_attempts=100).id for _ in range(JOBS)]
     workers = [start() for _ in range(3)]
-    wait(lambda: store.counts().get("running") == 3)
+    wait(lambda: store.count_by_state().get("running") == 3)
     for blow in (signal.SIGKILL, signal.SIGSTOP):
         send(workers[blow == signal.SIGSTOP], blow)
         time.sleep(chance.uniform(0.0, 0.2))
     time.sleep(2.0 * LEASE)
     send(workers[1], signal.SIGCONT)
-    wait(lambda: store.counts() == {"done": JOBS})
+    wait(lambda: store.count_by_state() == {"done": JOBS})
     expected = found([search_record(number) for number in range(ROUNDS)])
     for job in jobs:
         assert store.result(job).designs == expected

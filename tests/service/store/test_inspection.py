@@ -35,11 +35,11 @@ def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
         add(store)
     for status in ("done", "cancelled", "infeasible"):
         claim = taken(store)
-        claim.keep(search_record(0))
+        claim.keep_record(search_record(0))
         claim.report(progress(1))
         claim.finish(result(status, rows=[] if status == "infeasible" else None))
     claim = taken(store)
-    claim.keep(search_record(0))
+    claim.keep_record(search_record(0))
     claim.report(progress(1))
     return address
 

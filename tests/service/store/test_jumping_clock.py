@@ -40,7 +40,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("at_once")
 def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: Clock, step: float) -> None:
     job = add(store)
-    store.greet("first")
+    store.register("first")
     claim = taken(store, "first", lease=30.0)
     assert store.claim("second") is None  # it has seen the clock as it was
     with Heartbeat(claim):
@@ -48,7 +48,7 @@ def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: 
         for _ in range(6):
             assert store.claim("second") is None
             time.sleep(0.2)
-        claim.keep(search_record(1))
+        claim.keep_record(search_record(1))
         claim.report(progress(1))
     claim.finish(result())
     ended = store.job(job.id)
@@ -71,7 +71,7 @@ def test_the_job_of_a_dead_worker_goes_to_another_one_when_the_clock_was_set(
     store: Store, address: str, clock: Clock, step: float
 ) -> None:
     job = add(store)
-    store.greet("first")
+    store.register("first")
     lost = taken(store, "first", lease=30.0)
     lost.report(progress(1))
     clock.ahead = step
@@ -105,12 +105,12 @@ def test_a_job_that_its_worker_leaves_is_free_at_once_whatever_the_clock_says(
     def lose(claim: Claim, _: Any) -> None:
         raise LeaseLost(f"job {claim.job.id}")
 
-    monkeypatch.setattr("slidercrank.service.workers.worker._end", lose)
-    store.greet("first")
+    monkeypatch.setattr("slidercrank.service.workers.worker._solve_and_end", lose)
+    store.register("first")
     job = add(store)
     solve_claimed(store, taken(store, "first", lease=30.0), lambda: False)
     clock.ahead = -86_400.0
-    store.greet("first")  # it lives, so that nothing else tells that it has left the job
+    store.register("first")  # it lives, so that nothing else tells that it has left the job
     assert store.has_waiting()
     with Store(address) as other:
         again = taken(other, "second")
@@ -142,7 +142,7 @@ def test_a_worker_that_drains_solves_all_that_waits_though_the_clock_is_set(
 
     solving(solve)
     assert work(store, drain=True) == len(jobs)
-    assert store.counts() == {"done": len(jobs)}
+    assert store.count_by_state() == {"done": len(jobs)}
     assert {store.job(job).fence for job in jobs} == {1}
 
 
@@ -173,9 +173,9 @@ def test_a_job_that_is_tried_again_is_due_within_a_minute(store: Store) -> None:
 def test_a_worker_that_is_gone_does_not_look_alive_when_the_clock_was_set(
     store: Store, clock: Clock, step: float
 ) -> None:
-    store.greet("first")
+    store.register("first")
     clock.ahead = step
-    store.greet("second")
+    store.register("second")
     assert [worker.id for worker in store.workers() if worker.silent < 30.0] == ["second"]
 
 

@@ -22,7 +22,7 @@ def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Sto
     disk = Disk(store)
     job = add(store, most_attempts=1)
     claim = taken(store)
-    claim.keep(large_record(1))
+    claim.keep_record(large_record(1))
     disk.fill()
     leases: set[float | None] = set()
 
@@ -54,7 +54,7 @@ def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(sto
         disk = Disk(store, other)
         job = add(store, most_attempts=1)
         claim = taken(store)
-        claim.keep(large_record(1))
+        claim.keep_record(large_record(1))
         end_lease(address, job.id)
         disk.fill(to_the_last_byte=True)
         with ThreadPoolExecutor(1) as pool:
@@ -78,7 +78,7 @@ def test_another_worker_goes_on_with_a_job_whose_worker_died_on_a_full_disk(
     monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.2)
     disk = Disk(store)
     add(store)
-    taken(store, lease=LEASE).keep(large_record(1))
+    taken(store, lease=LEASE).keep_record(large_record(1))
     disk.fill(to_the_last_byte=True)
     until(store.has_waiting)
     with pytest.raises(Full):
@@ -92,9 +92,9 @@ def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(stor
     disk = Disk(store)
     job = add(store)
     claim = taken(store, lease=LEASE)
-    claim.keep(search_record(1))
+    claim.keep_record(search_record(1))
     claim.report(progress(1))
-    claim.keep(large_record(2))
+    claim.keep_record(large_record(2))
     disk.fill()
     claim.hand_back("its worker stopped; another one continues")
     waiting = store.job(job.id)
@@ -108,7 +108,7 @@ def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
     with Store(tmp_path / "store.db") as store:
         assert store.claim("first") is None
         job = add(store)
-        monkeypatch.setattr("slidercrank.service.store.database.free", lambda _: 100_000)
+        monkeypatch.setattr("slidercrank.service.store.database.free_bytes", lambda _: 100_000)
         for _ in range(5):
             with pytest.raises(Full):
                 store.claim("first")
@@ -135,13 +135,13 @@ def test_time_without_room_does_not_count_as_time_of_the_search() -> None:
 def test_a_search_that_waits_for_room_does_not_count_as_deaf(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     left: list[int] = []
     monkeypatch.setattr("slidercrank.service.workers.heartbeat._STOP_PATIENCE", 0.0)
-    monkeypatch.setattr("slidercrank.service.workers.heartbeat.leave", left.append)
+    monkeypatch.setattr("slidercrank.service.workers.heartbeat.end_process_tree", left.append)
     job = add(store)
     claim = taken(store)
     heartbeat = Heartbeat(claim, budget=Budget(Limits(seconds=1e-9)), grace=10.0)
     claim.waits = "waits: the store needs free space on its disk"
-    heartbeat._look_at_deaf()
+    heartbeat._check_unresponsive_search()
     assert (store.job(job.id).state, left) == ("running", [])
     claim.waits = ""
-    heartbeat._look_at_deaf()
+    heartbeat._check_unresponsive_search()
     assert (store.job(job.id).state, left) == ("cancelled", [DEAF])
