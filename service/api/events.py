@@ -113,7 +113,7 @@ class Feed:
         last: number of the last event already received. Yields None after `heartbeat` seconds without an event. Also
         ends when the job is deleted.
         """
-        with self._follow_channel(number, last) as channel:
+        with self._watch_channel(number, last) as channel:
             position = after
             while True:
                 events = channel.since(position)
@@ -133,7 +133,7 @@ class Feed:
                         yield None
 
     @contextlib.contextmanager
-    def _follow_channel(self, number: int, last: int) -> Iterator[Channel]:
+    def _watch_channel(self, number: int, last: int) -> Iterator[Channel]:
         channel = self._channels.get(number)
         if channel is None or channel.over:  # an ended job may have been resumed since
             channel = self._channels[number] = Channel(last)

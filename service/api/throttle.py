@@ -43,7 +43,7 @@ class TurnQueue:
         finally:
             self._free.release()
 
-    def _busy(self, why: str) -> HTTPException:
+    def _busy_error(self, why: str) -> HTTPException:
         detail = f"at most {self.most} {self.name} can be made at a time; {why}; try again"
         return HTTPException(503, detail, headers={"Retry-After": "5"})
 
