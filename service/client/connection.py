@@ -182,7 +182,7 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
             tries.wait_after_error(error)
         else:
             if tries.made:
-                tries.wait(
+                tries.wait_after_error(
                     Away("the events of a job must continue until it ends; the service interrupted them; see its log")
                 )
             tries.made += 1
