@@ -68,7 +68,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     bore, rod = cylinder.bore, cylinder.rod
     rod_of_area = 0.0 if machine.lever is not None and machine.lever.cylinder.rod is None else rod
     angles = part("frame_angle"), offset, part("pin_angle"), start, end
-    sizes = LeverNumbers(crank, frame, *angles, *[0.0] * (len(LeverNumbers._fields) - 7))
+    sizes = LeverNumbers._make([crank, frame, *angles, *[0.0] * (len(LeverNumbers._fields) - 7)])
     length = cylinder.closed_length
     if np.isnan(np.real(length)).all():
         first, last = sizes.ends

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ CYLINDER = Cylinder(
     **{"closed_length": 0.6, "stroke": 0.5, "bore": 0.08, "rod": 0.04, "supply_pressure": 2e7},
     **{"seal_friction": 35.0, "barrel_mass": 9.0, "piston_rod_mass": 4.0, "length_tolerance": 1e-3},
 )
-ANGLES = {"start": math.radians(-20.0), "end": math.radians(50.0)}
+ANGLES: dict[str, Any] = {"start": math.radians(-20.0), "end": math.radians(50.0)}
 TIPPER = Mechanism(
     crank=RigidLink(mass=80.0, centre=0.7),
     gravity=(0.0, -9.81),
