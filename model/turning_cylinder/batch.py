@@ -73,14 +73,16 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     if np.isnan(np.real(length)).all():
         first, last = sizes.ends
         length = np.where(np.real(last - first) > 0.0, first, last)
-    found = LeverNumbers(
-        *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
-        *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
-        *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
-        *of_block("crank_error", "rod_error", "offset_error"),
-        *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
-        *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
-        *(cylinder.closed_length, cylinder.stroke),
+    found = LeverNumbers._make(
+        [
+            *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
+            *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
+            *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
+            *of_block("crank_error", "rod_error", "offset_error"),
+            *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
+            *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
+            *(cylinder.closed_length, cylinder.stroke),
+        ]
     )
     return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
 

@@ -20,7 +20,7 @@ def test_bars_of_objectives_say_where_a_design_is_in_its_front(open_page: Open, 
         )
         designs = solved.result.designs
         for (share, adjust), wanted in zip(shares, solved.result.objectives, strict=True):
-            ranks = [wanted.rank(item) for item in designs]
-            expected = (max(ranks) - wanted.rank(row)) / (max(ranks) - min(ranks))
+            ranks = [wanted.minimised_value(item) for item in designs]
+            expected = (max(ranks) - wanted.minimised_value(row)) / (max(ranks) - min(ranks))
             assert math.isclose(share, expected, abs_tol=0.01)
             assert adjust == "exact"
