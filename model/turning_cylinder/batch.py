@@ -63,8 +63,8 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     crank, frame, offset = of_block("r", "l", "e")
     start = own.get(START["crank"], swing.start)
     end = start + (swing.end - swing.start) if swing.follows else swing.end
-    own_parts = {name.removeprefix("cylinder."): part(name) for name in LEVER if name.startswith("cylinder.")}
-    cylinder = SimpleNamespace(**own_parts)
+    cylinder_numbers = {name.removeprefix("cylinder."): part(name) for name in LEVER if name.startswith("cylinder.")}
+    cylinder = SimpleNamespace(**cylinder_numbers)
     bore, rod = cylinder.bore, cylinder.rod
     rod_of_area = 0.0 if machine.lever is not None and machine.lever.cylinder.rod is None else rod
     angles = part("frame_angle"), offset, part("pin_angle"), start, end

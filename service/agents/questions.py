@@ -126,7 +126,7 @@ def ask(call: Call, *, subject: Design, question: TopicRequest) -> ToolResult:
             "swing" if machine.problem.motion is not None and not question.topics else None
         )
         if alone is not None:
-            return _answer_question_command(alone, machine, question)
+            return _run_question_command(alone, machine, question)
         require_rotating_crank(machine.problem.motion, f"the topic {next(iter(options), '')}")
         return _analyse_rotating(call, machine, options, question)
 
@@ -184,7 +184,7 @@ def _analyse_rotating(
     return ToolResult(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
 
 
-def _answer_question_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
+def _run_question_command(name: str, machine: Machine, question: TopicRequest) -> ToolResult:
     """Answer a question about a design, if the question is a separate command."""
     from ..designs.display_units import convert_record
 

@@ -97,16 +97,16 @@ class Gate:
             key=lambda connection: (connection.has_token, connection.since),
         )
         if not waiting:
-            self.log_once_per_minute(f"refused: {self.most} connections were being answered")
+            self.log_each_minute(f"refused: {self.most} connections were being answered")
             return False
         # Close several, so that a flood does not trigger a scan for each connection.
         for least in waiting[: 1 + self.most // _SHARE]:
-            self.log_once_per_minute(f"closed because there were more than {self.most}")
+            self.log_each_minute(f"closed because there were more than {self.most}")
             least.transport.abort()
             least.connections.discard(least)
         return True
 
-    def log_once_per_minute(self, event: str) -> None:
+    def log_each_minute(self, event: str) -> None:
         """Log a connection event, unless it was logged within the last minute."""
         if should_log(self._log_times, event):
             _log.warning("connections %s", event)
@@ -165,7 +165,7 @@ class Connection(HttpToolsProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End."""
         if isinstance(exc, TimeoutError):
-            self._gate.log_once_per_minute("closed: answers were not read")
+            self._gate.log_each_minute("closed: answers were not read")
         self._set_timeout(None)
         super().connection_lost(exc)
 
@@ -264,7 +264,7 @@ class Connection(HttpToolsProtocol):
         if self.transport.is_closing():
             return
         if self._part == "rest":  # no client waits for an answer
-            self._gate.log_once_per_minute(f"closed: no request within {seconds:g} s")
+            self._gate.log_each_minute(f"closed: no request within {seconds:g} s")
             self.transport.close()
             return
         part = "headers" if self._part == "head" else "body"
@@ -272,7 +272,7 @@ class Connection(HttpToolsProtocol):
         self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
-        self._gate.log_once_per_minute(f"refused with {status}")
+        self._gate.log_each_minute(f"refused with {status}")
         if self.is_idle or not (self.pipeline or self.cycle.response_started):  # it would corrupt another answer
             response = problem_response(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from ..designs.columns import all_columns
 from ..jobs.front_wish_history import stated_wishes
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
-from ..questions.wish.analysis import wish_answer
+from ..questions.wish.analysis import compute_wish
 from ..store.remarks import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
@@ -98,7 +98,7 @@ def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsP
     """
     if given.design is not None:
         stored_front.row(given.design)
-    solved = wish_answer(
+    solved = compute_wish(
         stored_front.wish_starts.wish(given.at, row=None if given.design is None else given.design - 1), given.at
     )
     record: dict[str, Any] = solved.record(units)

@@ -52,7 +52,7 @@ def design_command(name: str) -> Callable[..., None]:
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.bind_to_problem(mechanism, linkage, problem, inputs, words)
-        notes = _print_answer(bound_question, units, json)
+        notes = _print_blocks(bound_question, units, json)
         for note in () if json else notes:
             print_message(note)
         if curves is not None:
@@ -94,7 +94,7 @@ def sizing_command(name: str) -> Callable[..., None]:
         bound_question = question.bind_to_problem(
             problem.mechanism.nominal, size.linkage(problem), problem, inputs, words
         )
-        for note in _print_answer(bound_question, units, json):
+        for note in _print_blocks(bound_question, units, json):
             print_message(note)
         if curves is not None:
             write_file(curves, csv_text(bound_question.output_of("curves", units)))
@@ -115,7 +115,7 @@ def sizing_command(name: str) -> Callable[..., None]:
     return command
 
 
-def _print_answer(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
+def _print_blocks(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
     """Print the answer; return additional messages."""
     from ..render.terminal import print_blocks
 

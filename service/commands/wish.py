@@ -77,7 +77,7 @@ def wish(
 def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
     """Print the wishes recorded for a run, newest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
-    from ..questions.wish.analysis import wish_answer, wish_in_words
+    from ..questions.wish.analysis import compute_wish, wish_in_words
 
     wishes = wishes_of_run(folder)
     with show_activity("wishing"):
@@ -87,7 +87,7 @@ def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, j
             assert solver is not None
             words = wishes_as_entered(front, made_wish.wishes)
             row = None if made_wish.design is None else made_wish.design - 1
-            solved_wishes.append((made_wish.time, words, wish_answer(solver.wish(words, row=row), words)))
+            solved_wishes.append((made_wish.time, words, compute_wish(solver.wish(words, row=row), words)))
     if json:
         records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
         print_output(json_text({"run": path_text(folder), "made": records}))

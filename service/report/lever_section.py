@@ -16,7 +16,7 @@ def lever_section(subject: Subject, swing: Swing) -> Section:
     request = compute_shared_options(design.mechanism, design.linkage, swing=swing)["request"]
     record = numbers(design.mechanism, design.linkage, request=request)
     tables = [block for block in blocks(record) if isinstance(block, Numbers)]
-    shown: list[Block] = [
+    report_tables: list[Block] = [
         Table(
             "The lever and its cylinder",
             ("", "value", "unit", "where"),
@@ -26,7 +26,7 @@ def lever_section(subject: Subject, swing: Swing) -> Section:
         for table in tables
     ]
     notes = (Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"])
-    return Section("The swing", (*shown, *notes))
+    return Section("The swing", (*report_tables, *notes))
 
 
 _WIDTHS = (0.38, 0.14, 0.08, 0.4)

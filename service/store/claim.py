@@ -228,7 +228,7 @@ class Claim:
             try:
                 while True:
                     try:
-                        self._write_once(
+                        self._write_in_transaction(
                             {"reason": "", **changes} if full else changes,
                             new_events,
                             also_write,
@@ -256,7 +256,7 @@ class Claim:
                     self.waits = ""
                     self.waited += time.monotonic() - began
 
-    def _write_once(
+    def _write_in_transaction(
         self,
         changes: dict[str, Any],
         new_events: Sequence[NewEvent],

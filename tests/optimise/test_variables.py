@@ -226,8 +226,8 @@ def test_contradicting_requirements_are_explained_with_more_variables() -> None:
     ("path", "lower", "upper", "words"),
     [
         ("slider.mass", 1.0, 2.0, "a number of the machine"),
-        ("branch", 1.0, 2.0, "is none"),
-        ("speed", -1.0, 2.0, "keeps it"),
+        ("branch", 1.0, 2.0, "a variable must be a number of the machine"),
+        ("speed", -1.0, 2.0, "must not be 0 or change its sign"),
         ("slider_mass", -1.0, 2.0, "zero or more"),
         ("slider_mass", 3.0, 2.0, "lower <= upper"),
         ("loads.3.outward", 1.0, 2.0, "a number of the machine"),

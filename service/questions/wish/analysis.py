@@ -22,10 +22,10 @@ def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **
 
     Raises the errors of `optimise.decisions.wish.wish`.
     """
-    return wish_answer(Wishes(front).wish(at, row=row), at)
+    return compute_wish(Wishes(front).wish(at, row=row), at)
 
 
-def wish_answer(wished: Wished, at: Mapping[str, object]) -> Answer:
+def compute_wish(wished: Wished, at: Mapping[str, object]) -> Answer:
     """Return a solved wish as an answer. at: wishes by objective, as entered.
 
     Its numbers: possible: whether every wish is met. sentences: the answer in words. achievement: value of the
