@@ -1,4 +1,4 @@
-"""What a lever needs of its cylinder over a swing: force, pressure, flow, power, work, safety against buckling."""
+"""Quantities of a lever's cylinder over a swing: force, pressure, flow, power, work, safety against buckling."""
 
 from functools import partial
 

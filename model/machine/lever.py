@@ -13,10 +13,10 @@ from .lever_cylinder import Cylinder
 
 @dataclass(frozen=True, kw_only=True)
 class Lever:
-    """What this inversion has besides crank (the lever), rod (the frame) and offset.
+    """Data of a lever besides crank (the lever), rod (the frame) and offset.
 
     frame_angle: direction from the lever's pivot to the cylinder's, rad from +x. pin_angle: angle from the crank's own
-    line to its pin, rad. cylinder: what is known of it.
+    line to its pin, rad. cylinder: its known data.
     """
 
     frame_angle: float

@@ -68,7 +68,7 @@ class Cylinder:
 
     @property
     def text(self) -> str:
-        """What is known of it, in words."""
+        """Known data of the cylinder, as text."""
         lengths = (*tuple(self.__dataclass_fields__)[:4], "length_tolerance")
         given = [(name, 1e3, "mm") for name in lengths] + [("supply_pressure", 1e-5, "bar")]
         given += [("seal_friction", 1.0, "N"), ("barrel_mass", 1.0, "kg"), ("piston_rod_mass", 1.0, "kg")]

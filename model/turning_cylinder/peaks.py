@@ -122,9 +122,10 @@ class _Rows:
 def lever_peaks(
     batch: LeverBatch, curves: Sequence[str], *, gradients: bool = False, limit: int = _PEAKS
 ) -> LeverPeaks:
-    """Return the peaks of each of some curves by name; those of curve c are columns c k to (c + 1) k.
+    """Return the peaks of curves by name.
 
-    limit: local peaks of each curve, highest first; for a law other than slow, two values at rest at the ends follow.
+    Those of curve c are columns c k to (c + 1) k. limit: local peaks of each curve, highest first; for a law other than
+    slow, two values at rest at the ends follow.
     """
     rows = _Rows(batch, tuple(CURVES[name] for name in curves), len(batch.stepped) if gradients else 0)
     count = batch.count * len(curves)

@@ -223,7 +223,7 @@ def _enclose_curves(curves: Sequence[Curve], part: Numbers, middle: Array, moves
 def _ends_of_computed_dimension(
     name: str, unknowns: dict[str, Enclosure], bounds: Range, lean: float, n: int
 ) -> tuple[Array, Array]:
-    """Return the lower and upper end (n, 1) of a computed dimension from its bounds and r + |e| <= lean l."""
+    """Return lower and upper end (n, 1) of a computed dimension. They follow from its bounds and r + |e| <= lean l."""
     ends = [unknowns[dimension].ends() for dimension in DIMENSIONS if dimension != name and dimension in unknowns]
     slack = _SLACK * bounds.upper
     low, high = np.full((n, 1), bounds.lower - slack), np.full((n, 1), bounds.upper + slack)

@@ -84,7 +84,7 @@ def _choose_cover(points: Table, values: Table, epsilon: float, chosen: Flags) -
 
 
 def choose_covering(points: Array, values: Array, epsilon: float) -> IntArray:
-    """Return the rows of values (n, m) that cover their point (n, m) to within epsilon where no earlier row does."""
+    """Return rows of values (n, m): each covers its point (n, m) to within epsilon, and no earlier one does."""
     chosen = np.zeros(len(points), dtype=bool)
     _choose_cover(np.ascontiguousarray(points), np.ascontiguousarray(values), epsilon, chosen)
     return np.flatnonzero(chosen)

@@ -1,4 +1,4 @@
-"""Arithmetic that encloses a formula over a whole box of designs by a linear part and a bound on the remainder.
+"""Arithmetic that encloses a formula over a box of designs by a linear part and a bound on the remainder.
 
 Over a box with coordinates d in [-1, 1]^k, a number that depends on the design has the form
 

@@ -175,7 +175,7 @@ class SwingBoxes:
 
 
 class SwingCurve:
-    """A quantity of a swing over boxes of designs: the greatest value or, with `least`, the least value of a state."""
+    """A quantity of a swing over boxes of designs: greatest or, with `least`, least value of a state."""
 
     def __init__(self, mechanism: Mechanism, quantity: SwingPeak | SwingLeast | SwingForm) -> None:
         assert quantity.swing is not None

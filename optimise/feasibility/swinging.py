@@ -82,7 +82,7 @@ def _samples(problem: Problem, branch: EliminationBranch, index: int) -> Array:
 
 
 def _unswung_lever(problem: Problem, motion: Swing) -> str:
-    """Return why no lever within the ranges makes the required swing, in words; "" if one in a large sample does."""
+    """Return the reason why no lever within the ranges makes the required swing; "" if one in a sample does."""
     for index, branch in enumerate(elimination_branches(problem)):
         machine = problem.part(branch.variant).mechanism
         if moving(machine, motion, _samples(problem, branch, index)).any():

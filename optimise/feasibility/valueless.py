@@ -17,7 +17,7 @@ _TRIED = 256  # designs of each branch that are checked for an infinite objectiv
 
 
 def valueless_quantity_text(part: Problem, designs: Array) -> str:
-    """Return the quantity that has no value for any of the designs (n, 3 + v), with a remedy, or "".
+    """Return a message on a quantity without a value for any of the designs (n, 3 + v), or "".
 
     part: a problem without choices. The designs must be able to move as required.
     """

@@ -27,7 +27,7 @@ _TIE = 1e-9  # relative to a range or a closeness: smaller differences are round
 
 @dataclass(frozen=True, kw_only=True)
 class Priority:
-    """An objective in a ranking, and the loss from its best value that is allowed in favour of the next one.
+    """An objective in a ranking, and its allowed loss from the best value in favour of the next one.
 
     absolute: loss in the quantity's SI unit. share: fraction of the objective's range over the designs. The two add up.
     """

@@ -1,4 +1,4 @@
-"""Formulas of a job that may be incomplete: the unit of each, or its mistake, and the names that it may use."""
+"""Formulas in a job that may be incomplete: the kind or the mistake of each, and the permitted names."""
 
 from __future__ import annotations
 

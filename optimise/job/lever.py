@@ -32,7 +32,7 @@ class CylinderPart(Checked[Cylinder]):
 
 
 def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None) -> Lever | None:
-    """Return what a job says of its lever; None for a slider-crank. Raises `JobError` for keys that need the other."""
+    """Return the lever that a job states; None for a slider-crank. Raises `JobError` for keys of the other machine."""
     if mechanism.inversion is None:
         stated = {
             "mechanism.frame_angle": mechanism.frame_angle,

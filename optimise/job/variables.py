@@ -58,7 +58,7 @@ class VariablesPart(Part):
     @model_validator(mode="before")
     @classmethod
     def _unquote_paths(cls, data: Any) -> Any:
-        """Treat a path in quotes as one without: both are dotted keys to engineers; the former is one key to TOML."""
+        """Treat a path in quotes as one without. Engineers see a dotted key in both; to TOML, the former is one key."""
         if not isinstance(data, Mapping):
             return data
         nested: dict[str, Any] = {}
@@ -196,7 +196,7 @@ def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) ->
 
 
 def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
-    """Yield path and value of everything in nested tables that is not a table; { choices } counts as a value."""
+    """Yield path and value of each entry in nested tables that is not a table. { choices } counts as a value."""
     for key, value in table.items():
         name = printable_name(str(key))  # no path has this name: it is for a message
         path = f"{root}.{name}" if root else name

@@ -94,7 +94,9 @@ def _integrand_coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multi
 
 
 def _momentum_at_cell_starts(turn: LawTurn, p: Array, gains: Array) -> Array:
-    """Return p (n,) at the starts of cells, from the cells' multipliers (n,) and the gains (2, n) near their ends.
+    """Return p (n,) at the starts of cells.
+
+    p: multipliers of the cells. gains: (2, n), near their ends.
 
     The programme determines the mean of two cells weighted by their widths, which is p at the centroid of the hat
     function over both. Multipliers of single cells may alternate.

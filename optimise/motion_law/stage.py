@@ -172,10 +172,10 @@ class _Search:
         return self._constant_speed_energies
 
     def _slow_reference_energies(self, fast: Solution, request: LawRequest) -> Array:
-        """Return K of a law with the cycle time, by torques above those of a faster law; otherwise of constant speed.
+        """Return K of a law with the cycle time, found with torques above those of a faster law.
 
-        The tangent of the time at a law is at most 1.5 times the law's own time, so no law satisfies it if that law is
-        much too fast.
+        Without such a law, return K of constant speed. The tangent of the time at a law is at most 1.5 times the law's
+        own time, so no law satisfies it if that law is much too fast.
         """
         torque, most = fast.value, request.torque_limit or math.inf
         for _ in range(_DOUBLINGS):

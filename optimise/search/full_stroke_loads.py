@@ -15,7 +15,7 @@ _ROUNDING = 1e-9
 
 
 def full_stroke_load_warnings(problem: Problem) -> list[str]:
-    """Return a warning for each force that acts over the whole stroke in every sampled design, but is stated for part.
+    """Return a warning for each force whose part of the stroke is longer than every sampled stroke.
 
     Does not apply to a swing, which need not have dead centres.
     """
@@ -45,7 +45,7 @@ _LAST = {("outer dead centre", "outward stroke"), ("inner dead centre", "inward 
 
 
 def _length(load: Load) -> float:
-    """Return the length of the part of a stroke over which a constant force acts, m; 0 for any other load."""
+    """Return the length, m, over which a constant force acts in a stroke; 0 for any other load."""
     if not isinstance(load, PositionTable) or load.during == "cycle" or load.datum == "crank pivot":
         return 0.0
     first, *others = load.positions

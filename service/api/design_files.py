@@ -124,7 +124,7 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
 
 @router.get("/cycle.csv", **file_endpoint_options("text/csv"))
 def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
-    """Return the curves of a design as a table, as `export --cycle`: per degree, or for both directions of a swing."""
+    """Return the curves of a design as `export --cycle` does: per degree, or for both directions of a swing."""
     content = design_csv(request.design, units)
     return _file(request, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 

@@ -93,7 +93,7 @@ class AllowedModel(BaseModel):
 
 
 class MotionModel(BaseModel):
-    """Slider motion over one crank revolution at the speed of the job, or at 1 rad/s, evenly spaced from 0 deg."""
+    """Slider motion over one crank revolution, evenly spaced from 0 deg, at the job's speed or 1 rad/s."""
 
     crank_angle_deg: list[float]
     slider_position_mm: list[float]

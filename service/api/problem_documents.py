@@ -76,7 +76,7 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def json_with_etag_options(model: type[BaseModel], description: str) -> dict[str, Any]:
-    """Return the options of an endpoint that returns JSON with an ETag, or 304 if the client is up to date."""
+    """Return the options of an endpoint for JSON with an ETag, or 304 if the client is up to date."""
     same = {"description": "They are those of the ETag in If-None-Match"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 

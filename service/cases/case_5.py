@@ -38,7 +38,7 @@ def masses() -> tuple[float, float]:
 
 
 def exact_torque(offset: float, crank_angle: Array) -> Array:
-    """Return the drive torque against the inertia of the reciprocating mass, N m, by virtual work: m3 x_t x_tt / w."""
+    """Return the drive torque against the inertia of the reciprocating mass, N m. By virtual work: m3 x_t x_tt / w."""
     at = linkage(offset).at(crank_angle, speed=SPEED)
     torque: Array = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
     return torque

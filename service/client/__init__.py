@@ -239,7 +239,7 @@ class Client(Designs):
         return self._save(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
 
     def export(self, number: int, path: str | PathLike[str]) -> Path:
-        """Write all designs of a front to a CSV, JSON or Parquet file, depending on its ending, and return the file."""
+        """Write all designs of a front to a file and return it: CSV, JSON or Parquet, depending on its ending."""
         return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
 
     def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:

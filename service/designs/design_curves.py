@@ -103,7 +103,7 @@ class DesignCurves:
 
 
 def design_curves(design: StoredDesign, count: int) -> DesignCurves:
-    """Return the curves at N points: crank angles from 0 deg, or evenly spaced times for a swing back and forth.
+    """Return the curves at `count` crank angles from 0 deg, or evenly spaced times of a swing back and forth.
 
     A 720 deg cycle includes both revolutions. For a swing, the number of points is even; the first point is the start
     and the middle one the end. Raises `InputError` for too few or too many points, and the errors of the design's
@@ -169,7 +169,7 @@ def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:
-    """Return the curves as CSV: those of `cycle_csv`, those of both strokes of a swing, or of the way of a lever."""
+    """Return the curves as CSV: those of `cycle_csv`, of both strokes of a swing, or of a lever's way."""
     if design.part.motion is None:
         return cycle_csv(design.mechanism, design.linkage, system)
     if design.mechanism.lever is not None:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def convert_row(row: Mapping[str, Any], system: System) -> Row:
-    """Return a design with the keys and values of a unit system: `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
+    """Return a design with the keys and values of a unit system. `crank_mm` 50.8 is `crank_in` 2 in the inch system."""
     return convert_rows([dict(row)], system)[0]
 
 

@@ -109,7 +109,7 @@ def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> Exact:
 
 
 def _matching_variant(problem: Problem, row: Row, values: Sequence[float]) -> int:
-    """Return the index of the variant with the labels of a design; if several match, the one whose ranges fit best."""
+    """Return the index of the variant with a design's labels; if several match, the one with the nearest ranges."""
     if not problem.variants:
         return 0
     labels = tuple(_cell(row, choice_field(name)) for name in problem.choices)

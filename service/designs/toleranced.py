@@ -19,7 +19,7 @@ def tolerances_of(mechanism: Mechanism, linkage: Linkage) -> dict[str, float]:
 
 
 def decimals_of(tolerance: float) -> int:
-    """Return the decimals of a tolerance with at most two significant digits: 2 for 0.05, 3 for 0.025, none for 12."""
+    """Return the decimals of a tolerance with at most two significant digits. They are 2 for 0.05, 0 for 12."""
     exponent = Decimal(f"{tolerance:.{_DIGITS}g}").normalize().as_tuple().exponent
     return max(0, -exponent) if isinstance(exponent, int) else 0
 

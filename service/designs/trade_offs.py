@@ -20,9 +20,10 @@ _NEAR = 1e-9  # relative accuracy to which a point of the unit box must reproduc
 
 
 def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: System = "metric") -> list[str]:
-    """Return the cost of each objective in terms of the others at a design, in words, with its active constraints held.
+    """Return sentences on the cost of each objective in terms of the others at a design.
 
-    front: front from `front_of`. row: row of the design in it. system: unit system of the sentences.
+    Its active constraints are held. front: front from `front_of`. row: row of the design in it. system: unit system of
+    the sentences.
 
     Raises `InputError` if there are no such rates: a single objective, an objective without gradient, or a design that
     does not meet its constraints.

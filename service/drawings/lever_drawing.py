@@ -1,4 +1,4 @@
-"""A lever and its turning cylinder at true scale, with both ends of the swing, the path of its pin and dimensions."""
+"""A lever and its turning cylinder at true scale, with dimensions, both ends of the swing and the pin's path."""
 
 from __future__ import annotations
 

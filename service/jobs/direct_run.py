@@ -106,9 +106,10 @@ def _not_resumable_error(job: Job) -> InputError:
 
 @contextlib.contextmanager
 def end_job_on_error(claim: Claim, *, again: str = "") -> Iterator[None]:
-    """While this context is active, an error also ends the job in the store, so that it can be resumed immediately.
+    """While this context is active, an error also ends the job in the store.
 
-    again: command that continues the run; empty if its store is deleted after the run.
+    The job can then be resumed immediately. again: command that continues the run; empty if its store is deleted after
+    the run.
     """
     try:
         yield

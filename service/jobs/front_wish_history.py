@@ -45,7 +45,7 @@ def wishes_of_run(folder: Path) -> list[MadeWish]:
 
 
 def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
-    """Record a wish for the run in a folder; return whether the run has a job to store the wish with."""
+    """Record a wish for the run in a folder. Return whether the run has a job to store it with."""
     from ..store.remarks import note_wish
 
     with _store_and_job(folder) as store_and_job:

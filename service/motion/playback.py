@@ -143,7 +143,7 @@ def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[Cu
 
 
 def position_record(look: LinkageSizes, slider: Any, rod: Any) -> dict[str, Any]:
-    """Return crank and offset, mm, and at each point of a motion the slider position, mm, and the rod angle, deg.
+    """Return crank, offset and slider positions, mm, and rod angles, deg, at the points of a motion.
 
     slider: slider positions, m. rod: rod angles, rad.
     """

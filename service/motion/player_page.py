@@ -105,7 +105,7 @@ def _drawing(play: Playback, title: str) -> str:
 
 
 def _curve_strip(column: CurveColumn, play: Playback) -> str:
-    """Return a small strip chart of a curve with the marks of a motion, and a cursor line that the script moves."""
+    """Return a strip chart of a curve with the marks of a motion and a cursor that the script moves."""
     marks = (angle / play.turns for angle in play.marks)
     finite = [value for value in column.values if math.isfinite(value)]
     low, high = (min(finite), max(finite)) if finite else (0.0, 1.0)

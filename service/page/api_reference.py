@@ -1,4 +1,4 @@
-"""The description of the API as a page to read and try: Swagger UI, with its files from an installed package."""
+"""The description of the API as a page to read and try: Swagger UI, from an installed package."""
 
 from __future__ import annotations
 

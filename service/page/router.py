@@ -91,9 +91,10 @@ def response_with_etag(
     make_response: Callable[[], Response],
     headers: Mapping[str, str] = MappingProxyType({}),
 ) -> Response:
-    """Return an answer with an ETag, or 304 if the client has the current version; content is created only if sent.
+    """Return an answer with an ETag, or 304 if the client has the current version.
 
-    tag: tag that changes with the content; None for content that browsers must not cache.
+    make_response: creates the answer; called only if it is sent. tag: tag that changes with the content; None for
+    content that browsers must not cache.
     """
     same = tag is not None and request.headers.get("if-none-match") == tag
     response = Response(status_code=304) if same else make_response()
@@ -107,7 +108,9 @@ def content_tag(content: bytes) -> str:
 
 
 def files_of(folder: Path) -> dict[str, _File]:
-    """Return the files of a folder by name, read once: a name from a client is never used as a path.
+    """Return the files of a folder by name, read once.
+
+    A name from a client is never used as a path.
 
     The document requests only app.js, which joins all modules, and style.css. The other files are served for readers of
     the source.

@@ -15,11 +15,11 @@ _ONE = Lock()
 
 
 def typeface() -> bytes:
-    """Return Inter in weights from 100 to 900 as WOFF: a tenth of the original size, created once, in a second.
+    """Return Inter in weights from 100 to 900 as WOFF, a tenth of the original size.
 
-    Inter is by the Inter Project Authors, under the SIL Open Font License 1.1; the licence text is in its package, and
-    the font refers to it. WOFF2 would be a third smaller, but takes three times as long to create and needs another
-    package.
+    It is created once, in a second. Inter is by the Inter Project Authors, under the SIL Open Font License 1.1; the
+    licence text is in its package, and the font refers to it. WOFF2 would be a third smaller, but takes three times as
+    long to create and needs another package.
     """
     with _ONE:
         return _subset_font()

@@ -177,9 +177,9 @@ def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, inde
 
 
 def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, sign: float, start: Array) -> float:
-    """Return the maximum of `sign` times a closed-form quantity near points (n, k) of a branch; -inf if there is none.
+    """Return the maximum of `sign` times a closed-form quantity near points (n, k) of a branch.
 
-    All requirements of the problem apply, except those on the quantity itself.
+    It is -inf if no design is found. All requirements of the problem apply, except those on the quantity itself.
     """
     objective = Objective(quantity=name, sense="maximise" if sign > 0.0 else "minimise")
     evaluator = Evaluator(replace(problem, objectives=(objective,)), branch)
@@ -257,9 +257,10 @@ def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] 
 
 
 def _nearest_value(problem: Problem, name: str) -> float | None:
-    """Return a value of a quantity, SI, as near to its requirement as one in ten samples that meet all others have.
+    """Return a value of a quantity, SI, near its requirement.
 
-    The very nearest would be met by so few designs that the samples of a job that asks for it may have none.
+    One in ten samples that meet all other requirements is at least as near. So few designs would meet the very nearest
+    value that the samples of a job that asks for it may have none.
     """
     constraint = next(item for item in constraints_of(problem) if item.quantity == name)
     others = tuple(item for item in problem.constraints if item.quantity != name)

@@ -125,7 +125,7 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
 
 
 def slider_positions(angle: float | Array, sign: float, designs: Array) -> Array:
-    """Return the slider position (n,), m, of designs (n, 3) at a crank angle; NaN where the linkage does not close."""
+    """Return slider positions (n,), m, of designs (n, 3) at a crank angle; NaN where the linkage does not close."""
     r, l, e = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore", divide="ignore"):
         closes = np.abs(e - r * np.sin(angle)) < l

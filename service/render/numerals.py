@@ -22,7 +22,7 @@ def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
 
 
 def format_on_scale(value: float, low: float, high: float, *, digits: int = 4) -> str:
-    """Return a number as text for an axis from low to high; values below a millionth of the range become zero."""
+    """Return a number as text for an axis from low to high; below a millionth of the range, as zero."""
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 

@@ -31,7 +31,7 @@ def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Res
 
 
 def bookmarks_of_run(folder: Path) -> list[Bookmark]:
-    """Return the bookmarks of a run on disk, from the store that solved it; none if there is no such store."""
+    """Return the bookmarks of a run on disk, from the store that solved it; none without such a store."""
     if not has_store(None, folder.parent):
         return []
     from ..store.remarks import bookmarks_of

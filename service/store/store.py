@@ -129,7 +129,7 @@ class Store(Workers):
         return Claim(self, running_job, lease)
 
     def job(self, number: int) -> Job:
-        """Return a job with its state; the reason of a waiting job says whether disk space or a worker is missing."""
+        """Return a job with its state. The reason of a waiting job says whether disk space or a worker is missing."""
         with self.reading() as connection:
             stored = the_job(connection, number)
         return self._with_waiting_reasons([stored])[0]

@@ -70,7 +70,7 @@ class Budget:
 
 @dataclass(eq=False)
 class Heartbeat:
-    """While this context is active, a thread renews the lease of a claim and checks whether its job is to be cancelled.
+    """While this context is active, a thread renews a claim's lease and checks its job for a cancellation.
 
     budget: budget of the job. If the job exceeds its memory, as measured by `memory`, it is set aside as failed and the
     process ends with exit code `EXHAUSTED`. Nothing else frees the memory reliably. If the search does not end within a

@@ -136,7 +136,7 @@ def work(
 
 
 def _is_out_of_memory(claim: Claim, memory: Memory, terms: Terms) -> bool:
-    """Whether to return a job to the queue for a fresh process: earlier jobs occupy too much memory in this one."""
+    """Return a job to the queue, and true, if earlier jobs occupy too much memory in this process."""
     allowed = claim.job.limits.stricter(terms.limits).memory
     if terms.grace is None or allowed is None or memory.left_by_earlier_jobs <= TOLERATED * allowed:
         return False

@@ -1,4 +1,4 @@
-"""Commands on a run of levers: the same numbers everywhere, pictures of the lever, or a sentence with what to do."""
+"""Commands on a run of levers: the same numbers everywhere, pictures of the lever, or an error with a remedy."""
 
 from __future__ import annotations
 

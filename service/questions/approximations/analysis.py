@@ -72,7 +72,7 @@ _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half"
 
 
 def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> Errors:
-    """Return the errors at offsets from zero to the design's offset, or to (rod - crank) / 2 if that is greater."""
+    """Return the errors at offsets from zero to the design's. If (rod - crank) / 2 is greater, they end there."""
     offset = float(linkage.offset)
     far = max(abs(offset), 0.5 * (float(linkage.rod) - float(linkage.crank)))
     return errors_over_offset(mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count))

@@ -61,7 +61,7 @@ def both_branches(
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PolygonNumbers:
-    """Return the vertices at one crank angle, rad, by branch and polygon; for 1 rad/s if there is no crank speed."""
+    """Return the vertices at a crank angle, rad, by branch and polygon. Without a crank speed, 1 rad/s applies."""
     speed = mechanism.speed or 1.0
     by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     return {

@@ -36,7 +36,7 @@ def place_of(grip: Locator) -> tuple[float, float]:
 
 
 def drag(page: Page, grip: Locator, right: float, down: float) -> None:
-    """Drag a grip once nothing moves it any more, as the answer to what came before does on a busy machine."""
+    """Drag a grip once it rests. On a busy machine, the answer to an earlier input may still move it."""
     page.wait_for_load_state("networkidle")
     place = (0.0, 0.0)
     while place != (place := place_of(grip)):
