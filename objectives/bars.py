@@ -81,7 +81,7 @@ class Part(NamedTuple):
         return part
 
     def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
-        """Return values with gradients from `outer` derivatives by the pieces and `inner` ones by the factor."""
+        """Return values with gradients, from `outer` derivatives for the pieces and `inner` ones for the factor."""
         if self.gradients is None or slopes is None:
             return Part(values, None, self.labels)
         finite = np.isfinite(self.values) & np.isfinite(values)

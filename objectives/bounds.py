@@ -16,7 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 CLEAR = 1.0 + 1e-12
-"""Closer to locking than this, rounding errors decide."""
+"""If a linkage is closer to locking than this, rounding errors decide."""
 
 
 @dataclass(frozen=True)

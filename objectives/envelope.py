@@ -56,7 +56,7 @@ _envelope = partial(
     group=Group.PROPORTIONS,
     section="2. Closed forms",
     picture=FOOTPRINT.picture,
-    advice="The footprint only covers the pin centres; without sections, so does this.",
+    advice="The footprint covers only the pin centres; without sections, this quantity does the same.",
 )
 ENVELOPE_LENGTH = _envelope(
     name="envelope_length",

@@ -13,7 +13,7 @@ from .quantity import Array, Pieces, Quantity, Values, undefined
 
 @dataclass(frozen=True, kw_only=True)
 class GreatestOfFormulas(Quantity):
-    """Maximum of its `formulas`, with exact derivatives by all variables; NaN if any formula is NaN.
+    """Maximum of its `formulas`, with exact derivatives with respect to all variables; NaN if any formula is NaN.
 
     A formula accepts complex numbers and, for bounds over ranges, enclosures, so it must not branch on a design's
     numbers.

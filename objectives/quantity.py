@@ -229,7 +229,7 @@ class Quantity(ABC):
 
     @property
     def has_gradient(self) -> bool:
-        """Whether it has derivatives by the dimensions."""
+        """Whether it has derivatives with respect to the dimensions."""
         return True
 
     @property

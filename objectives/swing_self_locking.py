@@ -7,9 +7,7 @@ from .quantity import Group
 from .swing_quantity import SwingLeast
 
 _least = partial(SwingLeast, signed=True, better="high", group=Group.DRIVE, picture="torque")
-_ADVICE = (
-    "Below zero, the loads push and the drive holds back. Above zero on both strokes, the linkage is self-locking."
-)
+_ADVICE = "Below zero, the loads push and the drive holds back. A linkage above zero on both strokes is self-locking."
 
 LEAST_FORCE_FORWARD = _least(
     name="least_force_forth",

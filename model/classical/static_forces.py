@@ -61,7 +61,7 @@ def static_forces(linkage: Linkage, crank_angle: ArrayLike, *, load: ArrayLike) 
     outward = linkage.sign * p
     arm = linkage.crank * (np.cos(theta) * tangent - np.sin(theta))  # x'
     torque = -outward * arm
-    # Closer to a dead centre than the rounding error of the crank angle: treated as at it.
+    # An angle that differs from a dead centre only by rounding is treated as the dead centre.
     still = np.abs(arm) <= 4.0 * np.finfo(np.float64).eps * (1.0 + np.abs(theta)) * linkage.crank
     with np.errstate(divide="ignore"):
         per_torque = np.where(still, np.inf, 1.0 / np.abs(arm))

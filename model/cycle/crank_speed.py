@@ -27,7 +27,7 @@ def turn_time(mechanism: Mechanism) -> float:
 
 
 def acceleration_slope(mechanism: Mechanism, crank_angle: Array) -> Array:
-    """Return the derivative of the acceleration by the crank angle, rad/s^2, at crank angles (n,), rad."""
+    """Return the derivative of the acceleration with respect to the crank angle, rad/s^2, at crank angles (n,), rad."""
     profile = mechanism.speed_profile
     if profile is None:
         return np.zeros(crank_angle.shape)

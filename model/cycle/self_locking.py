@@ -93,7 +93,7 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
 def _margin_with_friction_slopes(
     designs: Array, guide: Any, circles: Any, gradients: bool
 ) -> tuple[Array, Array | None, Array | None]:
-    """Return the margin (n,), its gradients (n, 3), and its derivatives by guide and pin friction (n, 2)."""
+    """Return the margin (n,), its gradients (n, 3), and those with respect to guide and pin friction (n, 2)."""
     r, l, a = designs[:, 0], designs[:, 1], np.abs(designs[:, 2])
     turns = circles < l
     safe = np.where(turns, l, 2.0 * circles + 1.0)

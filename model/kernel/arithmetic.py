@@ -1,9 +1,9 @@
 """Arithmetic that evaluates the same formula with reals, complex numbers and NumPy arrays.
 
 A physical formula is written once, as a plain Python function marked `analytic`. Called from Python, it broadcasts like
-any NumPy expression; called from a compiled kernel, it is compiled into that kernel (`compiler`). Evaluated at `x + i
-h` with `h = STEP = 1e-30`, its imaginary part divided by `h` is the derivative. This is exact to rounding, because no
-close numbers are subtracted (Squire and Trapp, SIAM Review 40(1), 1998, pp. 110-112).
+any NumPy expression; called from a compiled kernel, it is compiled into that kernel (`compiler`). The imaginary part
+of the formula at `x + i h`, with `h = STEP = 1e-30`, divided by `h` is the derivative. This is exact to rounding,
+because no close numbers are subtracted (Squire and Trapp, SIAM Review 40(1), 1998, pp. 110-112).
 
 The functions at the end keep only the first power of the imaginary part. With `h = 1e-30` the dropped second power
 (1e-60) is far below rounding. Without the branches in the general complex functions, the compiler turns loops over

@@ -32,7 +32,7 @@ def turning(designs: ArrayLike) -> Array:
         row = int(np.flatnonzero(~turns)[0])
         crank, rod, offset = 1e3 * designs[row, :3]
         raise AssemblyError(
-            "rod must exceed crank + |offset|, and the crank zero, for full rotation; "
+            "for full rotation, rod must exceed crank + |offset|, and crank must exceed 0; "
             f"got rod {rod:g} mm, crank {crank:g} mm, offset {offset:g} mm in design {row}; leave such designs out"
         )
     return designs

@@ -39,7 +39,7 @@ class _Task(NamedTuple):
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
     def follows(self, larger: _Task) -> bool:
-        """Whether it is left to the process that compiles the larger one."""
+        """Whether the process that compiles the larger set also compiles this one."""
         return self.size() < larger.size() and self.cheap_after(larger.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:

@@ -74,7 +74,7 @@ def motion_of(sine: Any, cosine: Any, r: Any, l_sin: Any, l_cos: Any) -> Motion:
 
 @analytic
 def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
-    """Return x''', the third derivative of the slider position by the crank angle, m/rad^3.
+    """Return x''', the third derivative of the slider position with respect to crank angle, m/rad^3.
 
     With a = l cos(phi), b = l sin(phi): phi''' = (r cos(theta) + a phi'^3 + 3 b phi' phi'') / a and
     x''' = r sin(theta) + b phi'^3 - 3 a phi' phi'' - b phi'''.

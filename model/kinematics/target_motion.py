@@ -90,7 +90,7 @@ class _Case(NamedTuple):
     """One linkage and the points (n,) of the target motion. b: its branch, +1 or -1. shifts: whether a shift is free.
 
     sines, cosines: those of the points' crank angles. positions: positions of the points. d, slope, bend: work space
-    for each point's deviation and its derivatives by the phase.
+    for each point's deviation and its derivatives with respect to the phase.
     """
 
     r: float

@@ -89,8 +89,8 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
 class _Sides(NamedTuple):
     """Candidates (n, m) for the maximum deviation at a phase, -inf where there are fewer.
 
-    values, slope, bend: deviations and their first and second derivatives by the phase. gradients: (n, m, 3). labels:
-    as in `FitPieces`.
+    values, slope, bend: deviations and their first and second derivatives with respect to the phase. gradients: (n, m,
+    3). labels: as in `FitPieces`.
     """
 
     values: Array

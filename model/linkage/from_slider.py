@@ -16,8 +16,8 @@ from .inverse import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motio
 
 _DIGITS = 9  # decimals of a position in messages, m: nanometres
 _LOCKED = 1e-7
-"""Fraction of the rod. Closer than this to an end where the rod is normal to the slider line, rounding decides whether
-it is locked.
+"""Fraction of the rod. This near to an end where the rod is normal to the slider line, rounding decides whether it is
+locked.
 
 There l - |e - r sin(theta)| is half the square of the distance, and the square of 1e-8 is the rounding error of a
 double.
@@ -63,7 +63,7 @@ def crank_solutions(
     )
     if slider_motion.acceleration is not None and slider_motion.velocity is None:
         raise InputError(
-            "a slider acceleration needs the slider velocity besides; got acceleration "
+            "a slider acceleration also needs the slider velocity; got acceleration "
             f"{slider_motion.acceleration:g} m/s^2 alone; add the velocity, 0 for a slider at rest"
         )
     distance, rounding = math.hypot(slider_motion.position, offset), ROUNDING * (crank + rod)

@@ -52,7 +52,7 @@ class Arrangement:
                 self._require_distinct_cylinders(i, k)
 
     def _require_distinct_cylinders(self, i: int, k: int) -> None:
-        """Raise an error if two cylinders have equal phase and bank at one position."""
+        """Raise an error if two cylinders at the same position have the same phase and bank."""
         angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
         if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
             bank_text = f", both in the bank at {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""

@@ -34,7 +34,7 @@ class ConstantTorque:
         return np.full(np.shape(speed), self.torque)[()]
 
     def slope(self, speed: ArrayLike) -> Any:
-        """Return the torque's derivative by speed, N m s."""
+        """Return the torque's derivative with respect to speed, N m s."""
         return np.zeros(np.shape(speed))[()]
 
 
@@ -70,7 +70,7 @@ class LinearMotor:
         return self.stall_torque * (1.0 - np.asarray(speed) / self.no_load_speed)[()]
 
     def slope(self, speed: ArrayLike) -> Any:
-        """Return the torque's derivative by speed, N m s."""
+        """Return the torque's derivative with respect to speed, N m s."""
         return np.full(np.shape(speed), -self.stall_torque / self.no_load_speed)[()]
 
 
@@ -116,7 +116,7 @@ class TorqueTable:
         return self._curve(speed)[()]
 
     def slope(self, speed: ArrayLike) -> Any:
-        """Return the torque's derivative by speed, N m s; NaN beyond the table."""
+        """Return the torque's derivative with respect to speed, N m s; NaN beyond the table."""
         return self._curve(speed, 1)[()]
 
 

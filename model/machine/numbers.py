@@ -3,7 +3,7 @@
 A design of a machine with k variables has 3 + k numbers: crank, rod, offset and the value of each variable. Kernels
 overwrite raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by
 radius and angle, but its raw numbers are components. Kernels differentiate by the raw numbers; `Numbers.chain` converts
-these to derivatives by the design's own numbers. With k = 0 this is the identity and costs nothing.
+these to derivatives with respect to the design's own numbers. With k = 0 this is the identity and costs nothing.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ class Numbers:
     """Raw numbers for n designs.
 
     columns: indices (c,) of the raw numbers; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their
-    derivatives by the design's numbers; None if these are the identity.
+    derivatives with respect to the design's numbers; None if these are the identity.
     """
 
     columns: IntArray
@@ -119,7 +119,7 @@ class Numbers:
     slopes: Array | None
 
     def chain(self, gradients: Array) -> Array:
-        """Return derivatives by the design's numbers, (n, ..., 3 + k), from those by the raw numbers, (n, ..., c)."""
+        """Convert derivatives with respect to raw numbers, (n, ..., c), to the design's own, (n, ..., 3 + k)."""
         if self.slopes is None:
             return gradients
         return np.asarray(np.einsum("n...c,nck->n...k", gradients, self.slopes))

@@ -3,8 +3,8 @@
 The cycle is cut into segments on which the curve is smooth. Value and slope are sampled on panels in these segments,
 halved until they resolve the curve. Between two samples where the curve first rises and then falls there is a local
 maximum, found as the root of the slope. A breakpoint between segments is also a maximum if the curve peaks there in a
-kink or a jump. The derivative of a maximum by the design is the partial derivative at its place (envelope theorem); a
-maximum at a breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
+kink or a jump. The derivative of a maximum with respect to the design is the partial derivative at its place (envelope
+theorem); a maximum at a breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
 
 The motion defines the independent variable (place): the crank angle of a shaft, or the time of a swing.
 """
@@ -42,8 +42,9 @@ class Curve(Protocol):
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its magnitudes (p, k) at places (p, k) in segments.
 
-        row: (p,), the designs. Value, slope and, with `gradients`, derivatives by the numbers; NaN where there is no
-        curve. probe: (p,), a place within each segment. rate: (p, v), derivatives of the places by the numbers.
+        row: (p,), the designs. Value, slope and, with `gradients`, derivatives with respect to the numbers; NaN where
+        there is no curve. probe: (p,), a place within each segment. rate: (p, v), derivatives of the places with
+        respect to the numbers.
         """
         ...
 

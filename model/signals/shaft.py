@@ -145,8 +145,8 @@ class Shaft:
     ) -> tuple[Array, Array]:
         """Return the curve (p, k, 2 + v) and its magnitudes (p, k) at angles (p, k) in segments.
 
-        Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles by the
-        design.
+        Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles with
+        respect to the design.
         """
         evaluated = self._evaluate(self._curve, self._items(row, probe, angle, rate), gradients)
         return evaluated.curve, evaluated.size

@@ -4,7 +4,7 @@ Each cylinder is a single crank at the angle theta + lead, in axes that are rota
 acceleration of the shaft are w p and w^2 p p', where p is the profile at the shaft's own angle; a constant acceleration
 is added. Every curve is the magnitude of a vector with two components, or its first component; components add up over
 the cylinders. All numbers are complex, so one compiled formula gives values, slopes over the crank angle and
-derivatives by the design.
+derivatives with respect to the design.
 """
 
 from __future__ import annotations
@@ -58,8 +58,8 @@ class Axes(NamedTuple):
 class Evaluations(NamedTuple):
     """Arguments for p evaluations: design, shaft angle that identifies the segment, angles, their rates, half.
 
-    row, probe: (p,). angle: (p, k), rad. rate: (p, v), derivative of the angle by each number of the design, if
-    derivatives are needed. half: (p, m), half of a two-turn cycle that each cylinder is in.
+    row, probe: (p,). angle: (p, k), rad. rate: (p, v), derivative of the angle with respect to each number of the
+    design, if derivatives are needed. half: (p, m), half of a two-turn cycle that each cylinder is in.
     """
 
     row: Integers
@@ -70,7 +70,7 @@ class Evaluations(NamedTuple):
 
 
 class CurveArrays(NamedTuple):
-    """Results. curve: (p, k, 2 + v), value, slope over the crank angle and, if needed, derivatives by the design.
+    """Results. curve: (p, k, 2 + v), value, slope over the crank angle and, if needed, design derivatives.
 
     size: (p, k), sum of the cylinders' magnitudes. outward: (p, m), 1 if the slider moves outward.
     """
@@ -153,7 +153,7 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: An
 
 
 class ShaftCurve(NamedTuple):
-    """One curve. kind: signal, or `TOUCH` or `WORK` and those after it. members: cylinders that are summed.
+    """One curve. kind: a signal, `TOUCH`, `WORK` or a constant after `WORK`. members: summed cylinders.
 
     vector: whether both components count. rubbing: whether friction counts.
     """

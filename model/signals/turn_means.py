@@ -341,7 +341,7 @@ def fill_means(
 def turn_means(
     task: MeansTask, raw: Array, mechanism: Mechanism, designs: Array, *, squares: bool, gradients: bool
 ) -> CurveMeans:
-    """Return the means for fully rotating designs (n, 3 + k), with derivatives by the numbers of the designs.
+    """Return the means for fully rotating designs (n, 3 + k), with their gradients.
 
     raw: the machine's raw numbers. squares: whether mean squares are needed.
     """

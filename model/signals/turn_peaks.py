@@ -2,9 +2,9 @@
 
 Each segment between breakpoints (`segments`) is sampled at crowded angles. Every local maximum (for a single peak: each
 one near the highest) is then bracketed. A safeguarded secant iteration refines it using the slope, which the complex
-step gives exactly. A breakpoint is also a peak if the curve has a kink or a jump there. The derivative of a peak by a
-design variable is the partial derivative at the peak angle (envelope theorem); a peak at a breakpoint moves with it,
-and the complex step carries that along.
+step gives exactly. A breakpoint is also a peak if the curve has a kink or a jump there. The derivative of a peak
+with respect to a design variable is the partial derivative at the peak angle (envelope theorem); a peak at a breakpoint
+moves with it, and the complex step includes this.
 """
 
 from __future__ import annotations

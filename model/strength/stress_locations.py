@@ -63,7 +63,7 @@ class StressLocations:
     An eye is treated as a bar whose stress falls linearly from the eye's value to zero at the other end, so the maximum
     along it is the eye's value. Without bending, half of the axial stress counts as bending: all of it is on one side,
     none on the other. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3
-    + k, 2), their derivatives by the numbers of the design.
+    + k, 2), their derivatives with respect to the numbers of the design.
     """
 
     field: Field
@@ -92,12 +92,12 @@ class StressLocations:
         return self.field.ends(self._design(bars), segment)
 
     def stress_at(self, bars: IntArray, segment: IntArray, angle: Array) -> Array:
-        """Return stress and its derivatives by the crank angle, (p, WIDE)."""
+        """Return stress and its derivatives with respect to the crank angle, (p, WIDE)."""
         stress = self.field.stress_at(self._design(bars), segment, angle)
         return _stress_by_location(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
 
     def slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
-        """Return the derivatives by the numbers of the design, (p, 3 + k, WIDE / 2).
+        """Return the derivatives with respect to the numbers of the design, (p, 3 + k, WIDE / 2).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
         """

@@ -51,8 +51,8 @@ class Points(NamedTuple):
     """Crank angles of designs, p in total; all fields (p,).
 
     design: index of the design. probe: an angle within the segment, which identifies its pieces. angle: rad. column:
-    column of the design number for the derivatives, -1 for derivatives by the crank angle. cut: breakpoint at which the
-    angle lies, -1 for none.
+    column of the design number for the derivatives, -1 for derivatives with respect to the crank angle. cut: breakpoint
+    at which the angle lies, -1 for none.
     """
 
     design: Integers
@@ -205,7 +205,7 @@ class Field:
         return angle[design, segment], angle[design, np.where(last, 0, segment + 1)] + np.where(last, _TURN, 0.0)
 
     def stress_at(self, design: IntArray, segment: IntArray, angle: Array) -> Array:
-        """Return stress and its derivatives by the crank angle, (p, 2 WIDE)."""
+        """Return stress and its derivatives with respect to the crank angle, (p, 2 WIDE)."""
         begin, end = self.ends(design, segment)
         no_number = np.full(len(design), -1)
         points = Points(design, _angles_within(begin, end), angle, no_number, no_number)
@@ -214,7 +214,7 @@ class Field:
         )
 
     def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
-        """Return stress and its derivatives by the raw numbers in `numbers`, (p, c, 2 WIDE).
+        """Return stress and its derivatives with respect to the raw numbers in `numbers`, (p, c, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 for none.
         """

@@ -30,8 +30,8 @@ _TURN = 2.0 * np.pi
 class Ends:
     """Crank angles of n designs at both ends of their swings, rad.
 
-    start, end: (n,), NaN if the slider does not reach its position. slopes: (n, v, 2), their derivatives by the design
-    numbers that `columns` names; None unless requested.
+    start, end: (n,), NaN if the slider does not reach its position. slopes: (n, v, 2), their derivatives with respect
+    to the design numbers that `columns` names; None unless requested.
     """
 
     start: Array

@@ -51,10 +51,10 @@ class SwingCurves:
 
     share: fraction of the time of one stroke. crank_angle continues beyond a turn if the swing does. drive: torque on
     the crank, N m, counter-clockwise, or force on the slider along +x, N. power: power of the drive, W, 0 for a slow
-    swing. rate: derivative of the driver position by `share`, rad or m. driven_angle: transmission angle at the driven
-    side. It is between the rod and the normal of the slider line if the crank drives, and between rod and crank if the
-    slider drives. driven_error: worst case for the position of the driven side, m at the slider or rad at the crank.
-    rod_rate: phi'. The other fields are as in `Cycle`; load excludes the drive.
+    swing. rate: derivative of the driver position with respect to `share`, rad or m. driven_angle: transmission angle
+    at the driven side. It is between the rod and the normal of the slider line if the crank drives, and between rod and
+    crank if the slider drives. driven_error: worst case for the position of the driven side, m at the slider or rad at
+    the crank. rod_rate: phi'. The other fields are as in `Cycle`; load excludes the drive.
     """
 
     share: Array

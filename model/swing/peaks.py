@@ -1,7 +1,7 @@
 """Peaks of a curve over a swing for many designs, to machine precision, with exact derivatives.
 
-`peak_search` treats the pieces of both strokes as segments. The complex step gives slopes over time and derivatives by
-the design's numbers.
+`peak_search` treats the pieces of both strokes as segments. The complex step gives slopes over time and derivatives
+with respect to the design's numbers.
 """
 
 from __future__ import annotations

@@ -115,7 +115,7 @@ class Swing:
         if angle >= math.pi:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
-                f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; swing less far"
+                f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; reduce the swing"
             )
 
     @cached_property
@@ -258,7 +258,7 @@ def _require_closing(linkage: Linkage, swing: Swing) -> None:
         raise AssemblyError(
             "the linkage must close over the whole swing: rod > |offset - crank sin(crank angle)|; "
             f"got a rod of {1e3 * l:.6g} mm and {1e3 * pin_distance:.6g} mm at {_degrees(worst)}; "
-            "lengthen the rod, change the offset, or swing less far"
+            "lengthen the rod, change the offset, or reduce the swing"
         )
 
 

@@ -27,8 +27,8 @@ from .swing import Swing
 Complexes = NDArray[np.complex128]
 
 DRIVE, POWER, ERROR, GUIDE, PLACE, PACE, ANGLE, RATE = range(8)
-"""Columns of states: drive, power, error at the driven side, guide force, slider position and its derivative by crank
-angle, crank angle, derivative of the driver position by the fraction of the time."""
+"""Columns of states: drive, power, error at the driven side, guide force, slider position x, dx / d(crank angle), crank
+angle, derivative of the driver position with respect to the fraction of time."""
 _STATES = 8
 _STILL = 1e-200  # rad/s: gives the sense of rotation, with negligible inertia
 _NEWTON = 40
@@ -142,7 +142,7 @@ class _Workspace(NamedTuple):
 
 @analytic
 def _forward_travel_and_derivatives(path: Path, share: Any, probe: Any, back: Any) -> Any:
-    """Return the fraction of the travel and its three derivatives by the fraction of the time, counted forward."""
+    """Return the fraction of the travel and its first three derivatives, counted forward."""
     w, w_1, w_2, w_3 = way_at(path.law, path.table, share, probe)
     if back > 0.5:
         w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3

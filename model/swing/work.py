@@ -118,7 +118,7 @@ def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, g
 
 
 def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
-    """Return the work over one stroke (n,) and its derivatives by raw numbers (n, c)."""
+    """Return the work over one stroke (n,) and its derivatives with respect to raw numbers (n, c)."""
     u, w = graded_gauss(_PANELS, _GRADED)
     design, piece = np.nonzero(pieces.live)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]

@@ -49,7 +49,7 @@ class PrescribedMotion:
 
 @dataclass(frozen=True)
 class SpeedOverAngle:
-    """Crank speed as a function of crank angle, periodic. speed: rad/s. slope: its derivative by angle, 1/s."""
+    """Crank speed as a function of crank angle, periodic. speed: rad/s. slope: derivative over the angle, 1/s."""
 
     speed: Function
     slope: Function

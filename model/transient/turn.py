@@ -44,14 +44,14 @@ _MOVES = 12  # maximum number of times that panels are moved to where guides cha
 _MOVED = 1e-9  # rad; a kink closer to a panel's end than its first node causes an error of the square of this
 
 Torque = Callable[[Array], tuple[Array, Array]]
-"""Torque on the crank, N m, and its derivative by speed, N m s, at crank speeds, rad/s, of any shape."""
+"""Torque on the crank, N m, and its derivative with respect to speed, N m s, at crank speeds, rad/s, of any shape."""
 Guess = tuple[Array, Array, float]
 """E at the nodes, (panels, nodes), and at the panels' starts, (panels,); a torque added to the motor's, N m."""
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A solution: E, (panels, nodes), and at the panels' starts, (panels,); its derivative by angle at the nodes.
+    """A solution: E, (panels, nodes), and at the panels' starts, (panels,); dE / d(theta) at the nodes.
 
     added: torque added to the motor's, N m. memory: fraction of a small change in E at the start that remains after a
     turn.
@@ -150,14 +150,14 @@ class PeriodicTurn:
         return _legendre_sum(series, x), integral
 
     def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
-        """Return dE / d(theta) and its derivative by E."""
+        """Return dE / d(theta) and its derivative with respect to E."""
         t, speed = self.terms, self.way * np.sqrt(2.0 * energy)
         torque, slope = motor(speed)
         total = t.inertia + inertia
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
 
     def rates(self, energy: Array, motor: Torque, inertia: float, added: float) -> tuple[Array, Array, Array]:
-        """Return dE / d(theta) with the torque `added`, N m, and its derivatives by E and by that torque."""
+        """Return dE / d(theta) with the torque `added`, N m, and its derivatives with respect to both."""
         rate, by_energy = self.rate(energy, motor, inertia)
         by_torque = 1.0 / (self.terms.inertia + inertia)
         rate = rate + added * by_torque

@@ -118,7 +118,7 @@ class TurningCylinder:
             raise AssemblyError(
                 "the cylinder must reach the lever over the whole swing: |offset| < distance from A to B; got an "
                 f"offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees(angle)}; reduce "
-                "the offset, or swing less far"
+                "the offset, or reduce the swing"
             )
 
     def at(self, lever_angle: Array) -> LeverMotion:
@@ -162,7 +162,7 @@ class DimensionErrors(NamedTuple):
 
 
 class LeverMotion(NamedTuple):
-    """Motion at lever angles (n,). Vectors are complex numbers x + i y; derivatives are by the lever angle.
+    """Motion at lever angles (n,). Vectors are complex numbers x + i y; primes mean d / d(lever angle).
 
     radial: direction of OB. span: AB, m. line: direction of the cylinder, towards B. length: L, m, with its
     derivatives. turn_1, turn_2: derivatives of the cylinder's angle gamma. transmission: angle between AB and the lever
@@ -276,7 +276,7 @@ def _smaller_swing(start: float, end: float) -> str:
     wrapped = [f"{_degrees(other)} for {_degrees(angle)}" for angle, other in pairs if abs(other - angle) > 1.0]
     if wrapped and 0.0 < abs(near[1] - near[0]) < math.pi:
         return f"angles must be written without wrapping at a full turn: write {' and '.join(wrapped)}"
-    return "swing less far"
+    return "reduce the swing"
 
 
 def _degrees(angle: float) -> str:

@@ -86,8 +86,8 @@ class TwoSided:
     def side_for(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
         """Return the side that a function uses, from above or below.
 
-        slope: (n,), derivative of the function by this part. known_sign: sign of the slope if known, else 0. Designs
-        with the opposite sign are outside their ranges, and keep only their active piece.
+        slope: (n,), derivative of the function with respect to this part. known_sign: sign of the slope if known, else
+        0. Designs with the opposite sign are outside their ranges, and keep only their active piece.
         """
         same, swapped = (self.from_above, self.from_below) if from_above else (self.from_below, self.from_above)
         if known_sign:

@@ -75,7 +75,7 @@ class FormulaQuantity(Quantity):
         return self.parts
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> FormulaQuantity:
-        """Return the formula with other parts that have the same names."""
+        """Return the formula with its parts replaced by others with the same names."""
         return replace(self, parts=parts)
 
     def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:

@@ -78,7 +78,7 @@ class Slopes:
 
 
 def partials(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
-    """Return the derivatives of a smooth function by its arguments, each shaped like the arguments."""
+    """Return the derivatives of a smooth function with respect to its arguments, each shaped like the arguments."""
     if function in UNARY:
         return (UNARY[function][1](arguments[0], values),)
     return BINARY[function][1](arguments[0], arguments[1], values)

@@ -36,7 +36,8 @@ class Refused(Exception):
 class FunctionResult:
     """Result of a function for n designs, as the maximum of k pieces.
 
-    values: (n, k), SI. slopes: derivatives by the stepped dimension, or None. angles: crank angles of peaks, or None.
+    values: (n, k), SI. slopes: derivatives with respect to the stepped dimension, or None. angles: crank angles of
+    peaks, or None.
     """
 
     values: Array
@@ -103,8 +104,8 @@ def _checked_result(returned: NDArray[Any], dimensions: Array, column: int | Non
         returned = returned[:, None]
     if returned.ndim != 2 or len(returned) != n or not 1 <= returned.shape[1] <= PIECES:
         raise Refused(
-            f"must return one number for each design, or up to {PIECES} of which the greatest counts, "
-            f"shape ({n},) or ({n}, k); got shape {returned.shape}; reduce a curve over the cycle by peaks, "
+            f"must return one number for each design, or up to {PIECES} numbers, of which the greatest counts, "
+            f"with shape ({n},) or ({n}, k); got shape {returned.shape}; reduce a curve over the cycle with peaks, "
             "greatest or mean"
         )
     if (column is not None) != np.iscomplexobj(returned):

@@ -46,8 +46,8 @@ def load(function: str, folders: list[str]) -> Function:
     except BaseException as error:  # noqa: BLE001 - whatever the module does when imported
         error_text = f"{type(error).__name__}: {error}".rstrip(": ")
         raise Refused(
-            f"must be a function in a module beside the job file or installed; got {error_text}{place(error, load)}; "
-            "correct module:function"
+            f"must be a function in a module in the folder of the job file or installed; got "
+            f"{error_text}{place(error, load)}; correct module:function"
         ) from None
     finally:
         sys.path[:] = [*before, *folders]

@@ -239,7 +239,7 @@ class Designs:
         return self._known[1]
 
     def _pace(self, angle: Numbers) -> tuple[Any, Any, Any]:
-        """Return crank speed, crank acceleration, and the derivative of the acceleration by the angle."""
+        """Return crank speed, crank acceleration, and the derivative of the acceleration with respect to the angle."""
         profile, mean = self.mechanism.speed_profile, self.mechanism.speed
         if profile is None:
             return mean, self.mechanism.acceleration, 0.0

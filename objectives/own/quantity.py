@@ -172,8 +172,8 @@ class OwnQuantity(Quantity):
             spec = None if places is None else PathFinder.find_spec(part, places)
             if spec is None:
                 self._refuse(
-                    f"must be in a module beside the job file or installed; no module {module} was found; put "
-                    f"{module.split('.')[0]}.py beside the job, or correct module:function"
+                    f"must be in a module in the folder of the job file or installed; no module {module} was "
+                    f"found; put {module.split('.')[0]}.py there, or correct module:function"
                 )
             places = spec.submodule_search_locations
         source = Path(spec.origin) if spec is not None and spec.origin else None

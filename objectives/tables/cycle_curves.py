@@ -69,9 +69,9 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     Forces act from the frame on the crank (pivot), from the crank on the rod (crank pin), from the rod on the slider
     (slider pin), and from the guide on the slider along +y. Torque and power refer to the drive. With several
     cylinders, torque and power are over the shaft angle; all other curves belong to one cylinder, over its own crank
-    angle. Without a crank speed, velocity, acceleration and jerk are for one radian per second, that is, derivatives by
-    the crank angle, and power is NaN. Position errors are NaN without tolerances. For values at load jumps and for
-    errors raised, see `model.cycle.cycle`.
+    angle. Without a crank speed, velocity, acceleration and jerk are for one radian per second, that is, derivatives
+    with respect to the crank angle, and power is NaN. Position errors are NaN without tolerances. For values at load
+    jumps and for errors raised, see `model.cycle.cycle`.
     """
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)

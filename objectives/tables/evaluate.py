@@ -1,4 +1,4 @@
-"""Quantities of many designs by name as one array, with their derivatives by the numbers in a design."""
+"""Quantities of many designs by name as one array, with their derivatives with respect to the numbers in a design."""
 
 from __future__ import annotations
 

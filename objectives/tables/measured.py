@@ -158,7 +158,7 @@ def measured_from(
     if not curves:
         empty_columns = ", ".join(repr(column_names[name]) for name in empty)
         raise InputError(
-            f"a curve must have a number in a row with a crank angle; got none in {empty_columns}; fill them in"
+            f"a curve must have numbers in at least one row with a crank angle; got none in {empty_columns}; add values"
         )
     for name in curves:
         reason = undefined_because(name, mechanism)

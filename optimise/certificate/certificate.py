@@ -75,8 +75,9 @@ def message_of(
         return "nothing is proven yet: part of the design box has no bound; allow more time"
     if proven >= 1.0 and proven > requested:
         text = (
-            f"nothing useful is proven yet: by the bound so far, a design could be better by {share(proven)} of each "
-            "objective's range over the front, which is more than the whole front; allow more time or narrow the ranges"
+            f"nothing useful is proven yet: according to the bound so far, a design could be better by "
+            f"{share(proven)} of each objective's range over the front, which is more than the whole front; allow more "
+            "time or narrow the ranges"
         )
         return f"interrupted; {text}" if status == "cancelled" else text
     delivered_set = f"the {designs} designs" if designs > 1 else "the design"

@@ -109,7 +109,7 @@ class SwingBoxes:
     def state_at_travel(
         self, numbers: Numbers, way: Array, direction: Any = 1.0, way_1: Any = 0.0, way_2: Any = 0.0
     ) -> _State:
-        """Return the state at fractions of the travel (n, p), with its derivatives by the fraction of the time."""
+        """Return the state at fractions of the travel (n, p), with derivatives with respect to the fraction of time."""
         d, block = self.machine.design(numbers)
         ends = self.ends(numbers, d)
         first, last = ends.positions if self.slider else ends.angles

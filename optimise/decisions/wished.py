@@ -51,7 +51,7 @@ class Outcome:
         return self.changed is not None and self.changed < -_ROUNDING * self.range_
 
     def text(self, system: System = "metric") -> str:
-        """Describe wish and outcome: "peak torque 109.2 N m of 110 N m wished"."""
+        """Describe wish and outcome: "peak torque 109.2 N m instead of the desired 110 N m"."""
         reached = f"{self.quantity.title} {self._value_text(self.reached, system)}"
         if self.kind == "value":
             return reached + self._wish_comparison_text(system)
@@ -70,15 +70,16 @@ class Outcome:
     def _wish_comparison_text(self, system: System) -> str:
         short, wished = cast(float, self.short), self._value_text(cast(float, self.wished), system)
         if abs(short) <= _ROUNDING * self.range_:
-            return ", as wished" if self.objective.sense != "target" else f", as near to its target as {wished} wished"
+            is_target = self.objective.sense == "target"
+            return f", as near to its target as the desired {wished}" if is_target else ", as desired"
         amount = self._difference_text(short, system)
         if self.objective.sense == "target":
             target = self._value_text(cast(float, self.objective.target), system)
             far = f"{amount} {'farther from' if short > 0.0 else 'nearer to'} its target of {target} than"
-            return f", {far} the {wished} wished"
+            return f", {far} the desired {wished}"
         if short < 0.0:
-            return f", {amount} better than the {wished} wished"
-        return f" of {wished} wished: it must give way by {amount}"
+            return f", {amount} better than the desired {wished}"
+        return f" instead of the desired {wished}: it must give way by {amount}"
 
     def _value_text(self, value: float, system: System) -> str:
         unit, factor = metric_unit_in(self.quantity.unit.symbol, system)

@@ -130,7 +130,7 @@ class Judged:
         return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
     def merge(self, others: Judged) -> Judged:
-        """Return these designs together with others, and the nearer miss of the two."""
+        """Return these designs together with others, and the nearer infeasible design of the two."""
         nearer = others if others.missed < self.missed else self
         return Judged(
             nearer.part,

@@ -51,7 +51,7 @@ def result_message(front: ParetoFront) -> str:
 
 
 def failure_message(problem: Problem, judged: Judged) -> str:
-    """Return the message that no combination meets every requirement, with the nearest one's misses and a remedy."""
+    """Return the message that no combination is feasible, with the deviations of the nearest one and a remedy."""
     rules = rules_text(problem)
     subject = (
         f"none of {_count_combinations(judged.judged)} of {rules}"

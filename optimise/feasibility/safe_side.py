@@ -1,4 +1,4 @@
-"""Limits for people to read and enter again: rounded so that requiring the reported number is possible.
+"""Limits for a user to read and enter again: rounded so that a design can meet the reported limit.
 
 Rounded to nearest, every other limit would be unreachable: if 42.80776 deg is the limit, no design has 42.8078 deg.
 """

@@ -61,7 +61,7 @@ def why_no_swing(problem: Problem) -> str:
     if not closing:
         return (
             f"no design within the ranges closes over {movement}, which needs rod > |offset - crank sin(crank "
-            "angle)|; allow a longer rod or an offset nearer to the crank pin, or swing less far"
+            "angle)|; allow a longer rod or an offset nearer to the crank pin, or reduce the swing"
         )
     if not passing:
         return (
@@ -89,9 +89,9 @@ def _unswung_lever(problem: Problem, motion: Swing) -> str:
             return ""
     start, end = (f"{180.0 / math.pi * angle:.6g}" for angle in (motion.start, motion.end))
     return (
-        f"no design within the ranges makes the swing of the lever from {start} to {end} deg: both pivots and the pin "
-        "must not be in line within it, and the offset must be less than the distance from the cylinder's pivot to the "
-        "pin; change frame_angle, the ranges, or swing less far"
+        f"no design within the ranges swings the lever from {start} to {end} deg: the two pivots and the pin must "
+        "not be in line at any point of the swing, and the offset must be less than the distance from the cylinder's "
+        "pivot to the pin; change frame_angle or the ranges, or reduce the swing"
     )
 
 

@@ -303,14 +303,14 @@ class ParetoFront:
 
         to: one step for crank, rod and offset, m, or steps by name, SI: `front.rounded(3, {"crank": 5e-4, "rod":
         1e-3})`.
-        allow: allowed misses of requirements, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. If no rounded design
-        within 32 steps meets all requirements, the nearest are returned and `is_met` is False; `misses` gives the
-        amounts.
+        allow: allowed deviations of requirements, by quantity, SI or as text: `{"stroke": "0.1 mm"}`. If no rounded
+        design within 32 steps meets all requirements, the nearest are returned and `is_met` is False; `misses` gives
+        the amounts.
         progress: called several times a second; an exception from it ends the search. See `Rounded` and
-        `rounding.rounding`. Warns if an allowed miss without a unit is more than a tenth of the required value.
+        `rounding.rounding`. Warns if an allowed deviation without a unit is more than a tenth of the required value.
         """
         for doubt in doubtful_misses(self.part(row), allow or {}):
-            warn_user(f"allowed misses are in SI: {doubt}")
+            warn_user(f"allowed deviations are in SI: {doubt}")
         for stage in self.rounding(row, to, count=count, allow=allow):
             if isinstance(stage, Rounded):
                 return stage

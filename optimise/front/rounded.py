@@ -1,4 +1,4 @@
-"""Designs with round numbers: their losses, their tightest requirement, and their misses."""
+"""Designs with round numbers: their losses, their tightest requirement, and their deviations."""
 
 from __future__ import annotations
 
@@ -48,18 +48,18 @@ class Miss:
 class Rounded:
     """Designs with round numbers near a front's design, best first.
 
-    Non-dominated designs that meet every requirement within the allowed misses come first, least loss first; then
+    Non-dominated designs that meet every requirement within the allowed deviations come first, least loss first; then
     designs that miss little but lose clearly less. If `is_met` is False, these are the nearest designs. The first has
-    the least relative violation beyond the allowed misses; those that follow miss more but lose clearly less. See
+    the least relative violation beyond the allowed deviations; those that follow miss more but lose clearly less. See
     `rounding.rounded`.
 
     problem: the problem that they solve, with its choices made. design: (3 + v,), the design to round. steps: steps of
-    the rounded numbers, SI. allowed: allowed misses of requirements, SI, by quantity. dimensions: (n, 3 + v).
+    the rounded numbers, SI. allowed: allowed deviations of requirements, SI, by quantity. dimensions: (n, 3 + v).
     design_objectives: (m,), the design's objectives, SI. values: (n, m). losses: (n, m), loss of each objective as a
     fraction of its range over the front; negative for a gain. constraints: c constraints, including floors.
     constraint_values: (n, c). steps_tried: multiples of a step tried on either side. judged: number of movable
-    combinations; all are judged. feasible_count: number of those that meet every requirement within the allowed misses.
-    notes: unchanged numbers, in words.
+    combinations; all are judged. feasible_count: number of those that meet every requirement within the allowed
+    deviations. notes: unchanged numbers, in words.
     """
 
     problem: Problem
@@ -85,7 +85,7 @@ class Rounded:
 
     @property
     def is_met(self) -> bool:
-        """Whether the designs meet every requirement within the allowed misses."""
+        """Whether the designs meet every requirement within the allowed deviations."""
         return self.feasible_count > 0
 
     @property
@@ -129,9 +129,9 @@ class Rounded:
         return max(rest)[2] if rest else None
 
     def misses(self, row: int) -> list[Miss]:
-        """Return a design's misses of all requirements that it violates, relatively worst first.
+        """Return a design's deviations from all requirements that it violates, relatively worst first.
 
-        Allowed misses are included.
+        Allowed deviations are included.
         """
         misses = []
         for place in np.argsort(-self.violations[row], kind="stable").tolist():
@@ -158,7 +158,7 @@ class Rounded:
         return [miss.quantity for miss in self.misses(row)]
 
     def _allowed_in_words(self, system: System) -> str:
-        """Return the allowed misses as text: "0.1 mm of stroke"."""
+        """Return the allowed deviations as text: "0.1 mm of stroke"."""
         texts = []
         for name, value in self.allowed.items():
             quantity = self.problem.quantity(name)

@@ -49,18 +49,18 @@ def rounding(
     If the best loses more than 1 % of a range and fewer than `count` meet all requirements, further designs follow.
     They miss a requirement by at most 1 % of its bound and lose at least a quarter less.
 
-    If none does, the first is the design whose greatest relative miss is least. A miss is a value's distance beyond a
-    bound plus the allowed miss, divided by the bound. Among equal misses, the least loss comes first, then the least
-    distance in steps from the given design. Next come those that miss more but lose at least a quarter less than the
-    previous one, until nothing is lost.
+    If none does, the first is the design whose greatest relative deviation is least. A deviation is a value's
+    distance beyond a bound plus the allowed deviation, divided by the bound. Among equal deviations, the least loss
+    comes first, then the least distance in steps from the given design. Next come those that miss more but lose at
+    least a quarter less than the previous one, until nothing is lost.
 
     part: a problem without choices. given: (3 + v,), its design. span: (m,), unit of each objective's loss. to: one
     step for crank, rod and offset, m, or steps by name, SI, also for extra variables; numbers that are fixed or have no
-    step stay unchanged. allow: allowed misses of requirements, by quantity: a number in SI, or "0.1 mm". notes: notes
-    to add to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
+    step stay unchanged. allow: allowed deviations of requirements, by quantity: a number in SI, or "0.1 mm". notes:
+    notes to add to those of the answer. Yields a `Stage` several times a second; closing it ends the search.
 
-    Raises `InputError` for a step that is not positive or has no multiple within the range, an unknown name, a miss
-    that cannot be allowed, or a count below one.
+    Raises `InputError` for a step that is not positive or has no multiple within the range, an unknown name, a
+    deviation that cannot be allowed, or a count below one.
     """
     if isinstance(count, bool) or not isinstance(count, Integral) or count < 1:
         raise InputError(f"count must be a whole number of 1 or more; got {count!r}")
@@ -122,7 +122,7 @@ def ranges_or_sizes(values: Array, reference: Array, sizes: Sequence[float]) -> 
 
 
 def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str]:
-    """Return both readings of allowed misses without a unit that are large compared with the required value."""
+    """Return both readings of allowed deviations without a unit that are large compared with the required value."""
     plain_misses, doubts = (
         {name: value for name, value in _require_misses_by_quantity(allow).items() if not isinstance(value, str)},
         [],
@@ -136,7 +136,7 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
 
 
 def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
-    """Return the allowed misses of requirements, SI, by quantity. A required slow stroke cannot be missed."""
+    """Return the allowed deviations of requirements, SI, by quantity. A required slow stroke cannot be missed."""
     constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
     quantities = {name: part.quantity(name) for name in constraints}
     names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
@@ -148,25 +148,27 @@ def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[st
                 f"{quote(name)}; name one of them"
             )
         if names[name] in allowed:
-            raise InputError(f"a requirement may have only one allowed miss; got two for {names[name]}; leave out one")
+            raise InputError(
+                f"a requirement may have only one allowed deviation; got two for {names[name]}; leave out one"
+            )
         try:
             allowed[names[name]] = _allowed_miss(value, quantities[names[name]], constraints[names[name]])
         except InputError as error:
-            raise InputError(f"the allowed miss of {name} {error}") from None
+            raise InputError(f"the allowed deviation of {name} {error}") from None
     return allowed
 
 
 def _require_misses_by_quantity(misses: Mapping[str, float | str]) -> Mapping[str, float | str]:
-    """Return allowed misses. Raises `InputError` unless they are given by quantity."""
+    """Return allowed deviations. Raises `InputError` unless they are given by quantity."""
     if not isinstance(misses, Mapping):
         raise InputError(
-            f'allowed misses must be a dict by quantity; got {misses!r}; write it like {{"stroke": "0.1 mm"}}'
+            f'allowed deviations must be a dict by quantity; got {misses!r}; write it like {{"stroke": "0.1 mm"}}'
         )
     return misses
 
 
 def _allowed_miss(value: float | str, quantity: Quantity, constraint: Constraint) -> float:
-    """Return the allowed miss of a requirement, SI.
+    """Return the allowed deviation of a requirement, SI.
 
     Raises `InputError`; for a percentage, it names the amount that was meant.
     """

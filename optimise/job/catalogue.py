@@ -170,8 +170,8 @@ def _require_distinct_row_names(table: TableFile) -> None:
         row = f"{table.name}, row {number}"
         if not label or label.startswith(_FORMULA) or len(label) > _LONGEST or not label.isprintable():
             raise JobError(
-                f"{row}, column name: must be a name of 1 to {_LONGEST} characters on one line, none of = + @ first; "
-                f"got {quote(label)}; write it out"
+                f"{row}, column name: must be a name of 1 to {_LONGEST} characters on one line that does not begin "
+                f"with =, + or @; got {quote(label)}; write it out"
             )
         if label in labels:
             raise JobError(

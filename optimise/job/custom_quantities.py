@@ -69,12 +69,12 @@ class FunctionPart(Part):
     """A Python function as a quantity, whose name may be used in [objectives] and [constraints]."""
 
     function: Annotated[str, Field(max_length=200), AfterValidator(_check_function)] = required(
-        "module:function; the module lies beside the job file or is installed", "mymodule:greatest_jerk"
+        "module:function; the module is in the folder of the job file or installed", "mymodule:greatest_jerk"
     )
     unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] = optional(
         'display unit; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
-    title: Title | None = optional("title; default the name", "greatest jerk of the slider")
+    title: Title | None = optional("title; default: the name", "greatest jerk of the slider")
     gradient: Gradient = optional(
         "method for derivatives: complex step for a function that runs on complex numbers",
         "complex step",
@@ -104,9 +104,9 @@ class FormulaPart(Part):
         "formula of quantities, dimensions, variables, numbers with units, + - * / ** and functions",
         "offset - crank",
     )
-    title: Title | None = optional("title; default the name", "clearance beside the crank")
+    title: Title | None = optional("title; default: the name", "clearance beside the crank")
     unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] | None = optional(
-        "display unit; default the usual one of its kind", "mm"
+        "display unit; default: the usual unit for its kind", "mm"
     )
 
     def build(self) -> formulas.Stated:

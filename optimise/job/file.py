@@ -67,7 +67,7 @@ def _read_bytes(path: Path) -> bytes:
                 content = file.read(LARGEST + 1)
             size = len(content)
         if size > LARGEST:
-            raise JobError(f"a job file must have at most 1 MB; got {size / 1e6:.1f} MB; is it the right file?")
+            raise JobError(f"a job file must be at most 1 MB in size; got {size / 1e6:.1f} MB; is it the right file?")
         return content
     except FileNotFoundError:
         raise JobError("no such file; check the name and the folder") from None

@@ -127,13 +127,13 @@ class CylindersPart(Checked[Arrangement]):
         max_length=MOST,
     )
     banks: tuple[Angle, ...] = optional(
-        "angle of each cylinder's slider line from +x, counter-clockwise; default all zero",
+        "angle of each cylinder's slider line from +x, counter-clockwise; default: all zero",
         ["-45 deg", "45 deg"],
         default=(),
         max_length=MOST,
     )
     places: tuple[Length, ...] = optional(
-        "position of each cylinder along the shaft, for the rocking couple; default all in one plane",
+        "position of each cylinder along the shaft, for the rocking couple; default: all in one plane",
         ["-50 mm", "50 mm"],
         default=(),
         max_length=MOST,
@@ -185,7 +185,7 @@ class MechanismPart(CrankSpeedPart):
         "several identical cylinders on one crankshaft; torque, power, work and shaking are totals",
         {"phases": ["0 deg", "180 deg"]},
     )
-    gravity: Gravity | None = optional("magnitude of gravity; default none", "9.81 m/s^2")
+    gravity: Gravity | None = optional("magnitude of gravity; default: none", "9.81 m/s^2")
     gravity_direction: Angle | None = optional(
         "direction of gravity, counter-clockwise from +x (outward on the open branch, inward on the crossed branch); "
         "default 270 deg, across a level slider line",
@@ -200,14 +200,15 @@ class MechanismPart(CrankSpeedPart):
 
     inversion: Literal["turning cylinder"] | None = optional(
         "turning cylinder: the rod is fixed as the frame, and a cylinder that turns about its end moves the crank, a "
-        "lever; default a slider-crank",
+        "lever; default: a slider-crank",
         "turning cylinder",
     )
     frame_angle: Angle | None = optional(
-        "of this inversion: direction from the lever's pivot to the cylinder's, counter-clockwise from +x", "-60 deg"
+        "for a turning cylinder: direction from the lever's pivot to the cylinder's, counter-clockwise from +x",
+        "-60 deg",
     )
     pin_angle: Angle = optional(
-        "of this inversion: angle from the crank's own line, whose angle is the lever angle, to its pin",
+        "for a turning cylinder: angle from the line that gives the lever angle to the pin of the lever",
         "10 deg",
         default=0.0,
     )

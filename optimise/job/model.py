@@ -124,7 +124,7 @@ class Job(Part):
         {"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"},
     )
     friction: FrictionPart = optional(
-        "Coulomb friction in the guide and in the three pins; default none",
+        "Coulomb friction in the guide and in the three pins; default: none",
         {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}},
         default=FrictionPart(),
     )

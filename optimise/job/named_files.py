@@ -29,7 +29,7 @@ def read_named_text(files: Files, key: str, file: str) -> str:
     """Return the text of a file that a job names under a key. Raises `InputError`."""
     name = f"{key}: {quote(file)}"
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
-        raise JobError(f"{key}: must lie beside the job file; got {quote(file)}; copy it there")
+        raise JobError(f"{key}: must be in the folder of the job file; got {quote(file)}; copy it there")
     if isinstance(files, Path):
         return text_of(bytes_of(files / path_from_text(file), name, LARGEST), name)
     if file not in files:
@@ -42,8 +42,8 @@ def read_named_text(files: Files, key: str, file: str) -> str:
 def unread_file_error(file: str, instead: str) -> InputError:
     """Return the error for an unread file. instead: keys that may replace it."""
     return InputError(
-        f"a file must lie beside the job file, or be sent with the job (API: files), and replaces {instead}; got file "
-        f"{quote(file)}; send it, or give only the {instead}"
+        f"a file must be in the folder of the job file, or be sent with the job (API: files), and replaces "
+        f"{instead}; got file {quote(file)}; send it, or give only the {instead}"
     )
 
 

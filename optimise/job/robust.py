@@ -44,7 +44,8 @@ class RobustPart(Checked[Robust]):
         "machines drawn for a percentile, the same for all designs", SAMPLES, default=SAMPLES
     )
     quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional(
-        "robust objectives and constraints; default all that can be", [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name]
+        "objectives and constraints to make robust; default: all for which this is possible",
+        [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name],
     )
 
 

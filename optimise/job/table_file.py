@@ -74,7 +74,7 @@ def bytes_of(path: Path, name: str, limit: int) -> bytes:
         raise InputError(f"{name} cannot be read: {why}; name another file, or change its permissions") from None
     if len(content) > limit:
         raise InputError(
-            f"{name} must have at most {limit / 1e6:.3g} MB; got more; keep only the rows and columns that matter"
+            f"{name} must be at most {limit / 1e6:.3g} MB in size; got more; keep only the rows and columns that matter"
         )
     return content
 

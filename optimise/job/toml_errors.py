@@ -1,7 +1,8 @@
 """Mistakes in TOML syntax, in words: line and key, rule, typed text, and correction.
 
-The parser only says where it stops. So each of several edits is tried on the line. The edit that lets the parser read
-most of it is kept, until the whole line can be read. A remedy is therefore always a line that the parser accepts.
+The parser only says where it stops. So each of several edits is tried on the line. The edit that lets the parser
+read furthest is kept, and the next one is tried, until the parser reads the whole line. A remedy is therefore always a
+line that the parser accepts.
 """
 
 from __future__ import annotations

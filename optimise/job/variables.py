@@ -30,7 +30,7 @@ EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
 
 
 def _variable_table(table_name: str, example: dict[str, Any]) -> Any:
-    return optional(f"numbers of {table_name} that may vary, by their keys there", example, default={})
+    return optional(f"numbers of {table_name} that may vary, by their keys in that table", example, default={})
 
 
 class VariablesPart(Part):

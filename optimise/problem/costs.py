@@ -55,7 +55,7 @@ class Cost:
         return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
 
     def slope(self, tolerance: float) -> float:
-        """Return the derivative of the cost by the tolerance, per m or rad; never positive."""
+        """Return the derivative of the cost with respect to the tolerance, per m or rad; never positive."""
         return -self.exponent * (self.cost_at(tolerance) - self.fixed) / tolerance
 
 

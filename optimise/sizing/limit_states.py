@@ -35,10 +35,10 @@ of that bar, K = 2). Each of these is at most one:
                     n (C N (w^2 + w D + D^2) + 6 B M y) / (S_y d w^3) + (D / w)^3; in fatigue likewise
     bearing         F / (D d p), the pressure on the projected area of each pin
 
-Amplitudes as peaks are safe because S_e <= S_m: for a sum of stresses, amplitudes A and means m, the amplitude is at
-most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) / S_m. Other
-reductions in strength of the finished bar belong in S_e (Shigley eq. 6-18). Not considered: shear, the shape of the
-eyes beyond their net section, pin bending, friction, out-of-plane bending.
+To treat amplitudes as peaks is safe because S_e <= S_m: for a sum of stresses with amplitudes A and means m, the
+amplitude is at most sum A and the peak at most sum A + sum m, and a / S_e + m / S_m = a (1/S_e - 1/S_m) + (a + m) /
+S_m. Other reductions in strength of the finished bar belong in S_e (Shigley eq. 6-18). Not considered: shear, the shape
+of the eyes beyond their net section, pin bending, friction, out-of-plane bending.
 """
 
 from __future__ import annotations

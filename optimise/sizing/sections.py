@@ -139,7 +139,7 @@ class _Task:
         return self.limit_states(np.exp(sizes).tolist(), [None, None], self.joint_load_terms(sizes))
 
     def joint_load_terms(self, sizes: Array) -> dict[str, float]:
-        """Return the joints' loads of these sizes."""
+        """Return the terms of the joint loads for these sizes."""
         crank, rod = self.bars(sizes)
         joints = joint_loads(replace(self.mechanism, crank=crank, rod=rod), self.linkage)
         return joint_load_terms(joints, self.material, self.limits)

@@ -38,7 +38,7 @@ _LONGEST = 255  # characters in a name; no file system allows longer names
 
 @dataclass(frozen=True)
 class ToolResult:
-    """Answer of a tool. record: for programs. text: for people. is_error: whether the caller must act."""
+    """Answer of a tool. record: for programs. text: for readers. is_error: whether the caller must act."""
 
     record: dict[str, Any]
     text: str

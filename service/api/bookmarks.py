@@ -90,7 +90,7 @@ class BookmarkedDesign(BaseModel):
     numbers: dict[str, float | list[str]] | None = Field(
         examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0}]
     )
-    decision: str = Field(examples=["Decided for Round numbers: the least torque"])
+    decision: str = Field(examples=["Chosen: Round numbers (least torque)"])
     at: float
     cells: Cells
     broken: list[str]

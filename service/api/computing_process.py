@@ -22,7 +22,7 @@ ApplicationFactory = Callable[[], AbstractContextManager[ASGIApp]]
 Question = tuple[dict[str, Any], bytes]
 """Scope and body of a request."""
 NICENESS = 5
-"""Niceness while answering: below requests that only read, above the workers."""
+"""Niceness while answering: lower priority than requests that only read, higher than the workers."""
 OUT_OF_TIME = -27 if os.name == "nt" else -signal.SIGPROF
 """Exit code of a process that exceeded the processor time for an answer."""
 _IDLE = 600.0  # s without a request until the process ends and frees its memory

@@ -209,7 +209,7 @@ def pick_design(
         str | None,
         Query(
             max_length=2000,
-            description="by ranked objectives, each with what it may give up for the next: "
+            description="objectives in order of rank, each with the amount that it may lose to improve the next: "
             '"peak_torque: 5 %, time_ratio: 0.02, transmission_angle"; % is of its range',
         ),
     ] = None,

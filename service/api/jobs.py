@@ -44,7 +44,7 @@ def list_jobs(
     ] = None,
     limit: Annotated[int, Query(ge=1, le=1000, description="maximum number of jobs"), PLAIN_DIGITS] = 100,
     sort: Annotated[
-        Order, Query(description="state: waiting and running ones first; decided: those decided first")
+        Order, Query(description="state: waiting and running ones first; decided: jobs with a decision first")
     ] = "newest",
 ) -> dict[str, Any]:
     """Return jobs with a few fields each: `/jobs/{number}` returns all fields of one, `/front-points` small fronts."""

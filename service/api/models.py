@@ -115,7 +115,7 @@ class JobRow(ResponseModel):
     events: Count = Field(description="the number of its last event")
     progress: RowProgress | None = Field(description="progress while it runs")
     summary: RowSummary | None
-    decision: str | None = Field(None, description="name of the design decided for", examples=["Round numbers"])
+    decision: str | None = Field(None, description="name of the chosen design", examples=["Round numbers"])
 
 
 class JobStateModel(JobRow, title="Job"):

@@ -1,4 +1,4 @@
-"""Published cases with the values of the model, and as tables for people."""
+"""Published cases with the values of the model, and as human-readable tables."""
 
 from __future__ import annotations
 

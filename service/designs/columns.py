@@ -22,7 +22,7 @@ _MOST = 12  # maximum number of keys in a message
 
 @dataclass(frozen=True)
 class Column:
-    """Table column. key: key in JSON and CSV. title: title for people. factor: one SI unit in its unit.
+    """Table column. key: key in JSON and CSV. title: human-readable title. factor: one SI unit in its unit.
 
     plain: factor from a number without a unit to the column's unit, such as 25.4 for `crank_mm` entered as `crank_in`;
     None if the column has a unit but the name does not. group: group under which it is shown.

@@ -30,7 +30,7 @@ def with_better_arrow(title: str, better: int) -> str:
 
 @dataclass(frozen=True)
 class Mark:
-    """Marked design. row: row in the front's table. names: its figure files. labels: for people. size: in points."""
+    """Marked design. row: row in the front's table. names: its figure files. labels: as shown. size: in points."""
 
     row: int
     names: tuple[str, ...]

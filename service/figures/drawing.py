@@ -1,4 +1,4 @@
-"""Mechanism drawn to scale for people: the linkage of `service.drawings`, with annotations."""
+"""Mechanism drawn to scale for readers: the linkage of `service.drawings`, with annotations."""
 
 from __future__ import annotations
 

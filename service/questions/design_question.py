@@ -162,7 +162,7 @@ class BoundQuestion:
         return converted
 
     def blocks(self, numbers: dict[str, Any]) -> list[Block]:
-        """Return metric numbers as blocks for people."""
+        """Return metric numbers as human-readable blocks."""
         result_blocks: list[Block] = self._analysis_module.blocks(numbers)
         return result_blocks
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """Answer to a question. record: numbers for JSON, by unit system. blocks: for people. message: its summary.
+    """Answer to a question. record: numbers for JSON, by unit system. blocks: human-readable. message: its summary.
 
     is_satisfied: whether the request was met. search_result: result of the search, for further use by a command.
     """

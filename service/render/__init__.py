@@ -1,1 +1,1 @@
-"""Answers for people: blocks whose numbers keep their kind, and their rendering as text in a unit system."""
+"""Human-readable answers: blocks whose numbers keep their kind, and their rendering as text in a unit system."""

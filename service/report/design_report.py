@@ -36,7 +36,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
         tolerances = swing.tolerances()
     return Report(
         title=f"{subject.result.name}: {subject.name}",
-        subtitle=f"{'Decided design' if is_decided else 'Design report'} for review; run {subject.run}",
+        subtitle=f"{'Chosen design' if is_decided else 'Design report'} for review; run {subject.run}",
         date=when,
         sections=(
             _summary_section(subject),

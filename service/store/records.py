@@ -21,12 +21,12 @@ LIMITS = ("most_seconds", "most_evaluations", "most_memory")
 NOT_DONE = "cancelled before it was done"
 _DECISIONS = select(bookmarks.c.name).where(bookmarks.c.job == jobs.c.id, bookmarks.c.decided).limit(1)
 DECISION = _DECISIONS.correlate(jobs).scalar_subquery()
-"""Name of the design decided for in a job."""
+"""Name of the chosen design of a job."""
 JOB_COLUMNS = (
     *(column for column in jobs.c if column.name not in ("tables", "result", "checksum")),
     DECISION.label("decision"),
 )
-"""Columns for a list of jobs: all but the long ones, and the name of the design decided for."""
+"""Columns for a list of jobs: all but the long ones, and the name of the chosen design."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +83,7 @@ class Job:
     lease_until: worker and end of lease of a running job. records: number of records to continue from. events: number
     of events. progress: fields of the latest `Progress`, or None; includes `front` if the search reported one, see
     `Claim.report`. summary: summary of its result, see `serialisation.summary_of`, or None. origin: number of the job
-    from which it was copied, or None. decision: name of the design decided for, or None.
+    from which it was copied, or None. decision: name of the chosen design, or None.
     """
 
     id: int

@@ -64,8 +64,8 @@ class Bookmark:
 
     def decision(self, faults: Sequence[str]) -> str:
         """Return the decision for this design in words, with its reason and faults; empty without a decision."""
-        reason = f": {self.reason}" if self.reason else ""
-        return "; ".join((f"Decided for {self.name}{reason}", *faults)) * self.decided
+        reason = f" ({self.reason})" if self.reason else ""
+        return "; ".join((f"Chosen: {self.name}{reason}", *faults)) * self.decided
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:

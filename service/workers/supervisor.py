@@ -23,7 +23,7 @@ _REASONS = {
     0: "it left",
     EXHAUSTED: "its job used more memory than allowed",
     DEAF: "its job did not stop when asked to",
-    STALE: "earlier jobs left too little memory in it",
+    STALE: "earlier jobs left it too little memory",
     REFUSED: "it could not start working, see above",
 }
 """Why a process ended, by exit code."""

@@ -123,7 +123,7 @@ def _first_line() -> bytes:
 def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
     """Stop when standard input ends, and exit after the grace time: the supervisor may have ended.
 
-    This even ends states that its heartbeat cannot stop, such as a database that does not answer.
+    This ends even hangs that the heartbeat cannot end, for example if a database does not answer.
     """
     while os.read(0, 64):
         pass

@@ -110,7 +110,7 @@ def test_no_designs_have_no_averages() -> None:
 
 
 def near_locking(design: Array, column: int | None = None) -> Array:
-    """Return mean torque, RMS torque and RMS shaking force of `HEAVY`, (3,), or their derivatives by a dimension.
+    """Return mean torque, RMS torque and RMS shaking force of `HEAVY`, (3,), or one column of their gradients.
 
     By energies, over the crank angle psi from where the rod stands most across, psi = w sinh(u): the integrand's poles
     at +-i w are then half a turn of u away. No digits are lost, since l - |across| = gap + 2 r sin^2(psi / 2).

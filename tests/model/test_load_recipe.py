@@ -65,7 +65,7 @@ def test_a_load_in_one_file_is_taken_up_by_kernels_and_job_files(pytestconfig: p
 def test_a_table_whose_build_takes_other_names_is_refused_where_it_is_declared() -> None:
     """Otherwise a job with such a load ends in a TypeError."""
     resistance = Entry("resistance", "Resistance", "force at 1 m/s", "20 N")
-    with pytest.raises(ValueError, match="got resistance, which that of Drag does not take, and no coefficient"):
+    with pytest.raises(ValueError, match="got resistance, which Drag does not take, and no coefficient"):
         Table("resistance", "Drag", "drag", "A drag.", (resistance,), {}, Viscous)
     table = Table("resistance", "Drag", "drag", "A drag.", (resistance,), {}, built(Viscous, resistance="coefficient"))
     assert table.build(resistance=20.0) == Viscous(coefficient=20.0)

@@ -62,7 +62,7 @@ def body(link: Link, length: Any) -> Body:
 
 @dataclass(frozen=True)
 class Path:
-    """Slider position x with its first two derivatives by crank angle, and the rod's direction with its own."""
+    """Slider position x and the rod's direction, each with two derivatives with respect to crank angle."""
 
     sine: Any
     cosine: Any

@@ -92,10 +92,10 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
         ({"crank_angle_deg": [0.0], "torque_Nm": [[1.0]]}, "columns must be lists of equal length"),
         ({"crank_angle_deg": [math.inf], "torque_Nm": [1.0]}, "at most 1e+09 rad in size; got inf in row 1"),
         ({"crank_angle_deg": [0.0, 1.0], "slider_position_mm": [1.0, 1e99]}, "at most 10000 m in size; got 1e+99 in"),
-        ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "got none in 'torque_Nm'; fill them in"),
+        ({"crank_angle_deg": [0.0, math.nan], "torque_Nm": [math.nan, 1.0]}, "got none in 'torque_Nm'; add values"),
         (
             {"crank_angle_deg": [], "torque_Nm": []},
-            "a curve must have a number in a row with a crank angle; got none in",
+            "a curve must have numbers in at least one row with a crank angle; got none in",
         ),
         ({"crank_angle_deg": [0.0], "load_N": [1.0]}, "'load_N' is not defined for this machine: it needs loads"),
         (

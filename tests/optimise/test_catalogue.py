@@ -125,7 +125,7 @@ def test_a_job_says_how_many_rows_are_solved_and_names_the_file(tmp_path: Path) 
 
 def test_a_file_has_no_place_in_tables_of_a_request() -> None:
     tables = {"name": "motor", "file": "gearmotors.csv"}
-    with pytest.raises(JobError, match="a file must lie beside the job file"):
+    with pytest.raises(JobError, match="a file must be in the folder of the job file"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [tables]})
     with pytest.raises(JobError, match="must have two options or more, or a file; got 0"):
         parse_job({"name": "x", "mechanism": {"speed": "1 rpm"}, "choice": [{"name": "motor"}]})
@@ -173,7 +173,7 @@ ROW = "A,10,5,1"
             'column "mechanism.slider.mas (kg)": must name a number that the job gives; got mechanism.slider.mas; did ',
         ),
         ("name,sections.pins.crank_pin (mm)\nA,1", "got sections.pins.crank_pin; give it in [sections] first"),
-        (f"{HEADER}\n=A1,10,5,1", "1 to 60 characters on one line, none of = + @ first"),
+        (f"{HEADER}\n=A1,10,5,1", "1 to 60 characters on one line that does not begin with =, + or @"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_told_with_row_column_and_remedy(text: str, words: str, tmp_path: Path) -> None:
@@ -234,14 +234,14 @@ def test_files_that_cannot_be_are_refused(tmp_path: Path) -> None:
     job = written(tmp_path, "")
     with (tmp_path / "gearmotors.csv").open("wb") as file:
         file.truncate(50_000_000)
-    with pytest.raises(JobError, match="must have at most 10 MB; got more; keep only the rows"):
+    with pytest.raises(JobError, match="must be at most 10 MB in size; got more; keep only the rows"):
         load_job(job)
     (tmp_path / "gearmotors.csv").unlink()
     with pytest.raises(JobError, match="not found; check the name and the folder"):
         load_job(job)
     for elsewhere in ("/etc/passwd", "../gearmotors.csv"):
         job.write_text(JOB.replace("gearmotors.csv", elsewhere))
-        with pytest.raises(JobError, match="must lie beside the job file"):
+        with pytest.raises(JobError, match="must be in the folder of the job file"):
             load_job(job)
     many = "\n".join(f"M {k},{k + 1},{1000 - k}" for k in range(MOST_OPTIONS + 1))
     with pytest.raises(JobError, match="at most 200 non-dominated rows; got 201 of 201"):

@@ -59,8 +59,8 @@ def best_transmission_angle(ratio: float) -> float:
 
         cos(mu) = (r + e) / l = (s c + 1 - c^2 - s^2) / (cos(b / 2) sin(x)).
 
-    Its derivative by x vanishes where c^3 - (1 + s^2) c + s = (c - s)(c^2 + s c - 1) = 0. The root c = s is the locked
-    linkage, mu = 0; the other, c = (sqrt(s^2 + 4) - s) / 2, is the optimum, where sin(x)^2 = s c and
+    Its derivative with respect to x vanishes where c^3 - (1 + s^2) c + s = (c - s)(c^2 + s c - 1) = 0. The root c = s
+    is the locked linkage, mu = 0; the other, c = (sqrt(s^2 + 4) - s) / 2, is the optimum, where sin(x)^2 = s c and
 
         cos(mu) = sqrt(s / c) (2 c - s) / cos(b / 2).
     """

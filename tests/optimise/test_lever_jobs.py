@@ -164,7 +164,7 @@ def test_a_certificate_says_that_a_lever_has_none() -> None:
         (lever(cylinder={"stroke": "700 mm"}), "cylinder: the stroke of a single-stage cylinder must be less than"),
         (
             lever(mechanism={"frame_angle": "20 deg"}),
-            "motion: no design within the ranges makes the swing of the lever from -20 to 50 deg",
+            "motion: no design within the ranges swings the lever from -20 to 50 deg",
         ),
     ],
 )

@@ -295,7 +295,7 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
         "load #1, trace.csv: 2 rows of Winkel [°], Kraft [N]; first 0, -2; last 90, 1000.5; separated by semicolons; "
         "decimal comma"
     ]
-    with pytest.raises(JobError, match="load #1: a file must lie beside the job file, or be sent with the job"):
+    with pytest.raises(JobError, match="load #1: a file must be in the folder of the job file, or be sent"):
         parse_job(job({"file": "trace.csv"}))
     with pytest.raises(
         JobError, match=re.escape('load #1.file: "a.csv" not found among the files sent with the job (b.csv)')

@@ -114,7 +114,7 @@ BROKEN = {
     "ends": ("import os\ndef judge(d):\n    os._exit(7)\n", "not end the process; it ended with code 7"),
     "exits": ("import sys\ndef judge(d):\n    sys.exit(0)\n", r"SystemExit: 0 \(judges.py:3\)"),
     "nan": ("def judge(d):\n    return d.crank * float('nan')\n", "got nan for crank"),
-    "not there": ("def other(d):\n    return d.crank\n", "function in a module beside the job file .* AttributeError"),
+    "not there": ("def other(d):\n    return d.crank\n", "a module in the folder of the job file .* AttributeError"),
     "no function": ("judge = 3\n", "be a function; got int"),
     "syntax": ("def judge(d:\n", "SyntaxError"),
 }
@@ -130,7 +130,7 @@ def test_a_broken_function_fails_the_run_and_nothing_else(text: str, said: str, 
 
 def test_a_missing_module_is_named(tmp_path: Path) -> None:
     problem = parse_job(job({"function": "nowhere:judge"}), folder=tmp_path)
-    with pytest.raises(InputError, match="module beside the job file or installed; got ModuleNotFoundError"):
+    with pytest.raises(InputError, match="module in the folder of the job file or installed; got ModuleNotFoundError"):
         solve(problem)
 
 

@@ -354,7 +354,7 @@ def test_allowed_misses_and_ranges_in_python_that_were_meant_in_mm_are_warned_of
     with pytest.warns(InputWarning) as found:
         front.rounded(0, 0.001, allow={"stroke": 0.2}, count=1)
     assert [(str(warning.message), warning.filename) for warning in found] == [
-        ("allowed misses are in SI: stroke 0.2 is 0.2 m = 200 mm; write 0.0002 for 0.2 mm", __file__)
+        ("allowed deviations are in SI: stroke 0.2 is 0.2 m = 200 mm; write 0.0002 for 0.2 mm", __file__)
     ]
     for allowed in (0.0002, "0.2 mm", "20 mm", 0.015):
         front.rounded(0, 0.001, allow={"stroke": allowed}, count=1)

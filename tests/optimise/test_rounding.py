@@ -358,14 +358,14 @@ def test_a_stroke_that_may_be_missed_a_little_is_met() -> None:
     ("allow", "words"),
     [
         ({"strok": "0.1 mm"}, 'may be missed: stroke, transmission_angle; got "strok"; name one of them'),
-        ({"stroke": "0.1"}, "the allowed miss of stroke must be a length with its unit"),
-        ({"stroke": "1 deg"}, "the allowed miss of stroke must be a length"),
-        ({"stroke": 0.0}, "the allowed miss of stroke must be positive; got 0.0"),
-        ({"stroke": "-1 mm"}, "the allowed miss of stroke must be positive"),
-        ({"stroke": float("nan")}, "the allowed miss of stroke must be a finite number"),
-        ({"stroke": True}, "the allowed miss of stroke must be a length; got true"),
+        ({"stroke": "0.1"}, "the allowed deviation of stroke must be a length with its unit"),
+        ({"stroke": "1 deg"}, "the allowed deviation of stroke must be a length"),
+        ({"stroke": 0.0}, "the allowed deviation of stroke must be positive; got 0.0"),
+        ({"stroke": "-1 mm"}, "the allowed deviation of stroke must be positive"),
+        ({"stroke": float("nan")}, "the allowed deviation of stroke must be a finite number"),
+        ({"stroke": True}, "the allowed deviation of stroke must be a length; got true"),
         ({"stroke": 1e-4, "stroke_mm": 1e-4}, "got two for stroke"),
-        ("stroke=0.1 mm", "allowed misses must be a dict by quantity"),
+        ("stroke=0.1 mm", "allowed deviations must be a dict by quantity"),
     ],
 )
 def test_a_wrong_allowance_is_refused(allow: Any, words: str) -> None:

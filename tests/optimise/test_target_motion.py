@@ -135,9 +135,9 @@ def test_a_file_of_too_many_points_is_named_with_what_to_do(tmp_path: Path) -> N
 def test_a_file_elsewhere_is_refused(tmp_path: Path) -> None:
     for file in ("../motion.csv", "/etc/passwd"):
         (tmp_path / "job.toml").write_text(TOML.replace("motion.csv", file))
-        with pytest.raises(JobError, match="must lie beside the job file"):
+        with pytest.raises(JobError, match="must be in the folder of the job file"):
             load_job(tmp_path / "job.toml")
-    with pytest.raises(JobError, match="a file must lie beside the job file"):
+    with pytest.raises(JobError, match="a file must be in the folder of the job file"):
         parse_job(job({"file": "motion.csv"}, {"motion_deviation": "minimise"}))
 
 

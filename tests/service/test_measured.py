@@ -206,7 +206,7 @@ def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monke
     sheet.write_bytes(b"PK\x03\x04\x14\0")
     for file, words in (
         (tmp_path, "must be a file; got a folder"),
-        (large, "must have at most 0.001 MB; got more"),
+        (large, "must be at most 0.001 MB in size; got more"),
         (tmp_path / "none.csv", "not found; check the name"),
         (sheet, "must be a CSV text file; got a spreadsheet or other binary file; save"),
     ):

@@ -47,7 +47,7 @@ def test_words_of_a_wish_and_of_classes(kept: Path, command: Command) -> None:
     shown = command("wish", "latest", "--runs", kept, *at({"time_ratio": "1.0", "transmission_angle": "1 deg"}))
     assert shown.exit_code == 0, shown.output
     assert "The wish can be met and exceeded in every objective:" in shown.stdout
-    assert "better than the 1 deg wished" in shown.stdout
+    assert "better than the desired 1 deg" in shown.stdout
     assert "stationary: residual" in shown.stdout
     least = front[2]["least_transmission_angle_deg"] - 1.0
     classes = {"time_ratio": "improve", "transmission_angle": f"may worsen to {least!r} deg"}

@@ -124,8 +124,8 @@ class Table:
         unknown = keys - named if len(named) == len(parameters) else set()
         if unknown or needed - keys:
             raise ValueError(
-                f"a load table's build function must take its entries by name; got {_listed(unknown)}, which that "
-                f"of {self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
+                f"a load table's build function must take its entries by name; got {_listed(unknown)}, which "
+                f"{self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
                 "built(kind, key='field')"
             )
 

@@ -50,7 +50,7 @@ def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
 
 
 def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
-    """Return the forces in a table without zeros at its ends that a step separates from the others."""
+    """Return the forces in a table, without a zero at either end that is followed or preceded by a step."""
     first = int(forces[0] == 0.0 and at[0] == at[1])
     last = int(forces[-1] == 0.0 and at[-1] == at[-2])
     return forces[first : len(forces) - last] or forces

@@ -53,7 +53,7 @@ def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, si
 
 
 _SLOW = (
-    "cancelled; custom functions were too slow to report the designs found so far, which are kept for when the "
+    "cancelled; custom functions were too slow to report the designs found so far; they are kept until the "
     "run continues"
 )
 

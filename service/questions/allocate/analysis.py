@@ -176,7 +176,7 @@ def figure(
 
 
 def blocks(numbers: Tolerances) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
     rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
     rows.append(("together", "", value_from_record(numbers, "cost", digits=5), "", _job_cost_text(numbers)))

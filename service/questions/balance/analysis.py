@@ -101,7 +101,7 @@ def _shaking_curves_of(
 
 
 def blocks(numbers: Shaking) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     lines: list[NamedNumber] = []
     for name, unit, _ in _CURVES:
         for statistic in ("peak", "rms"):

@@ -130,7 +130,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, run: ClearanceRun | None 
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
-    """Return the statistics for people."""
+    """Return the statistics in human-readable form."""
     head = heading(
         f"Radial clearance {{size}} at the {numbers['joint']} (contact law: {numbers['law']})",
         size=value_from_record(numbers, "radial_clearance_mm"),

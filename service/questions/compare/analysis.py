@@ -217,7 +217,8 @@ def _verdict_blocks(solved: Sequence[ComparedRun], comparison: Comparison) -> li
     for a, b in combinations(range(len(names)), 2):
         first, second = (a, b) if comparison.dominates[a, b] else (b, a)
         if comparison.dominates[first, second]:
-            sentences.append(f"{names[first]} dominates {names[second]}: it matches or beats all its designs.")
+            winner, loser = names[first], names[second]
+            sentences.append(f"{winner} dominates {loser}: it matches or beats every design of {loser}.")
         elif comparison.coverage[a, b] == comparison.coverage[b, a] == 1.0:
             sentences.append(f"{names[a]} and {names[b]} have the same front, within the tolerance.")
         else:

@@ -171,7 +171,7 @@ def _shaking_numbers(shaking: Shaking) -> ShakingNumbers:
 
 
 def blocks(numbers: BalanceNumbers) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     mass, radius, angle = (
         value_from_record(numbers, f"counterweight_{key}") for key in ("kg", "radius_mm", "angle_deg")
     )

@@ -110,7 +110,7 @@ def _degrees(extreme: Extreme) -> float | None:
 
 
 def blocks(numbers: Cylinders) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     remarks: dict[str, Text] = {
         "peak_torque_Nm": remark_with_value(numbers["cylinders"][0], "peak_torque_Nm", "of the first cylinder"),
         **dict.fromkeys(("least_torque_Nm", "greatest_torque_Nm"), ""),

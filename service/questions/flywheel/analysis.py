@@ -82,7 +82,7 @@ def _fluctuation_without_flywheel(
 
 
 def blocks(numbers: Flywheel) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     inertia, steady = numbers["flywheel_kgm2"], numbers["steady"]
     purpose = f"for a speed fluctuation of {numbers['wanted_fluctuation']:g}"
     needed = sentence(

@@ -131,7 +131,7 @@ def _locking_verdict(holds: float | None) -> Verdict:
 
 
 def blocks(numbers: FrictionNumbers) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     locked_ranges = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
     heats = {
         "guide": numbers["guide_heat_J"],

@@ -83,7 +83,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
 
 
 def blocks(numbers: Indicator) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     result_blocks: list[Block] = []
     for cylinder in numbers["cylinders"]:
         lines: list[NamedNumber] = [

@@ -26,7 +26,7 @@ UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank sp
 
 
 Given = Annotated[float | None, Note("as it was given; null if it was not")]
-Rate = Annotated[float | None, Note("null without that of the slider, and where a dead centre leaves it undefined")]
+Rate = Annotated[float | None, Note("null if the slider's rate is not given or a dead centre leaves it undefined")]
 
 
 class Solution(Record):
@@ -129,7 +129,7 @@ def _degrees(angle: float) -> str:
 
 
 def blocks(record: CrankAngles) -> list[Block]:
-    """Return the slider's motion and the crank angles, for people."""
+    """Return the slider's motion and the crank angles, in human-readable form."""
     motion = {key: value_from_record(record, key) for key in _GIVEN}
     motion_texts = [
         words(f"{kind_of_key(key)[0].removeprefix('slider_')} {{value}}", value=value)

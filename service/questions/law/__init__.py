@@ -73,7 +73,7 @@ QUESTION = DesignQuestion(
         Input(
             "window_speed",
             SPEED,
-            "Slider speed within it, at most",
+            "Slider speed in the window, at most",
             "Greatest speed of the slider within the working window.",
             sign="positive",
             example="80 mm/s",

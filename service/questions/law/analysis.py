@@ -115,7 +115,7 @@ def notes(numbers: LawNumbers) -> list[str]:
 
 
 def blocks(numbers: LawNumbers) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     even = "at constant speed"
     lines: list[NamedNumber] = [
         named_number(numbers, "peak_torque_Nm", remark_with_value(numbers, "peak_torque_at_constant_speed_Nm", even)),

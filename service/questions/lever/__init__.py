@@ -35,7 +35,7 @@ QUESTION = DesignQuestion(
         Input(
             "centre",
             LENGTH,
-            "Place of the carried mass along the lever",
+            "Position of the carried mass along the lever",
             "Distance of the carried mass from O along the lever.",
             example="0.7 m",
         ),

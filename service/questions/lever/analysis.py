@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 _TELESCOPIC = (
     "no single-stage cylinder is {longest:.6g} mm long open and {shortest:.6g} mm closed: its stroke is less than "
-    "its closed length; move a pivot, swing less far, or use a telescopic cylinder"
+    "its closed length; move a pivot, reduce the swing, or use a telescopic cylinder"
 )
 _IDLE = "the cylinder never has to push or pull: nothing has weight or is accelerated; give a mass, or gravity"
 _BUCKLING = "buckling: Euler, both ends pinned, the whole length as slender as the piston rod, of steel"
@@ -201,7 +201,7 @@ def _notes(mechanism: Mechanism, request: LeverRequest, summary: LeverSummary) -
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:
-    """Return the numbers of a metric record for people."""
+    """Return the numbers of a metric record in human-readable form."""
     how = "slowly" if record["law"] == "slow" else f"by the law {record['law']}, {record['duration_s']:g} s each way"
     skipped = ("law", "duration_s", "single_stage", "notes")
     keys = [key for key in record if key not in skipped and "_at_lever" not in key and "_at_length" not in key]

@@ -114,7 +114,7 @@ def _reflected_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> An
 
 
 def blocks(numbers: Motor) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     remarks = {
         "rms_torque_Nm": "over time; determines motor heating",
         "mean_torque_Nm": "over the crank angle",

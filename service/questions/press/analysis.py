@@ -143,7 +143,7 @@ def _require_stroke(distance: float, stroke: float) -> None:
 
 
 def blocks(numbers: Press) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     origin = "the peak torque of this design" if numbers["torque_is_peak_of_design"] else ""
     lines: list[NamedNumber] = [
         named_number(numbers, "rated_torque_Nm", origin),

@@ -80,7 +80,7 @@ def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float
 
 
 def blocks(numbers: Delivery) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     remarks = {
         "flow_L_min": "mean over a turn; gas volume at suction pressure",
         "flow_ripple": "maximum minus minimum liquid flow, relative to its mean",

@@ -71,7 +71,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
 
 
 def blocks(numbers: Sections) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
 
     def size(bar: str) -> Sentence:
         sides = {side: value_from_record(numbers, f"{bar}_{side}_mm", digits=4) for side in ("width", "depth")}

@@ -81,7 +81,7 @@ def in_units(numbers: Sensitivity, system: System) -> dict[str, Any]:
 
 
 def blocks(numbers: Sensitivity) -> list[Block]:
-    """Return the answer for people: changes per mm or inch, in percent per percent, and for the tolerances."""
+    """Return in human-readable form: changes per mm or inch, in percent per percent, and for the tolerances."""
     rows: list[tuple[Text, ...]] = []
     tolerance_rows: list[tuple[Text, ...]] = []
     kinks, plain = False, [*_LEFT_OUT, *(name for name, quantity in QUANTITIES.items() if quantity.plain)]

@@ -132,7 +132,7 @@ def steady_numbers(running: SteadyRunning) -> SteadyNumbers:
 
 
 def blocks(numbers: Start) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     titles = {
         "final_speed_rpm": "speed reached",
         "peak_motor_torque_Nm": "peak motor torque at the crank",

@@ -125,7 +125,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
 
 
 def blocks(numbers: StaticForces) -> list[Block]:
-    """Return the forces every 30 deg and the peaks, for people."""
+    """Return the forces every 30 deg and the peaks, in human-readable form."""
     columns = {
         "crank_angle_deg": column("crank angle", ANGLE),
         "load_N": column("load", FORCE),

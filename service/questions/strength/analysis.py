@@ -118,7 +118,7 @@ def _bar_extremes(mechanism: Mechanism, linkage: Linkage, name: str) -> dict[str
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     titles = {stem.field: stem.title for stem in QUANTITIES.values()}
     lines = [(titles[key], value_from_record(numbers, key), "") for key in numbers if key in titles]
     rows: list[tuple[Text, ...]] = []

@@ -264,7 +264,7 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
 
 
 def blocks(record: Mapping[str, Any]) -> list[Block]:
-    """Return the numbers of a metric record, and the extremes of its curves, for people."""
+    """Return the numbers of a metric record, and the extremes of its curves, in human-readable form."""
     title = heading("Extreme values over both strokes, with continuous crank angles")
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 

@@ -174,7 +174,7 @@ def _error_histogram(greatest: np.ndarray) -> Histogram | None:
 
 
 def blocks(numbers: PositionError) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
 
     def size_and_angle(name: str) -> Text:
         size, angle = (value_from_record(numbers, f"{name}_{unit}", digits=4) for unit in ("mm", "angle_deg"))

@@ -101,7 +101,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
 
 
 def blocks(numbers: dict[str, Any]) -> list[Block]:
-    """Return the answer for people."""
+    """Return the answer in human-readable form."""
     even = "at constant speed"
     rms = joined(["over time", remark_with_value(numbers, "rms_torque_at_constant_speed_Nm", even)])
     lines = [

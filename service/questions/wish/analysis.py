@@ -62,7 +62,7 @@ def wish_in_words(at: Mapping[str, object], row: int | None) -> str:
 
 
 def outcome_sentences(wished: Wished) -> list[Phrase]:
-    """Return whether a wish can be met, then wish and outcome of each objective, for people."""
+    """Return whether a wish can be met, then wish and outcome of each objective, in human-readable form."""
     return [Phrase(*pair) for pair in zip(wished.sentences("metric"), wished.sentences("inch"), strict=True)]
 
 

@@ -29,7 +29,7 @@ class JointForces:
 
 
 def _rotated(angle: complex, point: tuple[float, float]) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Return a body's point in the plane relative to its centre, and its derivative by the angle."""
+    """Return a body's point in the plane relative to its centre, and its derivative with respect to the angle."""
     sine, cosine = np.sin(angle), np.cos(angle)
     turned = np.array([cosine * point[0] - sine * point[1], sine * point[0] + cosine * point[1]])
     return turned, np.array([-turned[1], turned[0]])

@@ -141,8 +141,8 @@ def test_a_swing_across_a_dead_point_or_to_where_the_line_does_not_reach_is_refu
             "got 340 deg to 50 deg; angles must be written without wrapping at a full turn: write -20 deg for 340 deg",
         ),
         (-20.0, 410.0, "write 50 deg for 410 deg"),
-        (-40.0, 140.0, "less than 180 deg, .*; got -40 deg to 140 deg; swing less far"),
-        (0.0, 360.0, "got 0 deg to 360 deg; swing less far"),
+        (-40.0, 140.0, "less than 180 deg, .*; got -40 deg to 140 deg; reduce the swing"),
+        (0.0, 360.0, "got 0 deg to 360 deg; reduce the swing"),
     ],
 )
 def test_no_frame_allows_half_a_turn_but_other_angles_may_state_the_same_ends(

@@ -28,7 +28,7 @@ def best_angle() -> float:
     """Return the greatest least transmission angle, deg, in closed form over the only unknown, the crank.
 
     With b = pi (Q - 1) / (Q + 1): l^2 (1 - cos b) + r^2 (1 + cos b) = S^2 / 2, e = (l^2 - r^2) sin(b) / S, and
-    cos(mu) = (r + e) / l, which is least where its derivative by the crank vanishes.
+    cos(mu) = (r + e) / l, which is least where its derivative with respect to the crank vanishes.
     """
     b = math.pi * (RATIO - 1.0) / (RATIO + 1.0)
 

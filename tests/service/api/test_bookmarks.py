@@ -67,7 +67,7 @@ def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solv
     first = kept(client, solved, design=2, name="Stock", note="rod from stock", star=True)
     dimensions = {key: first["cells"][key] for key in LENGTHS}  # the design again, as a table gives it
     again = kept(client, solved, dimensions=dimensions, decided=True, reason="least torque")
-    expected = first | {"decided": True, "reason": "least torque", "decision": "Decided for Stock: least torque"}
+    expected = first | {"decided": True, "reason": "least torque", "decision": "Chosen: Stock (least torque)"}
     assert again == expected
     other = kept(client, solved, design=3, name="Longer", decided=True)
     assert client.get(f"{solved.path}/kept").json()["designs"] == [first | {"reason": "least torque"}, other]
@@ -75,10 +75,10 @@ def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solv
 
 def test_a_decision_names_the_requirements_that_the_design_misses(client: httpx.Client, solved: Solved) -> None:
     met = kept(client, solved, design=2, name="Met", decided=True)
-    assert met["decision"] == "Decided for Met"
+    assert met["decision"] == "Chosen: Met"
     missed = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", decided=True, reason="stock")
     assert missed["broken"] == ["stroke_mm"]
-    assert missed["decision"] == "Decided for Long: stock; misses stroke; outside the job: rod"
+    assert missed["decision"] == "Chosen: Long (stock); misses stroke; outside the job: rod"
     undecided = kept(client, solved, design=4, dimensions={"rod_mm": 650.0})
     assert undecided["decision"] == ""
 

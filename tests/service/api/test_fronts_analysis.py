@@ -182,7 +182,7 @@ def test_check_says_what_the_command_line_says(solved: Solved, client: httpx.Cli
     ("change", "words"),
     [
         ({"variables": {"crank": ["20 mm", "10 mm"]}}, "variables"),
-        ({"target_motion": {"file": "/etc/passwd"}}, "a file must lie beside the job file, or be sent"),
+        ({"target_motion": {"file": "/etc/passwd"}}, "a file must be in the folder of the job file, or be sent"),
         ({"quantity": {"evil": {"function": "os:system", "unit": "mm", "title": "x"}}}, "quantity.evil"),
         ({"mechanism": {"speed": "nan rpm"}}, "speed"),
     ],

@@ -391,7 +391,7 @@ def test_a_job_that_names_a_file_of_the_service_is_refused(shared: httpx.Client,
     feeder["target_motion"] = {"file": "/etc/passwd"}
     (wrong,) = preview(shared, feeder)["wrong"]
     assert wrong["path"] == "target_motion"
-    assert "a file must lie beside the job file, or be sent" in wrong["sentence"]
+    assert "a file must be in the folder of the job file, or be sent" in wrong["sentence"]
 
 
 def hostile(feeder: Job) -> dict[str, Job]:

@@ -64,7 +64,7 @@ def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client
         ({"to": ["1 mm"], "count": 0}, "body count: must be at least 1; got 0"),
         ({"to": ["1 mm"], "allow": ["stroke=1 %"]}, 'must be a length, not a percentage; got "1 %"; write "'),
         ({"to": ["1 mm"], "allow": ["strok=0.1 mm"]}, "name one of them"),
-        ({"to": ["1 mm"], "allow": ["stroke=0.1"]}, "the allowed miss of stroke must be a length with its unit"),
+        ({"to": ["1 mm"], "allow": ["stroke=0.1"]}, "the allowed deviation of stroke must be a length with its unit"),
         ({"to": ["1 mm"], "allow": ["0.1 mm"]}, "allow must be REQUIREMENT=AMOUNT"),
         ({"to": "1 mm"}, "to"),
         ({}, "to"),

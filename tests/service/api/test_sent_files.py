@@ -51,4 +51,4 @@ def test_a_file_that_is_missing_or_broken_is_refused_in_a_sentence(shared: httpx
     ):
         assert words in refused(shared.post("/check", json={**asked, "files": files}), 422)
     sentence = refused(shared.post("/check", json={"job": asked["job"]}), 422)
-    assert "load #1: a file must lie beside the job file, or be sent with the job (API: files)" in sentence
+    assert "load #1: a file must be in the folder of the job file, or be sent with the job (API: files)" in sentence

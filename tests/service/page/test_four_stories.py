@@ -66,14 +66,14 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     page.get_by_label("Crank, step").press("Enter", timeout=PATIENCE)
     page.get_by_role("button", name="Apply round numbers 1", exact=True).press("Enter", timeout=PATIENCE)
     expect(page.locator("#what-if-crank_mm")).to_have_value(re.compile(r"^\d+(\.5)?$"), timeout=PATIENCE)
-    page.get_by_text("Decide for it", exact=True).press("Enter", timeout=PATIENCE)
+    page.get_by_text("Choose this design", exact=True).press("Enter", timeout=PATIENCE)
     page.keyboard.press("Tab")
     page.keyboard.type("Rounded A")
     page.keyboard.press("Tab")
     page.keyboard.type("round numbers")
     page.keyboard.press("Enter")
     expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
-    expect(page.get_by_text("Decide for it", exact=True)).to_be_focused()
+    expect(page.get_by_text("Choose this design", exact=True)).to_be_focused()
     page.get_by_text("Export", exact=True).press("Enter")
     drawing = ezdxf.readfile(  # type: ignore[attr-defined]
         downloaded(page, page.get_by_role("link", name="DXF", exact=True), tmp_path)
@@ -84,13 +84,13 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     assert "Press for bushings: Rounded A" in report.read_text(encoding="utf-8")
     page.get_by_role("link", name="beside the front").press("Enter")
     head = page.locator(".run-head")
-    expect(head).to_contain_text("Decided for Rounded A: round numbers", timeout=PATIENCE)
+    expect(head).to_contain_text("Chosen: Rounded A (round numbers)", timeout=PATIENCE)
     of_head = downloaded(page, head.get_by_role("link", name="Report of the decision"), tmp_path)
     assert "Press for bushings: Rounded A" in of_head.read_text(encoding="utf-8")
     page.get_by_role("navigation", name="Main").get_by_role("link", name="Runs").press("Enter")
     expect(page.get_by_role("listitem")).to_contain_text("decided for Rounded A", timeout=PATIENCE)
     page.go_back()
-    head.get_by_role("link", name="Decided for Rounded A").press("Enter", timeout=PATIENCE)
+    head.get_by_role("link", name="Chosen: Rounded A").press("Enter", timeout=PATIENCE)
     expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
 
 
@@ -136,9 +136,9 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         typed(theirs.get_by_label("Why, or why not, Design 2"), "fits the old frame")
         with theirs.expect_response("**/kept"):
             theirs.keyboard.press("Tab")
-        theirs.get_by_label("Decided for Design 2").press("Space")
+        theirs.get_by_label("Choose Design 2").press("Space")
         expect(theirs.locator(".decision")).to_contain_text(": fits the old frame", timeout=PATIENCE)
-        expect(mine.locator(".decision")).to_contain_text("Decided for Design 2: fits the old frame", timeout=PATIENCE)
+        expect(mine.locator(".decision")).to_contain_text("Chosen: Design 2 (fits the old frame)", timeout=PATIENCE)
         expect(mine.get_by_role("button", name="Star of Design 2")).to_have_attribute("aria-pressed", "true")
     assert wrong == []
 

@@ -65,8 +65,8 @@ def test_round_numbers_are_those_of_the_api_with_every_miss_as_a_number(
         assert float(str(shown.get_attribute("data-value"))) == miss["amount"] > 0.0
         expect(shown).to_contain_text("mm too low" if miss["side"] == "below" else "mm too high")
     expect(page.locator(".rounding")).to_contain_text("allow a miss of stroke")
-    page.get_by_label("Stroke, allowed miss").fill("0,1")
-    page.get_by_label("Stroke, allowed miss").press("Enter")
+    page.get_by_label("Stroke, allowed deviation").fill("0,1")
+    page.get_by_label("Stroke, allowed deviation").press("Enter")
     expect(page.locator(".rounding")).to_contain_text("keep every requirement within 0.1 mm of stroke")
     expected = asked_of(opened[1], solved.number, DESIGN, to=steps, allow=["stroke=0.1 mm"])
     expect(lines).to_have_count(len(expected))
@@ -77,7 +77,7 @@ def test_round_numbers_are_those_of_the_api_with_every_miss_as_a_number(
 
 def test_applying_one_keeps_the_list_and_the_steps(page: Page, opened: tuple[Page, str], solved: Solved) -> None:
     page.get_by_label("Rod, step").fill("2")
-    page.get_by_label("Stroke, allowed miss").fill("0.2")
+    page.get_by_label("Stroke, allowed deviation").fill("0.2")
     page.get_by_label("Rod, step").press("Enter")
     lines = page.get_by_role("table", name="Round numbers").locator("tbody tr")
     steps = ["crank=0.5 mm", "rod=2 mm", "offset=0.5 mm"]
@@ -90,7 +90,7 @@ def test_applying_one_keeps_the_list_and_the_steps(page: Page, opened: tuple[Pag
         expect(page.locator(".what-if .verdict")).to_contain_text("Misses a requirement: stroke")
         expect(lines).to_have_count(len(expected))
         expect(page.get_by_label("Rod, step")).to_have_value("2")
-        expect(page.get_by_label("Stroke, allowed miss")).to_have_value("0.2")
+        expect(page.get_by_label("Stroke, allowed deviation")).to_have_value("0.2")
         expect(page).to_have_url(re.compile(f"rod_mm={expected[number - 1]['rod_mm']:g}"))
 
 
@@ -148,7 +148,7 @@ def test_a_rounded_width_is_applied_kept_in_the_address_and_taken_back(pages: Pa
     with varied_in(tmp_path) as (store, number), watched(pages, store) as (page, address):
         page.goto(f"{address}/#/jobs/{number}/designs/2")
         page.get_by_label("Rod width, step").fill("7")
-        page.get_by_label("Stroke, allowed miss").fill("0.1")
+        page.get_by_label("Stroke, allowed deviation").fill("0.1")
         page.get_by_label("Rod width, step").press("Enter")
         button = page.get_by_role("button", name="Apply round numbers 1", exact=True)
         button.click(timeout=30_000)

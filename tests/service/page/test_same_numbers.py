@@ -122,7 +122,9 @@ def test_numbers_of_a_wished_design_that_is_kept(opened: tuple[Page, str, str], 
     wished = httpx.post(f"{api}/wish", json={"at": {"time_ratio": "1.3"}}, timeout=60.0).json()
     require_shown(table.locator("[data-value]").evaluate_all(NUMBERS), wished["design"])
     require_python(wished["design"], solved)
-    reached = answer.get_by_role("table", name="Wished and reached").locator("[data-value]").evaluate_all(NUMBERS)
+    reached = (
+        answer.get_by_role("table", name="Desired and reached values").locator("[data-value]").evaluate_all(NUMBERS)
+    )
     assert {key: float(value) for key, value in reached} == {
         one["quantity"]: one["reached"] for one in wished["objectives"]
     }

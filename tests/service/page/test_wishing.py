@@ -67,7 +67,7 @@ def test_the_wished_design_is_that_of_the_api_and_opens(page: Page, opened: tupl
         assert float(str(cell.get_attribute("data-value"))) == one["reached"]
     page.wait_for_url(re.compile(r"wish\.time_ratio=1\.3"))
     page.reload()  # as whoever gets the link sees it
-    panel(page).get_by_role("link", name="Open the wished design").click()
+    panel(page).get_by_role("link", name="Open the resulting design").click()
     expect(page.locator(".what-if .verdict")).to_contain_text(
         "No listed design is better in every objective.", timeout=30_000
     )
@@ -104,7 +104,7 @@ def test_classes_speak_of_a_design_and_wishes_of_anybody_come_back(
     assert answered.value.json()["design"] == first["design"]
     expect(panel(page).get_by_label("Value for least transmission angle")).to_have_value("41")
     panel(page).get_by_role("button", name="Without wishes").click()
-    expect(panel(page).get_by_role("link", name="Open the wished design")).to_have_count(0)
+    expect(panel(page).get_by_role("link", name="Open the resulting design")).to_have_count(0)
 
 
 def test_what_cannot_be_wished_is_said_at_its_field(page: Page) -> None:
@@ -153,5 +153,5 @@ def test_wishing_bars_the_way_of_nobody(page: Page) -> None:
     page.keyboard.type("1.2")
     with page.expect_response("**/wish"):
         page.keyboard.press("Enter")
-    expect(panel(page).get_by_role("link", name="Open the wished design")).to_be_visible()
+    expect(panel(page).get_by_role("link", name="Open the resulting design")).to_be_visible()
     require_accessible(page)

@@ -23,7 +23,7 @@ def test_the_report_of_a_command_has_the_decision_of_the_store(
         run = store.job(solved.number).run
         arguments = ("report", run, "--design", 2, "--runs", runs, "--out", out)
         assert command(*arguments).exit_code == 0
-        assert "Decided for" not in out.read_text(encoding="utf-8")
+        assert "Chosen: " not in out.read_text(encoding="utf-8")
         for name, number in (("Stock rod", 1), ("Least torque", 2)):
             row = solved.result.designs[number - 1]
             crank, rod, offset = (float(row[key] or 0.0) / 1e3 for key in ("crank_mm", "rod_mm", "offset_mm"))
@@ -32,10 +32,10 @@ def test_the_report_of_a_command_has_the_decision_of_the_store(
         update_bookmark(store, solved.number, 2, decided=True, reason="fits the gearmotor")
     assert command(*arguments).exit_code == 0
     text = unescape(re.sub(r"<[^>]+>", " ", out.read_text(encoding="utf-8")))
-    assert "Decided for Least torque: fits the gearmotor." in text
+    assert "Chosen: Least torque (fits the gearmotor)." in text
     assert "too tall" in text
     assert "This report is about another design." not in text
     assert "Short test [job]: Least torque" in text
-    assert "Decided design for review" in text
+    assert "Chosen design for review" in text
     assert command("report", run, "--design", 1, "--runs", runs, "--out", out).exit_code == 0
     assert "This report is about another design." in out.read_text(encoding="utf-8")

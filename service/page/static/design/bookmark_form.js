@@ -1,4 +1,4 @@
-/** Decide for a design, keep it, or search near it. */
+/** Choose a design, keep it, or search near it. */
 
 import { go, link } from "../lib/address.js";
 import { post } from "../lib/api.js";
@@ -47,12 +47,12 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
       button,
     );
     const node = menu(
-      `${verb}${decided ? " for it" : ""}`,
+      decided ? "Choose this design" : verb,
       h("div", { class: "chooser-list panel at-left keeping" }, form),
     );
     return node;
   };
-  const deciding = part("Decide", "reason", "Because");
+  const deciding = part("Choose", "reason", "Because");
   first(deciding, "summary")?.classList.add("primary");
   return h(
     "div",

@@ -46,7 +46,7 @@ export function inverseForm(place, of, { path, job, positions, turnTo, signal })
       h(
         "p",
         { class: "quiet hint" },
-        `The slider of this design is between ${text(low, "mm")} and ${withUnit(high, "mm")} from the crank pivot. Enter a velocity to get the crank speed, and an acceleration too for that of the crank. Slider values are positive along +x, as in the curves above; crank values are positive counter-clockwise.`,
+        `The slider of this design is between ${text(low, "mm")} and ${withUnit(high, "mm")} from the crank pivot. Enter a velocity to get the crank speed, and also an acceleration to get the crank acceleration. Slider values are positive along +x, as in the curves above; crank values are positive counter-clockwise.`,
       ),
     ),
   );

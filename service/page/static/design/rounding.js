@@ -43,7 +43,7 @@ export function rounding(
       label: `${capital(title)}, step`,
       unit,
       value: usual,
-      rule: `The step of the ${title} is a ${kind} above 0${usual && `, such as ${usual}`}; leave it empty to keep the ${kind}.`,
+      rule: `The step of the ${title} must be a ${kind} above 0${usual && `, such as ${usual}`}; leave the field empty to keep the ${kind}.`,
     });
   });
   const [exact, bounds] = [true, false].map((equal) =>
@@ -53,10 +53,10 @@ export function rounding(
         field({
           id: `miss-${column}`,
           name: quantity,
-          label: `${capital(title)}, allowed miss`,
+          label: `${capital(title)}, allowed deviation`,
           unit,
           value: "",
-          rule: `The allowed miss of the ${title} is a value above 0; leave it empty to allow none.`,
+          rule: `The allowed deviation of the ${title} must be above 0; leave the field empty to allow none.`,
         }),
       ),
   );
@@ -82,7 +82,7 @@ export function rounding(
     h(
       "p",
       { class: "quiet hint" },
-      "Finds the best designs with round numbers near this one that meet every requirement, or miss it by no more than you allow. A number without a step stays as it is.",
+      "Finds the best designs with round numbers near this one. They meet every requirement, or deviate by no more than you allow. A number without a step stays as it is.",
     ),
     form,
     answer,

@@ -205,7 +205,7 @@ export function whatIf(
         verdict,
         unread
           ? h("p", { class: "bad", role: "alert" }, unread)
-          : h("p", { class: "quiet" }, "Move a length; everything is recomputed as you move it."),
+          : h("p", { class: "quiet" }, "Change a length; all results are recomputed as you do so."),
       );
       fill(results);
       return;

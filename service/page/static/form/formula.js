@@ -101,7 +101,7 @@ function row(form, table, key, place, asked, what) {
       if (/^\d*$/.test(typed) && typed)
         input.dataset.wrong = "A formula must contain a name, such as crank.";
       else if (typed in /** @type {object} */ (form.at([table]) ?? {}))
-        input.dataset.wrong = `“${typed}” already is an objective or has a bound; change that one.`;
+        input.dataset.wrong = `“${typed}” is already an objective or has a bound; change that entry.`;
       else {
         form.rename([table], before, typed, node);
         spot.path = [table, typed];
@@ -321,7 +321,7 @@ function named(form, name, place) {
       plain(form, [...path, "unit"], {
         control: "text",
         label: "shown in",
-        why: "A unit such as mm; the usual one of its kind if left out.",
+        why: "A unit such as mm; if left out, the usual unit for this kind of quantity is used.",
       }),
       formulaField,
     ),

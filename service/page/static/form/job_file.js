@@ -92,7 +92,7 @@ export function jobFile(form, taken) {
       h(
         "p",
         { class: "quiet" },
-        "Always the same as the form. Write here what has no field in the form.",
+        "Always the same as the form. Enter here anything that has no field in the form.",
       ),
       h("label", { class: "hidden", for: "job-text" }, "Job as JSON"),
       text,
@@ -113,7 +113,8 @@ export function jobFile(form, taken) {
 
 /** @param {File} file @returns {Promise<Form.Job>} */
 async function jobOf(file) {
-  if (file.size > 1e6) throw new Problem(0, "A job file has at most 1 MB; is it the right file?");
+  if (file.size > 1e6)
+    throw new Problem(0, "A job file must be at most 1 MB in size; is it the right file?");
   const content = await file.text();
   if (!/\.json$/i.test(file.name))
     return (await post("parse", content, { headers: { "Content-Type": "application/toml" } })).job;

@@ -63,7 +63,7 @@ export function link(form, path, label) {
       path,
       `mass of the ${label}`,
       [select],
-      "A link given by its mass weighs the same at every length; a bar is heavier the longer it is.",
+      "A link given by its mass has the same mass at every length; the mass of a bar grows with its length.",
     ),
     way === "section"
       ? keys.map((key) =>

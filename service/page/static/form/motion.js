@@ -74,7 +74,7 @@ export function motion(form, turning) {
     options: ["swing"],
     fallback: "rotates fully",
     label: "the crank",
-    why: "It rotates fully at a speed, or swings back and forth between two angles and need not rotate fully.",
+    why: "The crank rotates fully at a given speed, or swings back and forth between two angles.",
     changed: () => form.redraw(),
   });
   if (!swings(form)) return [kind, speed(form), turning];
@@ -104,7 +104,7 @@ export function motion(form, turning) {
       options: others,
       fallback: usual,
       label: "stated by",
-      why: "Two crank angles; one and how far the crank turns, so that the start may vary; or positions of the slider, so that the angle follows from the lengths.",
+      why: "Give two crank angles; one angle and the swing from there, so that the start may vary; or two slider positions, so that the angles follow from the lengths.",
     },
   );
   return [

@@ -44,7 +44,7 @@ export function solving(form) {
         limitField(
           "seconds",
           "time limit (s)",
-          "Time after which the search ends with the designs found so far; without it, the limit of the service holds.",
+          "Time after which the search ends with the designs found so far; if left empty, the limit of the service applies.",
         ),
         limitField(
           "evaluations",

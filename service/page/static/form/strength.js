@@ -71,7 +71,11 @@ export function strength(form) {
             { type: "button", onclick: () => propose(form) },
             "Make pins half as thick as their bars are wide",
           ),
-          h("span", { class: "quiet" }, "a usual start; the narrower of two bars counts"),
+          h(
+            "span",
+            { class: "quiet" },
+            "a common starting point; where two bars meet, the narrower one counts",
+          ),
         ),
     byschema(form, [...PATH, "material"]),
     h(

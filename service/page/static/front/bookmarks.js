@@ -204,7 +204,7 @@ export function bookmarksPanel(explorer) {
           type: "radio",
           name: "decided",
           checked: one.decided,
-          "aria-label": `Decided for ${name}`,
+          "aria-label": `Choose ${name}`,
           "data-act": `decided-${number}`,
           onchange: () => change(number, { decided: true }),
         }),

@@ -120,7 +120,7 @@ export function correlations(explorer) {
               {
                 type: "button",
                 "aria-pressed": String(chosenNow),
-                "aria-label": `Show ${up.title} over ${across.title}, rank correlation ${valueText}`,
+                "aria-label": `Plot ${up.title} against ${across.title}, rank correlation ${valueText}`,
                 onclick: () => explorer.change({ x: across.column, y: up.column }, "all"),
               },
               valueText,

@@ -38,7 +38,7 @@ const ORDER = ["marks", "table", "chosen", "all"];
 
 /**
  * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. files: where the
- * files go that it makes; decision: where it says which design is decided for.
+ * files go that it makes; decision: the place that names the chosen design.
  * @param {HTMLElement} place
  * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, decision: HTMLElement, signal: AbortSignal }} options
  */
@@ -156,7 +156,7 @@ export class Explorer {
         h(
           "p",
           { class: "quiet hint" },
-          "Drag along an axis to set limits; double-click to clear them. Its name opens a menu with the same as fields.",
+          "Drag along an axis to set limits; double-click to clear them. The name of an axis opens a menu with the same limits as fields.",
         ),
         h(
           "div",

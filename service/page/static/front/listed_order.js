@@ -59,7 +59,7 @@ export function linesOf(table, numbers) {
   const wanted = numbers.map((number) => lineOf.get(number));
   if (!head.startsWith("number") || lineOf.size !== lines.length || wanted.includes(undefined))
     throw new Error(
-      "The table of the service does not have one line for each design; download all of it instead.",
+      "The table of the service does not have one line for each design; download the whole table instead.",
     );
   return `${[head, ...wanted].join("\n")}\n`;
 }

@@ -149,7 +149,7 @@ export function scatterPanel(explorer, dots) {
       h("span", {}, low),
       h(
         "span",
-        { class: "shades", title: "viridis: equal steps look alike" },
+        { class: "shades", title: "viridis: equal steps look equally large" },
         inks.map((ink) => patch(ink, true)),
       ),
       h("span", {}, high),

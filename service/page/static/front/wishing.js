@@ -236,7 +236,7 @@ export function wishingPanel(explorer) {
     }
   }
 
-  /** Find the nearest design of the front, and the link to the wished one where only its lengths are others. @param {Api.Row} wished */
+  /** Find the nearest design of the front, and the link to the resulting design if it differs in lengths alone. @param {Api.Row} wished */
   async function locate(wished) {
     await data.need(objectives.map(({ column }) => column));
     near = nearest(wished, objectives, data);
@@ -290,7 +290,7 @@ export function wishingPanel(explorer) {
         "div",
         { class: "row" },
         way
-          ? h("a", { class: "button primary", href: way }, "Open the wished design")
+          ? h("a", { class: "button primary", href: way }, "Open the resulting design")
           : h("span", { class: "quiet" }, "More than the lengths changed; all values are shown."),
         bookmarkForm({
           job: `${job.id}`,
@@ -345,9 +345,9 @@ export function wishingPanel(explorer) {
     });
     const unseen = h("span", { class: "hidden" }, "met");
     return scrolledTable(
-      "Wished and reached",
+      "Desired and reached values",
       headsOf(
-        ["Objective", "wished", "reached", unseen, ["against ", nearby]],
+        ["Objective", "desired", "reached", unseen, ["against ", nearby]],
         (n) => n && n !== 3,
       ),
       lines,
@@ -358,8 +358,8 @@ export function wishingPanel(explorer) {
   function numbers({ columns }, wished) {
     const listedColumns = columns.filter(({ key }) => !key.startsWith("slack_"));
     return scrolledTable(
-      "All numbers of the wished design",
-      headsOf(["Quantity", "wished design", `design ${near}`], (n) => n),
+      "All values of the resulting design",
+      headsOf(["Quantity", "resulting design", `design ${near}`], (n) => n),
       listedColumns.map(({ key, title, unit }) =>
         headedRow(
           title,

@@ -43,7 +43,7 @@ export function watch(place, job, { signal, changed }) {
   const why = h(
     "p",
     { class: "quiet", hidden: true },
-    "The first search after installation compiles the machine model, which takes a minute or two once.",
+    "The first search after installation compiles the machine model; this happens once and takes a minute or two.",
   );
   /** @type {{ x: number, y: number }} */
   const axes = { x: 0, y: 1 };

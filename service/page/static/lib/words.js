@@ -67,7 +67,7 @@ const SAID = [
   [/write kind = "swing"/g, "let the crank swing"],
   [
     /must have two options or more, or a file; got (\d+); add \[\[choice\.option\]\] tables/g,
-    (_, count) => `must have two options or more; got ${count}; paste a table of them`,
+    (_, count) => `must have at least two options; got ${count}; paste a table of them`,
   ],
   [/(?:set )?\[motion\] driver = "(\w+)"/g, (_, end) => `let the ${end} be the driven end`],
   [

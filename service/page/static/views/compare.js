@@ -90,7 +90,7 @@ export async function show(place, { query, signal }) {
 
   /** Describe the design under the pointer. @param {{ n: number, row: number } | null} one */
   function showComparison(one) {
-    if (!one) return fill(readout, "Point at a design to read it; click to open it.");
+    if (!one) return fill(readout, "Point at a design to see its values; click to open it.");
     const { job, data } = runs[one.n];
     fill(
       readout,
@@ -271,7 +271,7 @@ export async function show(place, { query, signal }) {
           h(
             "section",
             { class: "panel", "aria-labelledby": "words-title" },
-            h("h2", { id: "words-title" }, "Which run is better where"),
+            h("h2", { id: "words-title" }, "Where each run is better"),
             words,
           ),
         ),

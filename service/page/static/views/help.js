@@ -31,7 +31,7 @@ const STEPS = [
   ],
   [
     "Decide",
-    "Decide for a design and export it: a drawing for CAD, its numbers, the motion, a report for the review.",
+    "Choose a design and export it: a drawing for CAD, its numbers, the motion, a report for the review.",
     null,
     null,
   ],

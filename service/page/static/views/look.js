@@ -236,7 +236,7 @@ export async function show(place, { query, signal }) {
     h(
       "p",
       { class: "quiet" },
-      "Type three lengths or drag the drawing. The address holds them: share it as a link.",
+      "Type three lengths or drag the drawing. The page address contains them, so you can share it as a link.",
     ),
     h(
       "div",

@@ -71,7 +71,7 @@ async function first(query, shipped, signal) {
   if (around) return begin(jobAround(system(), around.split(",").map(Number)), `around ${around}`);
   if (!preset) return begin(firstJob(system()), "");
   const machine = shipped.find(({ name }) => name === preset);
-  if (!machine) throw new Error(`No shipped job is called "${preset}".`);
+  if (!machine) throw new Error(`No example is called "${preset}".`);
   return begin(machine.job, `preset ${preset}`);
 }
 

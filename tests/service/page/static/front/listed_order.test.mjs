@@ -63,5 +63,5 @@ test("the lines of some designs are those of the table, in the wanted order; wha
     ["crank_mm\n1,10\n", [1]],
     ["number,a\n1,x\n1,y\n", [1]],
   ])
-    assert.throws(() => linesOf(wrong, numbers), /download all/);
+    assert.throws(() => linesOf(wrong, numbers), /download the whole table/);
 });
