@@ -120,10 +120,10 @@ def test_wrong_steps_are_said_at_their_fields(page: Page) -> None:
     step.press("Enter")
     expect(page.get_by_role("table", name="Round numbers")).to_be_visible(timeout=30_000)
     for typed, sentence in (
-        ("0", "is a length above 0"),
-        ("-1", "is a length above 0"),
+        ("0", "must be a length above 0"),
+        ("-1", "must be a length above 0"),
         ("1/0", "divides by zero"),
-        ("wide", "is a length above 0"),
+        ("wide", "must be a length above 0"),
     ):
         step.fill(typed)
         step.press("Enter")
