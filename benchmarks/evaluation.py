@@ -11,7 +11,7 @@ import numpy as np
 
 from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.job import load_job
 
@@ -30,7 +30,7 @@ def evaluate(designs: Array, *, angles: int, crowd: bool) -> tuple[Array, Array]
     for begin in range(0, len(designs), _BLOCK):
         block = slice(begin, begin + _BLOCK)
         part = designs[block]
-        torque, error = screen(MECHANISM, _SIGNALS, part, gradients=True, angles=angles, crowd=crowd)
+        torque, error = screened_maxima(MECHANISM, _SIGNALS, part, gradients=True, angles=angles, crowd=crowd)
         found = (
             evaluate_closed_form(ClosedForm.TIME_RATIO, part, gradients=True),
             (torque.values, torque.gradients),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 
 from .machines import MECHANISM, random_designs
@@ -22,6 +22,6 @@ def accuracy(count: int = 1_000) -> list[Row]:
     for angles in _ANGLES:
         peaks = find_peaks(MECHANISM, Signal.TORQUE, designs, limit=1, angles=angles).values[:, 0]
         rows.append(Row(f"peak search, {angles} angles", [float(np.max(np.abs(peaks / exact - 1.0)))]))
-        quick = screen(MECHANISM, (Signal.TORQUE,), designs, angles=angles)[0].values
+        quick = screened_maxima(MECHANISM, (Signal.TORQUE,), designs, angles=angles)[0].values
         rows.append(Row(f"screening, {angles} angles", [float(np.max(np.abs(quick / exact - 1.0)))]))
     return rows

@@ -62,7 +62,7 @@ def require_kinds(
                 raise InputError(f"{name} of a {type(owner).__name__} must be {expected}; got {value!r}; {remedy}")
 
 
-def keep_tuples(owner: object, *names: str) -> None:
+def store_as_tuples(owner: object, *names: str) -> None:
     """Turn fields given as lists or arrays into tuples, because machines and problems are compared and hashed."""
     for name in names:
         value = getattr(owner, name)

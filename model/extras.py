@@ -39,7 +39,7 @@ class NamingExtra:
             ) from None
 
 
-def required(module: str, use: str) -> Any:
+def import_extra(module: str, use: str) -> Any:
     """Import a module that an extra installs, and return it untyped. use: as in `NamingExtra`."""
     with NamingExtra(use):
         return import_module(module)

@@ -32,12 +32,12 @@ def warn_user(sentence: str, *, through_callers: bool = False) -> None:
         warnings.warn(sentence, InputWarning, stacklevel=level)
 
 
-def both_readings(name: str, number: float, unit: str, usual: str, factor: float) -> str:
+def reading_in_both_units(name: str, number: float, unit: str, usual: str, factor: float) -> str:
     """Return a number as read in SI, and as probably meant in a usual unit.
 
     unit: SI unit. usual: usual unit for such values. factor: one SI unit in the usual unit.
 
-    >>> both_readings("crank", 40.0, "m", "mm", 1e3)
+    >>> reading_in_both_units("crank", 40.0, "m", "mm", 1e3)
     'crank 40 is 40 m = 40000 mm; write 0.04 for 40 mm'
     """
     return (

@@ -48,7 +48,7 @@ def graded_gauss(panels: int, grades: int) -> tuple[Array, Array]:
 
 
 @lru_cache(maxsize=8)
-def legendre_fit(count: int) -> Array:
+def legendre_fit_matrix(count: int) -> Array:
     """Return the matrix (count, count) from values at the Gauss nodes to the coefficients of their Legendre series."""
     nodes, weights = legendre.leggauss(count)
     return np.asarray((np.arange(count) + 0.5)[:, None] * (weights[:, None] * legendre.legvander(nodes, count - 1)).T)
@@ -56,7 +56,7 @@ def legendre_fit(count: int) -> Array:
 
 NODES, WEIGHTS = gauss(DEGREE + 1)
 """Nodes of a panel on [0, 1], and their weights."""
-FIT = legendre_fit(DEGREE + 1)
+FIT = legendre_fit_matrix(DEGREE + 1)
 """Matrix from values at the nodes to the coefficients of a panel's polynomial."""
 INTEGRATED = 0.5 * legendre.legint(np.eye(DEGREE + 1), lbnd=-1.0, axis=0)
 """Matrix from these coefficients to those of the polynomial's integral from the panel's start, on [0, 1]."""
@@ -66,7 +66,7 @@ TAIL = np.ascontiguousarray(FIT[-_TAIL:])
 """Last rows of `FIT`."""
 
 
-def resolved_tail(values: Array) -> Array:
+def last_coefficients_magnitude(values: Array) -> Array:
     """Return the maximum magnitude of the last coefficients (...,) of curves at the nodes of panels (..., 16)."""
     return np.asarray(np.abs(values @ TAIL.T).max(axis=-1, initial=0.0))
 

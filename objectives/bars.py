@@ -53,19 +53,19 @@ STATIC: Criteria = ((1.0, 0.0), (0.0, 1.0))
 """Maximum tension and maximum compression."""
 
 
-class Part(NamedTuple):
+class BarPieces(NamedTuple):
     """Smooth pieces for n designs: values (n, k), gradients (n, k, 3 + v) if requested, labels (n, k)."""
 
     values: Array
     gradients: Array | None
     labels: Array
 
-    def times(self, factor: tuple[Array, Array | None]) -> Part:
+    def times(self, factor: tuple[Array, Array | None]) -> BarPieces:
         """Return the pieces multiplied by a positive closed form (n,) with its gradients."""
         values, slopes = factor
         return self._with_slopes(values[:, None] * self.values, values[:, None], slopes, self.values)
 
-    def dividing(self, factor: tuple[Array, Array | None]) -> Part:
+    def closed_form_divided_by_pieces(self, factor: tuple[Array, Array | None]) -> BarPieces:
         """Return a closed form (n,) divided by the pieces, highest piece first.
 
         The result is +inf where a piece is absent or not positive.
@@ -80,18 +80,18 @@ class Part(NamedTuple):
         part = self._with_slopes(quotients, -values[:, None] * inverse**2, slopes, inverse)
         return part
 
-    def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> Part:
+    def _with_slopes(self, values: Array, outer: Array, slopes: Array | None, inner: Array) -> BarPieces:
         """Return values with gradients, from `outer` derivatives for the pieces and `inner` ones for the factor."""
         if self.gradients is None or slopes is None:
-            return Part(values, None, self.labels)
+            return BarPieces(values, None, self.labels)
         finite = np.isfinite(self.values) & np.isfinite(values)
         outer, inner = np.where(finite, outer, 0.0), np.where(finite, inner, 0.0)
         gradients = outer[:, :, None] * self.gradients + inner[:, :, None] * slopes[:, None, :]
-        return Part(values, gradients, self.labels)
+        return BarPieces(values, gradients, self.labels)
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfBars(Quantity):
+class BarQuantity(Quantity):
     """A quantity that is the maximum or minimum over several parts of crank and rod."""
 
     group: Group = fact(Group.STRENGTH)
@@ -104,7 +104,7 @@ class OfBars(Quantity):
         return 1.0
 
     @abstractmethod
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
         """Return the parts that count for designs (n, 3 + k). piece_count: number of pieces per part."""
 
     def bars(self, mechanism: Mechanism) -> list[str]:
@@ -115,7 +115,7 @@ class OfBars(Quantity):
         """Return the quantity for designs (n, 3 + k); NaN if no link is a bar; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        all_parts = self.joined(mechanism, dimensions, 1, gradients)
+        all_parts = self.join_parts(mechanism, dimensions, 1, gradients)
         first = (np.argmin if self.least else np.argmax)(all_parts.values, axis=1)
         rows = np.arange(len(first))
         return Values(
@@ -126,15 +126,15 @@ class OfBars(Quantity):
         """Return the local peaks of every part; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        all_parts = self.joined(mechanism, dimensions, STORED_PEAKS, True)
+        all_parts = self.join_parts(mechanism, dimensions, STORED_PEAKS, True)
         assert all_parts.gradients is not None
         order = np.argsort(all_parts.values if self.least else -all_parts.values, axis=1, kind="stable")
         return Pieces(all_parts.values, all_parts.gradients, all_parts.labels, self.least).take(order)
 
-    def joined(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Part:
+    def join_parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> BarPieces:
         """Return all parts side by side, with labels that distinguish them; see `parts`."""
         parts = self.parts(mechanism, designs, piece_count, gradients)
-        return Part(
+        return BarPieces(
             np.concatenate([part.values for part in parts], axis=1),
             np.concatenate([part.gradients for part in parts if part.gradients is not None], axis=1)
             if gradients
@@ -143,7 +143,7 @@ class OfBars(Quantity):
         )
 
 
-class Demand(NamedTuple):
+class SectionLoad(NamedTuple):
     """Maximum stress at a location or maximum force on a pin, and the section that carries it.
 
     section: formula for an area or a width, None for 1. scale: see `BarPeak`. eye: link and pin of an eye.
@@ -156,11 +156,11 @@ class Demand(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BarPeak(OfBars):
+class BarPeak(BarQuantity):
     """Maximum of scale peak / section or, if `least`, minimum of scale section / peak over all demands."""
 
     @abstractmethod
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the loads on the bars."""
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
@@ -169,28 +169,32 @@ class BarPeak(OfBars):
 
     def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return the stress locations that one search covers."""
-        return tuple(demand.peak for demand in self.demands(mechanism) if not isinstance(demand.peak, str))
+        return tuple(demand.peak for demand in self.section_loads(mechanism) if not isinstance(demand.peak, str))
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return a part for each demand; see `OfBars`."""
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
+        """Return a part for each demand; see `BarQuantity`."""
         locations = self.locations(mechanism)
-        found: dict[StressLocation | str, Part] = {}
+        found: dict[StressLocation | str, BarPieces] = {}
         if locations:
             searched = stresses(mechanism, designs, locations, self.criteria(mechanism), piece_count, gradients)
             found.update(zip(locations, searched, strict=True))
         parts = []
-        for peak, section, scale, _ in self.demands(mechanism):
+        for peak, section, scale, _ in self.section_loads(mechanism):
             part = pin_force(mechanism, designs, peak, piece_count, gradients) if isinstance(peak, str) else found[peak]
             size = (
                 (np.ones(len(designs)), np.zeros(designs.shape) if gradients else None)
                 if section is None
                 else formula_of_numbers(mechanism, designs, section, gradients=gradients)
             )
-            parts.append(part.dividing(_scaled(size, scale)) if self.least else force_over_area(part, size, scale))
+            parts.append(
+                part.closed_form_divided_by_pieces(_scaled(size, scale))
+                if self.least
+                else force_over_area(part, size, scale)
+            )
         return parts
 
 
-def strength_of(mechanism: Mechanism) -> Strength:
+def material_and_pins(mechanism: Mechanism) -> Strength:
     """Return the bars' material and the pins of a machine that has both."""
     assert mechanism.strength is not None
     return mechanism.strength
@@ -204,17 +208,17 @@ def stresses(
     criteria: Criteria,
     piece_count: int,
     gradients: bool,
-) -> list[Part]:
+) -> list[BarPieces]:
     """Return the maximum of p sigma - q sigma at each location for each criterion; see `stress_peaks`."""
     peaks = stress_peaks(mechanism, places, designs, np.array(criteria), gradients=gradients, limit=piece_count)
-    return [Part(each.values, each.gradients, each.labels) for each in peaks]
+    return [BarPieces(each.values, each.gradients, each.labels) for each in peaks]
 
 
 @memoise_by_batch
-def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> Part:
+def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> BarPieces:
     """Return the maximum force on a pin over the cycle, N."""
     peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, limit=piece_count)
-    return Part(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
+    return BarPieces(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
 
 
 def eyes_of(link: str, pin: str) -> list[Eye]:
@@ -244,7 +248,7 @@ def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Ar
     return scale * values, None if slopes is None else scale * slopes
 
 
-def force_over_area(force: Part, area: tuple[Array, Array | None], factor: float = 1.0) -> Part:
+def force_over_area(force: BarPieces, area: tuple[Array, Array | None], factor: float = 1.0) -> BarPieces:
     """Return a scaled force divided by an area; infinite if the area is zero."""
     values, slopes = area
     has_area = values > 0.0
@@ -253,4 +257,4 @@ def force_over_area(force: Part, area: tuple[Array, Array | None], factor: float
     stress = force.times((inverse, None if slopes is None else -(inverse / safe)[:, None] * slopes))
     filled = np.where(has_area[:, None] | ~np.isfinite(stress.values), stress.values, np.inf)
     gradients = None if stress.gradients is None else np.where(has_area[:, None, None], stress.gradients, 0.0)
-    return Part(filled, gradients, stress.labels)
+    return BarPieces(filled, gradients, stress.labels)

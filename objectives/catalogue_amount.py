@@ -8,9 +8,9 @@ import numpy as np
 
 from ..model.errors import InputError
 from ..model.machine.mechanism import Mechanism
-from .kinds import RATIO, Kind, amount_in, kind_in
+from .kinds import RATIO, Kind, amount_kind, kind_in
 from .quantity import Array, Quantity, Values
-from .units import kind_for, number_and_unit, per_si
+from .units import kind_of_any_unit, number_and_unit, value_of_one_si_unit_in
 
 _NONE = float("nan")
 
@@ -40,20 +40,20 @@ class Amount(Quantity):
         return Values(np.full(len(dimensions), self.value), np.zeros(np.shape(dimensions)) if gradients else None)
 
 
-def with_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
+def substitute_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity:
     """Return a quantity with its amounts replaced by those of a chosen option. values: SI."""
     if isinstance(quantity, Amount):
         return replace(quantity, value=values.get(quantity.name, _NONE))
-    parts = tuple(with_amounts(part, values) for part in quantity.made_of)
+    parts = tuple(substitute_amounts(part, values) for part in quantity.made_of)
     return quantity if parts == quantity.made_of else quantity.with_parts(parts)
 
 
 def kind_of_amount(unit: str) -> Kind:
     """Return the kind for amounts in a unit: the kind of a known unit, else a new kind."""
     try:
-        return kind_in(unit, per_si(unit), kind_for(unit)) if unit else RATIO
+        return kind_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit)) if unit else RATIO
     except InputError:
-        return amount_in(unit)
+        return amount_kind(unit)
 
 
 def amount_of(text: str | float) -> tuple[float, str] | None:

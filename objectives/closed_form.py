@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.kinematics.closed_forms import ClosedForm, closed_form, evaluate_closed_form
+from ..model.kinematics.closed_forms import ClosedForm, closed_form_value, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.numbers import require_width
 from ..model.machine.raw import Raw
@@ -35,17 +35,17 @@ class ClosedFormQuantity(Quantity):
         """True."""
         return True
 
-    def is_closed(self, mechanism: Mechanism) -> bool:
+    def closed_form_holds(self, mechanism: Mechanism) -> bool:
         """Return whether the closed form, and hence `rises` and `reach`, holds for a machine."""
         return True
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return its closed forms if they hold for a machine; see `Quantity`."""
-        return [partial(_closed_form_value, form) for form in self.forms] if self.is_closed(mechanism) else ()
+        return [partial(_closed_form_value, form) for form in self.forms] if self.closed_form_holds(mechanism) else ()
 
     def bounds_for(self, mechanism: Mechanism) -> QuantityBounds | None:
         """Return its bounds if the closed form holds for a machine."""
-        return self.bounds if self.is_closed(mechanism) else None
+        return self.bounds if self.closed_form_holds(mechanism) else None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
@@ -69,7 +69,7 @@ class ClosedFormQuantity(Quantity):
 
 
 def _closed_form_value(form: ClosedForm, number: Number) -> Any:
-    return closed_form(int(form), number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET))
+    return closed_form_value(int(form), number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET))
 
 
 def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:

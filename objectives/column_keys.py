@@ -47,14 +47,17 @@ def kind_of_key(key: str) -> tuple[str, Kind]:
     return key.removesuffix(unit.suffix), _KINDS.get(unit.suffix) or kind_in(unit.symbol, unit.factor)
 
 
-def key_in(key: str, system: System) -> tuple[str, float]:
+def column_key_in_system(key: str, system: System) -> tuple[str, float]:
     """Return the key for a metric column in a system of units, and the factor for its values."""
     unit = _display_unit_of(key)
     if system == "metric" or unit is None:
         return key, 1.0
     if key.removesuffix(unit.suffix).endswith("_per"):  # a quotient without a kind: convert both its units
         numerator, _, denominator = key.rpartition("_per_")
-        (upper, up), (lower, down) = key_in(numerator, system), key_in(f"_{denominator}", system)
+        (upper, up), (lower, down) = (
+            column_key_in_system(numerator, system),
+            column_key_in_system(f"_{denominator}", system),
+        )
         return f"{upper}_per{lower}", up / down
     if unit.suffix not in _TO_INCH:
         return key, 1.0

@@ -7,7 +7,7 @@ from typing import Literal
 
 from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import number_of
+from ..model.machine.numbers import raw_number_at_slot
 from ..model.machine.raw import Raw
 from ..model.signals.averages import average
 from ..model.signals.shaft_statistics import mean_speed_ratio
@@ -48,7 +48,7 @@ class CycleAverage(Quantity):
             if not mechanism.varying:
                 speed = mechanism.speed * share
                 return Values(speed * values, None if slopes is None else speed * slopes)
-            speeds, rates = number_of(mechanism, Raw.SPEED, dimensions, otherwise=mechanism.speed)
+            speeds, rates = raw_number_at_slot(mechanism, Raw.SPEED, dimensions, otherwise=mechanism.speed)
             speeds, rates = share * speeds, share * rates
             if slopes is not None:
                 slopes = speeds[:, None] * slopes + rates * values[:, None]

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import find_peaks
-from ..model.signals.screening import ANGLES, screen, screens
-from ..model.signals.signal_inputs import stroke_dependent
+from ..model.signals.screening import ANGLES, is_supported, screened_maxima
+from ..model.signals.signal_inputs import has_load_change_at_dead_centres
 from ..model.signals.signals import Signal
 from .quantity import Array, Pieces, Quantity, Values
 
@@ -45,7 +45,7 @@ a kink there, or lie between it and the next sample. It missed no peak among 600
 change at a dead centre."""
 
 
-def screened(
+def screen_quantities(
     quantities: Iterable[Quantity],
     mechanism: Mechanism,
     dimensions: Array,
@@ -59,11 +59,11 @@ def screened(
     certain: whether a torque whose peak may be at a kink is left out, as NaN.
     """
     peaks = (item for item in quantities if isinstance(item, CyclePeak))
-    quick = {peak.name: peak.signal for peak in peaks if screens(mechanism, peak.signal, during=peak.during)}
+    quick = {peak.name: peak.signal for peak in peaks if is_supported(mechanism, peak.signal, during=peak.during)}
     if not quick:
         return {}
-    kinks = certain and Signal.TORQUE in quick.values() and stroke_dependent(mechanism)
-    screened_signals = screen(
+    kinks = certain and Signal.TORQUE in quick.values() and has_load_change_at_dead_centres(mechanism)
+    screened_signals = screened_maxima(
         mechanism, tuple(quick.values()), dimensions, gradients=gradients, still=kinks, angles=angles
     )
     for signal, item in zip(quick.values(), screened_signals, strict=True):
@@ -76,7 +76,7 @@ def screen_peaks(
     quantities: Sequence[CyclePeak], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
 ) -> tuple[Values, ...]:
     """Return several quantities for designs (n, 3 + k) by vectorised screening, exact except for peaks at a kink."""
-    screened_values = screened(quantities, mechanism, dimensions, gradients=gradients)
+    screened_values = screen_quantities(quantities, mechanism, dimensions, gradients=gradients)
     return tuple(
         screened_values.get(q.name) or q.evaluate(mechanism, dimensions, gradients=gradients) for q in quantities
     )

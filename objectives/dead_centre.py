@@ -77,7 +77,9 @@ def _crank_angle_from_pin_line(machine: Mechanism, number: Number, distance: Any
     return 2.0 * arcsine(root(share / (4.0 * r * b)))
 
 
-def before_dead_centre(machine: Mechanism, design: Array, distances: Array) -> tuple[Array, Array]:
+def angle_and_travel_rate_before_dead_centre(
+    machine: Mechanism, design: Array, distances: Array
+) -> tuple[Array, Array]:
     """Return the crank angle before a dead centre, rad, and |x'|, m, at distances from it, m.
 
     design: crank, rod, offset, m; its stroke exceeds the distances. Small distances lose no accuracy.

@@ -58,18 +58,18 @@ class MotorPeak(MotorQuantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        values, slopes, _ = self._highest(mechanism, dimensions, 1, gradients)
+        values, slopes, _ = self._highest_peaks(mechanism, dimensions, 1, gradients)
         return Values(values[:, 0], None if slopes is None else slopes[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        values, slopes, angles = self._highest(mechanism, dimensions, STORED_PEAKS, True)
+        values, slopes, angles = self._highest_peaks(mechanism, dimensions, STORED_PEAKS, True)
         assert slopes is not None
         return Pieces(values, slopes, angles)
 
-    def _highest(
+    def _highest_peaks(
         self, mechanism: Mechanism, dimensions: Array, count: int, gradients: bool
     ) -> tuple[Array, Array | None, Array]:
         """Return values, derivatives and crank angles for the highest local peaks."""

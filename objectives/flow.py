@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.cycle.gas_cycle import cylinders, gas_cycle
+from ..model.cycle.gas_cycle import cylinders, gas_cycle_number
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
 from ..model.machine.loads.compressor import Compressor
@@ -46,7 +46,7 @@ class Flow(Quantity):
             return undefined(dimensions, gradients)
         factor = mechanism.direction * mean_speed_ratio(mechanism) / (2.0 * math.pi)
         rate = formula_of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
-        volume = gas_cycle(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
+        volume = gas_cycle_number(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
         return Values(*volume).times(Values(*rate))
 
 
@@ -62,16 +62,16 @@ class FlowRipple(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        differences = self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
+        differences = self._peak_to_trough_pieces(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
         return Values(differences.values[:, 0], differences.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the differences between local peaks and troughs; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
-        return self._differences(mechanism, np.asarray(dimensions, dtype=np.float64), _MOST_PIECES)
+        return self._peak_to_trough_pieces(mechanism, np.asarray(dimensions, dtype=np.float64), _MOST_PIECES)
 
-    def _differences(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
+    def _peak_to_trough_pieces(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
         areas = [formula_of_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps]
         machine, count = _machine_with_flow_as_torque(mechanism), cylinder_count(mechanism)
@@ -174,7 +174,7 @@ FLOW_RIPPLE = FlowRipple(
     example=0.14,
     needs=(
         Need(
-            lambda machine: bool(pumps_of(machine.fullest)),
+            lambda machine: bool(pumps_of(machine.with_largest_variables)),
             'it needs pumps for a liquid; got none; add for example [[load]] bore = "70 mm", suction = "1 bar", '
             'discharge = "8 bar", medium = "liquid"',
             consequence="undefined",

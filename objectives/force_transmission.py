@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.machine.dissipation import linkage_loaded, pushed
+from ..model.machine.dissipation import carries_linkage_forces, has_slider_loads
 from ..model.machine.mechanism import Mechanism
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
@@ -52,9 +52,9 @@ def _force_ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
 
 
 def _has_force_on_slider(machine: Mechanism) -> bool:
-    m = machine.fullest
+    m = machine.with_largest_variables
     inert = m.slider_mass > 0.0 and (m.speed != 0.0 or m.acceleration != 0.0 or m.gravity[0] != 0.0)
-    return inert or pushed(m) or (m.friction.acts and linkage_loaded(m))
+    return inert or has_slider_loads(m) or (m.friction.acts and carries_linkage_forces(m))
 
 
 FORCE_TRANSMISSION = ForceTransmission(

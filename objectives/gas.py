@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from ..model.cycle.gas_cycle import GasCycle, gas_cycle
+from ..model.cycle.gas_cycle import GasCycle, gas_cycle_number
 from ..model.machine.mechanism import Mechanism
 from .energy import EFFICIENCY
 from .kinds import ENERGY, PRESSURE, RATIO, VOLUME
@@ -25,7 +25,7 @@ class GasQuantity(Quantity):
         """Return the quantity for designs (n, 3 + k); NaN without a suitable cylinder; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
-        return Values(*gas_cycle(mechanism, dimensions, self.closed_form, gradients=gradients))
+        return Values(*gas_cycle_number(mechanism, dimensions, self.closed_form, gradients=gradients))
 
 
 _gas = partial(GasQuantity, group=Group.DRIVE, section="7. Loads", picture="cylinder", needs=(CYLINDER,))

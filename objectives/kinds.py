@@ -34,7 +34,7 @@ def display_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
     return DisplayUnit(symbol, f"_{name}" if name else "", factor)
 
 
-def quotient_unit(symbol: str, factor: float = 1.0) -> DisplayUnit:
+def display_unit_of_quotient(symbol: str, factor: float = 1.0) -> DisplayUnit:
     """Return the display unit for a quotient, with "per" in its columns: N s/m gives _Ns_per_m."""
     numerator, _, denominator = symbol.replace("^", "").partition("/")
     return DisplayUnit(symbol, f"_{numerator.replace('N ', 'N').replace(' ', '_')}_per_{denominator}", factor)
@@ -68,7 +68,7 @@ class Kind:
     @property
     def si(self) -> DisplayUnit:
         """The SI unit as a display unit."""
-        return quotient_unit(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
+        return display_unit_of_quotient(self.unit) if "_per_" in self.metric.suffix else display_unit(self.unit)
 
     def is_plausible(self, number: float) -> bool:
         """Return whether a number without a unit has a credible magnitude in SI."""
@@ -133,13 +133,13 @@ TORQUE = _kind(
     "a torque", "N m, kN m, N mm, lbf in, lbf ft", "25 N m", 1e15, display_unit("lbf in", 1.0 / (_LBF * _INCH))
 )
 POWER = _kind("a power", "W, kW, hp", "250 W", 1e15, display_unit("hp", 1.0 / (6600.0 * _LBF * _INCH)))
-_STIFFNESS = quotient_unit("lbf/in", _INCH / _LBF), quotient_unit("N/m")
+_STIFFNESS = display_unit_of_quotient("lbf/in", _INCH / _LBF), display_unit_of_quotient("N/m")
 STIFFNESS = _kind("a stiffness", "N/m, N/mm, lbf/in", "20 N/mm", 1e15, *_STIFFNESS, "N/mm")
-_ANGULAR = quotient_unit("lbf in/rad", 1.0 / (_LBF * _INCH)), quotient_unit("N m/rad")
+_ANGULAR = display_unit_of_quotient("lbf in/rad", 1.0 / (_LBF * _INCH)), display_unit_of_quotient("N m/rad")
 ANGULAR_STIFFNESS = _kind("an angular stiffness", "N m/rad, N m/deg, lbf in/rad", "40 N m/rad", 1e15, *_ANGULAR)
-_DAMPING = quotient_unit("lbf s/in", _INCH / _LBF), quotient_unit("N s/m")
+_DAMPING = display_unit_of_quotient("lbf s/in", _INCH / _LBF), display_unit_of_quotient("N s/m")
 DAMPING = _kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 1e15, *_DAMPING)
-_DRAG = quotient_unit("lbf s^2/in^2", _INCH**2 / _LBF), quotient_unit("N s^2/m^2")
+_DRAG = display_unit_of_quotient("lbf s^2/in^2", _INCH**2 / _LBF), display_unit_of_quotient("N s^2/m^2")
 QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
 _PRESSURE = display_unit("psi", _INCH**2 / _LBF), display_unit("MPa", 1e-6)
 PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
@@ -173,8 +173,8 @@ PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
         f"m/{unit}",
         "",
         0.0,
-        quotient_unit(f"mm/{unit}", 1e3),
-        quotient_unit(f"in/{unit}", _PER_INCH),
+        display_unit_of_quotient(f"mm/{unit}", 1e3),
+        display_unit_of_quotient(f"in/{unit}", _PER_INCH),
     )
     for name, unit in (("angle", "rad"), ("squared angle", "rad^2"), ("cubed angle", "rad^3"))
 )
@@ -203,7 +203,7 @@ def unit_text(symbol: str) -> str:
     return symbol.replace("^2", "²").replace("^3", "³")
 
 
-def amount_in(unit: str) -> Kind:
+def amount_kind(unit: str) -> Kind:
     """Return the kind for an amount in a non-physical unit, such as EUR."""
     return Kind(f"an amount in {unit}", unit, f"100 {unit}", 1e15, display_unit(unit), typed=(unit,), amount=True)
 

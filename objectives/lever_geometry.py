@@ -26,7 +26,7 @@ LEVER_TRANSMISSION_ANGLE = _form(
     formula="min over the swing of asin(f |sin(psi)| / AB)",
     example="30 deg",
     better="high",
-    domain=Domain.acute("the transmission angle of a lever lies between 0 and 90 deg", "20 to 50 deg"),
+    domain=Domain.of_acute_angle("the transmission angle of a lever lies between 0 and 90 deg", "20 to 50 deg"),
     floor=float(np.radians(10.0)),
 )
 DEAD_POINT_MARGIN = _form(
@@ -42,7 +42,7 @@ DEAD_POINT_MARGIN = _form(
     formula="min over the swing of |psi|, |180 deg - |psi||",
     example="15 deg",
     better="high",
-    domain=Domain.acute("the angle to a dead point lies between 0 and 90 deg", "15 to 40 deg"),
+    domain=Domain.of_acute_angle("the angle to a dead point lies between 0 and 90 deg", "15 to 40 deg"),
 )
 LEAST_CYLINDER_LENGTH = _form(
     name="least_cylinder_length",

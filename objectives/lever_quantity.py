@@ -44,14 +44,14 @@ class LeverQuantity(SwingQuantity):
 
     def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return why a machine does not define it; see `Quantity`."""
-        lever = mechanism.fullest.lever
+        lever = mechanism.with_largest_variables.lever
         if consequence == "undefined" and lever is not None:
             for name in self.known:
                 if getattr(lever.cylinder, name) is None:
                     words = name.replace("_", " ")
                     return f"it needs the {words} of the cylinder; got none; give [cylinder] {name}"
             if self.tolerated:
-                stated = mechanism.fullest.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
+                stated = mechanism.with_largest_variables.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
                 return None if stated else 'it needs tolerances; got none; add for example [tolerances] crank = "1 mm"'
         return None
 

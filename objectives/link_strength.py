@@ -13,7 +13,18 @@ from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
 from ..model.strength.stress_cycle import stress_peaks
 from ..model.strength.stress_locations import Eye, LinkBody, StressLocation
-from .bars import LINKS, NEAR, STATIC, BarPeak, Criteria, Demand, eyes_of, net_section, net_width, strength_of
+from .bars import (
+    LINKS,
+    NEAR,
+    STATIC,
+    BarPeak,
+    Criteria,
+    SectionLoad,
+    eyes_of,
+    material_and_pins,
+    net_section,
+    net_width,
+)
 from .kinds import PRESSURE, RATIO
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ONE_TURN, ROD_BAR, STRENGTH
 from .quantity import Array, Formula
@@ -28,21 +39,21 @@ class LinkStress(BarPeak):
         """Return the stress maxima for both links, even if only one is asked for."""
         return tuple(location for _, location in _links_and_locations(mechanism))
 
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the stress along bars and in the pivot's eye, and the force on all eyes; see `BarPeak`."""
-        strength, bars = strength_of(mechanism), self.bars(mechanism)
+        strength, bars = material_and_pins(mechanism), self.bars(mechanism)
         limit = strength.material.yield_strength if self.least else 1.0
         raised = strength.eye_concentration
         pivot = CRANK, LINKS[CRANK].far
         bent = [
-            Demand(location, net_width(location), limit, pivot)
+            SectionLoad(location, net_width(location), limit, pivot)
             if isinstance(location, Eye)
-            else Demand(location, None, limit)
+            else SectionLoad(location, None, limit)
             for name, location in _links_and_locations(mechanism)
             if name in bars
         ]
         return bent + [
-            Demand(pin, net_section(name, pin), limit / raised if self.least else raised, (name, pin))
+            SectionLoad(pin, net_section(name, pin), limit / raised if self.least else raised, (name, pin))
             for name in bars
             for pin in (NEAR, LINKS[name].far)
         ]
@@ -57,7 +68,9 @@ def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tup
     """
     stresses_by_link: dict[str, dict[str, tuple[float, float]]] = {}
     quantity = replace(ROD_STRESS, links=tuple(LINKS))
-    for demand, part in zip(quantity.demands(mechanism), quantity.parts(mechanism, design, 1, False), strict=True):
+    for demand, part in zip(
+        quantity.section_loads(mechanism), quantity.parts(mechanism, design, 1, False), strict=True
+    ):
         if demand.eye is None:
             continue
         name, pin = demand.eye
@@ -95,16 +108,16 @@ class FatigueSafety(BarPeak):
 
     def criteria(self, mechanism: Mechanism) -> Criteria:
         """Return the criteria for amplitude and mean as maximum and minimum stress, and for the amplitude alone."""
-        strength = strength_of(mechanism)
-        worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.steady
+        strength = material_and_pins(mechanism)
+        worn, steady = 0.5 / strength.material.endurance, 0.5 / strength.mean_stress_reference_strength
         return ((worn + steady, worn - steady), (worn, worn))
 
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the stress in each bar and in each eye; see `BarPeak`."""
         bars = self.bars(mechanism)
         eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
-        bodies = [Demand(LinkBody(LINKS[name].part), None) for name in bars]
-        return [*bodies, *(Demand(eye, net_width(eye)) for eye in eyes)]
+        bodies = [SectionLoad(LinkBody(LINKS[name].part), None) for name in bars]
+        return [*bodies, *(SectionLoad(eye, net_width(eye)) for eye in eyes)]
 
 
 class BucklingSafety(BarPeak):
@@ -118,11 +131,11 @@ class BucklingSafety(BarPeak):
         """Return each bar as a location, which both planes share."""
         return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.bars(mechanism))
 
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the compression of each bar for buckling in the plane of motion and out of it; see `BarPeak`."""
-        material = strength_of(mechanism).material
+        material = material_and_pins(mechanism).material
         return [
-            Demand(
+            SectionLoad(
                 LinkBody(own.part, bent=False),
                 critical_stress(own.length, side, own.end_condition, material.elasticity, material.yield_strength),
             )

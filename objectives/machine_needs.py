@@ -9,14 +9,14 @@ from typing import Literal
 
 from ..model.cycle.gas_cycle import compressors, cylinders
 from ..model.machine.dissipation import (
+    carries_linkage_forces,
+    carries_pivot_force,
     crank_weighs,
-    drive_loaded,
-    linkage_loaded,
-    load_works_over_a_turn,
-    moves,
-    pivot_loaded,
-    rubs_under_load,
-    works_over_a_turn,
+    has_friction_under_load,
+    has_rod_or_slider_mass,
+    loads_may_do_work_over_a_turn,
+    may_do_work_over_a_turn,
+    needs_drive_torque,
 )
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
@@ -47,7 +47,7 @@ class Need:
 
 
 def _friction(machine: Mechanism) -> bool:
-    return machine.fullest.friction.acts
+    return machine.with_largest_variables.friction.acts
 
 
 _defining = partial(Need, consequence="undefined")
@@ -60,7 +60,7 @@ _SLIDER_LOADS = _LOADS.replace("or loads;", "or loads on the slider;") + " on th
 _SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
-    lambda machine: machine.fullest.tolerances.are_stated,
+    lambda machine: machine.with_largest_variables.tolerances.are_stated,
     'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(
@@ -68,34 +68,41 @@ FRICTION = Need(
     "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use {instead}",
     consequence="equal",
 )
-SPEED = _defining(lambda machine: machine.fullest.speed != 0.0, _SPEED)
+SPEED = _defining(lambda machine: machine.with_largest_variables.speed != 0.0, _SPEED)
 REPEATS = _defining(
-    lambda machine: machine.fullest.acceleration == 0.0,
+    lambda machine: machine.with_largest_variables.acceleration == 0.0,
     "a stroke time needs a speed that repeats every turn; got a crank acceleration; leave it out, or use time_ratio",
 )
 MOTION = _defining(
-    lambda machine: machine.fullest.speed != 0.0 or machine.fullest.acceleration != 0.0,
+    lambda machine: machine.with_largest_variables.speed != 0.0 or machine.with_largest_variables.acceleration != 0.0,
     _SPEED,
 )
 """A crank that turns or is about to turn."""
-MASSES = Need(lambda machine: crank_weighs(machine.fullest) or moves(machine.fullest), _MASSES)
+MASSES = Need(
+    lambda machine: (
+        crank_weighs(machine.with_largest_variables) or has_rod_or_slider_mass(machine.with_largest_variables)
+    ),
+    _MASSES,
+)
 SWINGING_MASSES = Need(
-    lambda machine: moves(machine.fullest) or machine.fullest.acceleration != 0.0,
+    lambda machine: (
+        has_rod_or_slider_mass(machine.with_largest_variables) or machine.with_largest_variables.acceleration != 0.0
+    ),
     _MASSES,
 )
 """Masses whose angular momentum changes; at constant speed, the crank exerts only a shaking force through its pivot."""
-DRIVEN = Need(lambda machine: drive_loaded(machine.fullest), _LOADS)
-LOADED = Need(lambda machine: linkage_loaded(machine.fullest), _SLIDER_LOADS)
+DRIVEN = Need(lambda machine: needs_drive_torque(machine.with_largest_variables), _LOADS)
+LOADED = Need(lambda machine: carries_linkage_forces(machine.with_largest_variables), _SLIDER_LOADS)
 """Masses or loads beyond the crank."""
-PIVOT_LOADED = Need(lambda machine: pivot_loaded(machine.fullest), _SLIDER_LOADS)
+PIVOT_LOADED = Need(lambda machine: carries_pivot_force(machine.with_largest_variables), _SLIDER_LOADS)
 WORK = Need(
-    works_over_a_turn,
+    may_do_work_over_a_turn,
     "it needs work over a turn, which is zero here for all dimensions; got no friction in joints that carry a "
     "force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, "
     "or add what the machine works against",
 )
 LOAD_WORK = _defining(
-    load_works_over_a_turn,
+    loads_may_do_work_over_a_turn,
     "an efficiency needs a load that takes or supplies net work over a cycle; got none; "
     'add for example [[load]] force = "200 N", opposes = "motion"',
 )
@@ -105,7 +112,7 @@ _UNLOADED = (
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]] on the slider'
 )
 _HEAT = "it needs friction in loaded joints"
-HEAT = (_defining(_friction, f"{_HEAT}; {_RUBS}"), _defining(rubs_under_load, f"{_HEAT}; {_UNLOADED}"))
+HEAT = (_defining(_friction, f"{_HEAT}; {_RUBS}"), _defining(has_friction_under_load, f"{_HEAT}; {_UNLOADED}"))
 """Friction, and joints that carry a force."""
 LOSSES = (
     Need(
@@ -114,7 +121,7 @@ LOSSES = (
         consequence="equal",
     ),
     Need(
-        rubs_under_load,
+        has_friction_under_load,
         f"friction in unloaded joints dissipates nothing, so the efficiency of every design is 1; {_UNLOADED}",
         consequence="equal",
     ),
@@ -134,7 +141,7 @@ COMPRESSOR = _defining(
 
 def _rotates_unevenly(mechanism: Mechanism) -> bool:
     """Return whether the speed of flywheel or rotor varies within the cycle."""
-    machine = mechanism.fullest
+    machine = mechanism.with_largest_variables
     turns = machine.drive is not None and machine.drive.inertia > 0.0
     return turns and (machine.speed_profile is not None or machine.acceleration != 0.0)
 
@@ -151,7 +158,9 @@ DRIVE_TRAIN = _defining(
     lambda machine: machine.drive is not None,
     "it needs [drive]; got none; add for example [drive] gear_ratio = 5",
 )
-MOTOR_LOADED = Need(lambda machine: drive_loaded(machine.fullest) or _rotates_unevenly(machine), _LOADS)
+MOTOR_LOADED = Need(
+    lambda machine: needs_drive_torque(machine.with_largest_variables) or _rotates_unevenly(machine), _LOADS
+)
 """Loads on the motor: anything that requires drive torque, or the inertia of flywheel and rotor."""
 ROTOR = _defining(
     lambda machine: machine.drive is not None and machine.drive.motor_inertia > 0.0,
@@ -215,7 +224,7 @@ A_BAR = _defining(
 
 def _needs_mass_of(part: str) -> Need:
     def weighs(machine: Mechanism) -> bool:
-        link = getattr(machine.fullest, part)
+        link = getattr(machine.with_largest_variables, part)
         return isinstance(link, Bar) or link.mass > 0.0
 
     return Need(

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit
-from ..model.kinematics.target_pieces import fit_pieces
+from ..model.kinematics.target_pieces import deviation_pieces
 from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from .kinds import ANGLE, LENGTH
@@ -48,7 +48,7 @@ class MotionDeviation(Quantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the maximum of smooth pieces; see `Quantity`."""
-        fitted = fit_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
+        fitted = deviation_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         further = dimensions.shape[1] - 3  # extra variables do not move the slider
         return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 

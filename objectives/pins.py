@@ -16,7 +16,7 @@ from ..model.machine.numbers import PINS, formula_of_numbers
 from ..model.machine.raw import Raw
 from ..model.machine.two_turns import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
-from .bars import LINKS, NEAR, BarPeak, Demand, OfBars, Part, strength_of
+from .bars import LINKS, NEAR, BarPeak, BarPieces, BarQuantity, SectionLoad, material_and_pins
 from .kinds import LENGTH, PRESSURE, PRESSURE_SPEED
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS, Need
 from .quantity import Array, Formula
@@ -31,13 +31,13 @@ class PinPressure(BarPeak):
 
     pin: str
 
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the force on each bar that bears on the pin; see `BarPeak`."""
-        return [Demand(self.pin, projected(self.pin, name)) for name in self.bars(mechanism)]
+        return [SectionLoad(self.pin, projected_area(self.pin, name)) for name in self.bars(mechanism)]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the allowable bearing pressure of the material, Pa."""
-        return strength_of(mechanism).material.bearing_pressure
+        return material_and_pins(mechanism).material.bearing_pressure
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,9 +46,9 @@ class PinShear(BarPeak):
 
     pin: str
 
-    def demands(self, mechanism: Mechanism) -> list[Demand]:
+    def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the force on the pin; see `BarPeak`."""
-        return [Demand(self.pin, lambda number: 0.25 * math.pi * number(PINS[self.pin]) ** 2)]
+        return [SectionLoad(self.pin, lambda number: 0.25 * math.pi * number(PINS[self.pin]) ** 2)]
 
     def allowable(self, mechanism: Mechanism) -> float:
         """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa.
@@ -57,10 +57,10 @@ class PinShear(BarPeak):
 
         Shigley, Mechanical Engineering Design, 9th ed., eq. 5-21.
         """
-        return strength_of(mechanism).material.yield_strength / math.sqrt(3.0)
+        return material_and_pins(mechanism).material.yield_strength / math.sqrt(3.0)
 
 
-def projected(pin: str, name: str) -> Formula:
+def projected_area(pin: str, name: str) -> Formula:
     """Return the formula for the projected bearing area D d of a pin in a link, m^2."""
     return lambda number: number(PINS[pin]) * number(LINKS[name].depth)
 
@@ -72,7 +72,7 @@ _OF_PINS = {
 }
 
 
-def of_pin(
+def facts_of_pin(
     pin: str, needs_before: tuple[Need, ...], needs_after: tuple[Need, ...] = (), *, bears: bool = True
 ) -> dict[str, Any]:
     """Return the facts that all quantities of a pin share.
@@ -88,7 +88,7 @@ def of_pin(
 
 
 @dataclass(frozen=True, kw_only=True)
-class PinRubbing(OfBars):
+class PinRubbing(BarQuantity):
     """A factor divided by twice the bearing length b, times the mean of |F| |d psi / d theta|.
 
     psi: relative rotation in the pin.
@@ -99,11 +99,11 @@ class PinRubbing(OfBars):
     pin: str
     factor: Callable[[Mechanism], Formula]
 
-    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[Part]:
-        """Return the quantity for each bar that bears on the pin; see `OfBars`."""
+    def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
+        """Return the quantity for each bar that bears on the pin; see `BarQuantity`."""
         work, place = turn_work(single_cylinder(mechanism), designs, gradients=gradients), _RUBS[self.pin]
         slopes = None if work.gradients is None else work.gradients[:, place, None]
-        mean = Part(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
+        mean = BarPieces(work.mean[:, place, None], slopes, np.zeros((len(designs), 1)))
         factor = self.factor(mechanism)
         return [
             mean.times(
@@ -152,42 +152,42 @@ PIN_PRESSURE_CRANK_PIVOT = _pressure(
     title="pressure at the crank pivot",
     place=460,
     sentence="The greatest pressure of the crank's pivot on its bearing over the depth of the crank.",
-    **of_pin("crank_pivot", (STRENGTH,)),
+    **facts_of_pin("crank_pivot", (STRENGTH,)),
 )
 PIN_PRESSURE_CRANK_PIN = _pressure(
     name="pin_pressure_crank_pin",
     title="pressure at the crank pin",
     place=461,
     sentence="The greatest pressure of the crank pin on its bearing, in the thinner of crank and rod.",
-    **of_pin("crank_pin", (STRENGTH,)),
+    **facts_of_pin("crank_pin", (STRENGTH,)),
 )
 PIN_PRESSURE_SLIDER_PIN = _pressure(
     name="pin_pressure_slider_pin",
     title="pressure at the slider pin",
     place=462,
     sentence="The greatest pressure of the slider pin on its bearing over the depth of the rod.",
-    **of_pin("slider_pin", (STRENGTH,)),
+    **facts_of_pin("slider_pin", (STRENGTH,)),
 )
 PIN_SHEAR_CRANK_PIVOT = _shear(
     name="pin_shear_crank_pivot",
     title="shear of the crank pivot",
     place=464,
     sentence="The greatest mean shear stress of the crank's pivot, in single shear; half as much in double shear.",
-    **of_pin("crank_pivot", (STRENGTH,), bears=False),
+    **facts_of_pin("crank_pivot", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_CRANK_PIN = _shear(
     name="pin_shear_crank_pin",
     title="shear of the crank pin",
     place=465,
     sentence="The greatest mean shear stress of the crank pin, in single shear; half as much in double shear.",
-    **of_pin("crank_pin", (STRENGTH,), bears=False),
+    **facts_of_pin("crank_pin", (STRENGTH,), bears=False),
 )
 PIN_SHEAR_SLIDER_PIN = _shear(
     name="pin_shear_slider_pin",
     title="shear of the slider pin",
     place=466,
     sentence="The greatest mean shear stress of the slider pin, in single shear; half as much in double shear.",
-    **of_pin("slider_pin", (STRENGTH,), bears=False),
+    **facts_of_pin("slider_pin", (STRENGTH,), bears=False),
 )
 _pv = partial(
     PinRubbing,
@@ -212,7 +212,7 @@ PV_PIVOT = _pv(
     place=470,
     sentence="The mean over time of pressure times rubbing speed at the crank's pivot, over the depth of the crank.",
     formula="mean of |P| |omega| / (2 b) over time, b depth of the bar",
-    **of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
+    **facts_of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_CRANK_PIN = _pv(
     name="pv_crank_pin",
@@ -221,7 +221,7 @@ PV_CRANK_PIN = _pv(
     place=471,
     sentence="The mean over time of pressure times rubbing speed at the crank pin, in the thinner of crank and rod.",
     formula="mean of |A| (1 - phi') |omega| / (2 b) over time, b depth of the bar",
-    **of_pin("crank_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
+    **facts_of_pin("crank_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 PV_SLIDER_PIN = _pv(
     name="pv_slider_pin",
@@ -230,7 +230,7 @@ PV_SLIDER_PIN = _pv(
     place=472,
     sentence="The mean over time of pressure times rubbing speed at the slider pin, over the depth of the rod.",
     formula="mean of |B| |phi'| |omega| / (2 b) over time, b depth of the bar",
-    **of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
+    **facts_of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
 WEAR_PIVOT = _wear(
     name="wear_pivot",
@@ -238,7 +238,7 @@ WEAR_PIVOT = _wear(
     place=474,
     sentence="The wear depth in the bearing of the crank's pivot after a million cycles, over the depth of the crank.",
     formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
-    **of_pin("crank_pivot", (WEARS, EVEN_SPEED)),
+    **facts_of_pin("crank_pivot", (WEARS, EVEN_SPEED)),
 )
 WEAR_CRANK_PIN = _wear(
     name="wear_crank_pin",
@@ -246,7 +246,7 @@ WEAR_CRANK_PIN = _wear(
     place=475,
     sentence="The wear depth in the bearing of the crank pin after a million cycles, in the thinner of crank and rod.",
     formula="10^6 K / (2 b) times the integral of |A| (1 - phi') over the crank angle of a cycle",
-    **of_pin("crank_pin", (WEARS, EVEN_SPEED)),
+    **facts_of_pin("crank_pin", (WEARS, EVEN_SPEED)),
 )
 WEAR_SLIDER_PIN = _wear(
     name="wear_slider_pin",
@@ -254,5 +254,5 @@ WEAR_SLIDER_PIN = _wear(
     place=476,
     sentence="The wear depth in the bearing of the slider pin after a million cycles, over the depth of the rod.",
     formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
-    **of_pin("slider_pin", (WEARS, EVEN_SPEED)),
+    **facts_of_pin("slider_pin", (WEARS, EVEN_SPEED)),
 )

@@ -64,7 +64,7 @@ class Domain:
         )
 
     @classmethod
-    def acute(cls, rule: str, usual: str) -> Domain:
+    def of_acute_angle(cls, rule: str, usual: str) -> Domain:
         """Return the domain for an acute angle, 0 to 90 deg. rule: the rule in words."""
         remedy = f"{usual} are usual (a plain number is in rad)"
         return cls(lower=0.0, upper=0.5 * math.pi, rule=f"{rule}, ends excluded", remedy=remedy)
@@ -244,7 +244,7 @@ class Quantity(ABC):
 
     def follows_speed(self, mechanism: Mechanism) -> bool:
         """Return whether the magnitude, sign or presence of the crank speed changes the quantity for a machine."""
-        numbers = [item.fullest for item in mechanism.varying]
+        numbers = [item.largest_magnitude_bound for item in mechanism.varying]
         designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
         still, *moving = (
             self.evaluate(replace(mechanism, speed=speed), designs).values for speed in (0.0, 1.0, -1.0, 1000.0)

@@ -14,7 +14,7 @@ from ..model.errors import InputError
 from .quantity import Quantity
 
 
-def declared(package: str) -> tuple[Quantity, ...]:
+def declared_quantities(package: str) -> tuple[Quantity, ...]:
     """Return every quantity that a package's modules declare, without sub-packages, ordered by `place`."""
     quantities: dict[str, Quantity] = {}
     for module in pkgutil.iter_modules(import_module(package).__path__):
@@ -26,7 +26,7 @@ def declared(package: str) -> tuple[Quantity, ...]:
 
 _MOST_NAMES = 12  # of a message
 
-FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared(__package__)}
+FACTS: dict[str, Quantity] = {quantity.name: quantity for quantity in declared_quantities(__package__)}
 """All quantities, including those whose values need a table in the job."""
 QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.items() if not quantity.table}
 """Quantities that every problem has."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.cycle.self_locking import varied_margin
+from ..model.cycle.self_locking import locking_margin_with_variables
 from ..model.machine.mechanism import Mechanism
 from .kinds import ANGLE
 from .machine_needs import FRICTION
@@ -12,16 +12,16 @@ from .quantity import Array, Domain, Group, Quantity, Values
 from .transmission_angle import TRANSMISSION_ANGLE
 
 
-class ClosedFormMargin(Quantity):
+class SelfLockingMargin(Quantity):
     """Minimum transmission angle minus the friction angles; -inf if the pins alone lock the linkage (no such angle)."""
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        values, slopes = varied_margin(mechanism, dimensions, gradients=gradients)
+        values, slopes = locking_margin_with_variables(mechanism, dimensions, gradients=gradients)
         return Values(values, slopes)
 
 
-SELF_LOCKING_MARGIN = ClosedFormMargin(
+SELF_LOCKING_MARGIN = SelfLockingMargin(
     name="self_locking_margin",
     title="self-locking margin",
     kind=ANGLE,
@@ -37,7 +37,7 @@ SELF_LOCKING_MARGIN = ClosedFormMargin(
     picture="self-locking",
     example="10 deg",
     better="high",
-    domain=Domain.acute(
+    domain=Domain.of_acute_angle(
         "the self-locking margin must lie between 0, where friction locks, and 90 deg", "10 deg and more"
     ),
     floor=float(np.radians(5.0)),  # forces grow as 1 / sin(margin)

@@ -55,18 +55,18 @@ class StrokeTime(Quantity):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula at constant speed; see `Quantity`."""
-        return _constant_speed_formulas(mechanism, self._angle, _over_mean_speed(mechanism))
+        return _constant_speed_formulas(mechanism, self._stroke_crank_angle, _over_mean_speed(mechanism))
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
         if self.undefined_because([mechanism]):
             return undefined(dimensions, gradients)
-        angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._angle, gradients))
+        angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._stroke_crank_angle, gradients))
         per_speed = formula_of_numbers(mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients)
         return angles.times(Values(*per_speed))
 
-    def _angle(self, times: ScaledStrokeTimes) -> Any:
+    def _stroke_crank_angle(self, times: ScaledStrokeTimes) -> Any:
         return times.outward if self.outward else times.inward
 
 

@@ -4,9 +4,9 @@ import numpy as np
 
 from .kinds import ANGLE, LENGTH
 from .quantity import Domain, Group
-from .swing_quantity import SwingForm
+from .swing_quantity import ClosedFormSwingQuantity
 
-SWING_TRANSMISSION_ANGLE = SwingForm(
+SWING_TRANSMISSION_ANGLE = ClosedFormSwingQuantity(
     name="swing_transmission_angle",
     title="least transmission angle of the swing",
     short="transmission angle",
@@ -23,10 +23,10 @@ SWING_TRANSMISSION_ANGLE = SwingForm(
     picture="transmission angle",
     example="30 deg",
     better="high",
-    domain=Domain.acute("the transmission angle of a swing must lie between 0 and 90 deg", "20 to 50 deg"),
+    domain=Domain.of_acute_angle("the transmission angle of a swing must lie between 0 and 90 deg", "20 to 50 deg"),
     floor=float(np.radians(10.0)),
 )
-ACTUATOR_TRAVEL = SwingForm(
+ACTUATOR_TRAVEL = ClosedFormSwingQuantity(
     name="actuator_travel",
     title="travel of the slider",
     kind=LENGTH,
@@ -40,7 +40,7 @@ ACTUATOR_TRAVEL = SwingForm(
     picture="speed",
     example="2 m",
 )
-SWING_ANGLE = SwingForm(
+SWING_ANGLE = ClosedFormSwingQuantity(
     name="swing_angle",
     title="angle of the swing",
     kind=ANGLE,

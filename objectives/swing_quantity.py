@@ -11,8 +11,8 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.swing.closure import driven_angles, passes, swing_angles, travels
-from ..model.swing.peaks import SwingPeaks, holding_peaks, least_drives, swing_peaks
+from ..model.swing.closure import slider_travels, swing_angles, swings_without_dead_point, transmission_angle_candidates
+from ..model.swing.peaks import SwingPeaks, holding_drive_peaks, negated_least_drive_peaks, swing_peaks
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import Driver, Stated
 from ..model.swing.work import swing_efficiency, swing_work
@@ -63,9 +63,11 @@ class SwingQuantity(Quantity):
             reason = self.unfit(self.swing)
             if reason is not None:
                 return reason
-            if self.tolerated and not (mechanism.fullest.tolerances.are_stated or self.swing.actuator_tolerance):
+            if self.tolerated and not (
+                mechanism.with_largest_variables.tolerances.are_stated or self.swing.actuator_tolerance
+            ):
                 return 'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
-        if consequence == "equal" and self.rubbing and not mechanism.fullest.friction.acts:
+        if consequence == "equal" and self.rubbing and not mechanism.with_largest_variables.friction.acts:
             return (
                 f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "
                 "out"
@@ -97,7 +99,7 @@ class SwingPeak(SwingQuantity):
 
     def _peaks(self, mechanism: Mechanism, dimensions: Array, gradients: bool, *, peak_count: int) -> SwingPeaks:
         if self.state is None:
-            return holding_peaks(mechanism, self._required_swing, dimensions, free=self.free, gradients=gradients)
+            return holding_drive_peaks(mechanism, self._required_swing, dimensions, free=self.free, gradients=gradients)
         return swing_peaks(
             mechanism, self._required_swing, self.state, dimensions, gradients=gradients, limit=peak_count
         )
@@ -111,7 +113,7 @@ class SwingLeast(SwingQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        negated_peaks = least_drives(
+        negated_peaks = negated_least_drive_peaks(
             mechanism, self._required_swing, dimensions, back=self.back, gradients=gradients, limit=1
         )
         values = np.where(negated_peaks.values[:, 0] == np.inf, -np.inf, -negated_peaks.values[:, 0] + 0.0)
@@ -119,7 +121,9 @@ class SwingLeast(SwingQuantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the lowest local minima; see `Quantity`."""
-        negated_peaks = least_drives(mechanism, self._required_swing, dimensions, back=self.back, gradients=True)
+        negated_peaks = negated_least_drive_peaks(
+            mechanism, self._required_swing, dimensions, back=self.back, gradients=True
+        )
         assert negated_peaks.gradients is not None
         return Pieces(-negated_peaks.values + 0.0, -negated_peaks.gradients, negated_peaks.places, least=True)
 
@@ -141,7 +145,7 @@ class SwingIntegral(SwingQuantity):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwingForm(SwingQuantity):
+class ClosedFormSwingQuantity(SwingQuantity):
     """A closed form in lengths and ends: minimum transmission angle, slider travel, crank travel.
 
     stated: the side whose ends must not be given, as they already fix the value; None if either may be given.
@@ -176,12 +180,12 @@ class SwingForm(SwingQuantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the angles at the candidate locations of the minimum, lowest first; see `Quantity`."""
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
-        rows = np.flatnonzero(passes(mechanism, self._required_swing, designs))
+        rows = np.flatnonzero(swings_without_dead_point(mechanism, self._required_swing, designs))
         if self.measure == "angle":
-            angles = driven_angles(mechanism, self._required_swing, designs[rows])
+            angles = transmission_angle_candidates(mechanism, self._required_swing, designs[rows])
             passing_values, slopes = angles.values, angles.slopes
         else:
-            closed_form = travels if self.measure == "travel" else swing_angles
+            closed_form = slider_travels if self.measure == "travel" else swing_angles
             value, slope = closed_form(mechanism, self._required_swing, designs[rows])
             passing_values, slopes = value[:, None], slope[:, None]
         order = np.argsort(passing_values, axis=1, kind="stable")

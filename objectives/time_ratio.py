@@ -18,7 +18,7 @@ from .quantity import Array, Domain, Group, Pieces, Values
 from .stroke_times import evaluate_stroke_times
 
 
-def ratio_of(excess: float) -> float:
+def time_ratio_of_excess_angle(excess: float) -> float:
     """Return the crank angle ratio for an excess angle, rad: at constant speed, the time ratio."""
     return (math.pi + excess) / (math.pi - excess)
 
@@ -29,7 +29,7 @@ def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
     else:
         r = box.crank
         a = max(box.a0, box.l0 - r)
-        greatest = ratio_of(math.acos(a / (2.0 * r + a))) if box.a1 else 1.0
+        greatest = time_ratio_of_excess_angle(math.acos(a / (2.0 * r + a))) if box.a1 else 1.0
     return float(geometry.time_ratio(box.r0, box.l1, box.a0)), float(greatest)
 
 
@@ -37,13 +37,13 @@ def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
 class TimeRatio(ClosedFormQuantity):
     """Time ratio: a closed form at constant speed; along a profile, the maximum of both stroke time ratios."""
 
-    def is_closed(self, mechanism: Mechanism) -> bool:
+    def closed_form_holds(self, mechanism: Mechanism) -> bool:
         """Return whether the machine rotates at constant speed."""
         return mechanism.speed_profile is None
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.is_closed(mechanism):
+        if self.closed_form_holds(mechanism):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
         ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
         if slopes is not None:
@@ -52,7 +52,7 @@ class TimeRatio(ClosedFormQuantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the maximum of its two ratios; see `Quantity`."""
-        if self.is_closed(mechanism):
+        if self.closed_form_holds(mechanism):
             return super().pieces(mechanism, dimensions)
         ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
         assert slopes is not None

@@ -35,7 +35,7 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     picture="transmission angle",
     example="40 deg",
     better="high",
-    domain=Domain.acute("the least transmission angle must lie between 0 and 90 deg", "30 to 50 deg"),
+    domain=Domain.of_acute_angle("the least transmission angle must lie between 0 and 90 deg", "30 to 50 deg"),
     # Torque and error grow without bound towards locking.
     floor=float(np.radians(10.0)),
     bounds=QuantityBounds(

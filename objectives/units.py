@@ -25,7 +25,7 @@ from typing import Any, Literal
 
 from ..model.errors import InputError
 from .count_text import counted
-from .kinds import KINDS, DisplayUnit, Kind, amount_in, kind_in
+from .kinds import KINDS, DisplayUnit, Kind, amount_kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]
@@ -141,7 +141,7 @@ SPACES = "\u00a0\u2007\u2009\u202f"
 _TYPESET = str.maketrans(f"−⁻⁰¹²³⁴⁵⁶⁷⁸⁹{SPACES}", f"--0123456789{' ' * len(SPACES)}")
 
 
-def kind_of(symbol: str) -> Kind:
+def kind_of_symbol(symbol: str) -> Kind:
     """Return the kind whose unit has the dimension of a symbol ("mm", "deg", "N m", "").
 
     Raises InputError for a symbol that is not a unit, or whose dimension has no kind.
@@ -149,18 +149,18 @@ def kind_of(symbol: str) -> Kind:
     for kind in KINDS:
         if symbol in (kind.unit, kind.metric.symbol):  # without pint, which takes 0.2 s to import
             return kind
-    if (kind := kind_for(symbol)) in KINDS:
+    if (kind := kind_of_any_unit(symbol)) in KINDS:
         return kind
     raise InputError(f"no kind of value has the unit {quote(symbol)}; add one to the list of kinds")
 
 
-def kind_for(symbol: str) -> Kind:
+def kind_of_any_unit(symbol: str) -> Kind:
     """Return the kind for any unit, one of `KINDS` or a new one. Raises InputError unless it is a unit."""
     kind = kind_with(dimension_of(symbol), symbol)
     if kind in KINDS:
         return kind
     plain = symbol if _parse_unit(symbol)[0] == 1 else kind.unit
-    return replace(kind_in(symbol, per_si(symbol)), name=f"a value in {plain}", unit=plain)
+    return replace(kind_in(symbol, value_of_one_si_unit_in(symbol)), name=f"a value in {plain}", unit=plain)
 
 
 def dimension_of(symbol: str) -> Dimension:
@@ -182,11 +182,11 @@ def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
     if candidates:
         return next((kind for kind in candidates if symbol in kind.typed), candidates[0])
     powers = sorted(dimension, key=lambda item: (item[1] < 0, item[0]))
-    unit = " ".join(base_unit(base) + (f"^{power}" if power != 1 else "") for base, power in powers)
-    return kind_in(unit) if all(base in _BASES for base, _ in powers) else amount_in(unit)
+    unit = " ".join(unit_of_base_dimension(base) + (f"^{power}" if power != 1 else "") for base, power in powers)
+    return kind_in(unit) if all(base in _BASES for base, _ in powers) else amount_kind(unit)
 
 
-def base_unit(base: str) -> str:
+def unit_of_base_dimension(base: str) -> str:
     """Return the unit of a base dimension: "m" for "[length]"."""
     return _BASES.get(base, base[1:-1])
 
@@ -202,7 +202,7 @@ def number_in_si(digits: str, symbol: str) -> float:
     return float(exact)
 
 
-def per_si(symbol: str) -> float:
+def value_of_one_si_unit_in(symbol: str) -> float:
     """Return the value of one SI unit in another unit: 1000 for "mm". Raises InputError for an unknown unit."""
     return float(1 / _parse_unit(symbol)[0])
 
@@ -321,12 +321,12 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     return by_fold[near[0]] if near else None
 
 
-def squeezed(unit: str) -> str:
+def letters_and_digits(unit: str) -> str:
     """Return the letters and digits of a unit: Nm for N_m, N m and N·m."""
     return re.sub(r"[^\w°]|_", "", unit.replace("²", "2").replace("³", "3"))
 
 
-def without_in(text: str) -> str:
+def without_word_in(text: str) -> str:
     """Return a unit without the word "in" from "force in N".
 
     The inch in lbf in and ozf in, the only torques with an inch, stays."""
@@ -337,7 +337,14 @@ def without_in(text: str) -> str:
 def symbol_in(text: str, kind: Kind) -> str | None:
     """Return the unit in a heading, spelled as in jobs; None if the kind does not have it."""
     display_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
-    listed = next((symbol for symbol in (*kind.typed, *display_symbols) if squeezed(symbol) == squeezed(text)), None)
+    listed = next(
+        (
+            symbol
+            for symbol in (*kind.typed, *display_symbols)
+            if letters_and_digits(symbol) == letters_and_digits(text)
+        ),
+        None,
+    )
     try:
         return listed or (text.strip() if to_si(f"1 {text}", kind) else None)
     except InputError:

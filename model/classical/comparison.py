@@ -13,11 +13,11 @@ from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .lumped import lumped, rotating_and_reciprocating
-from .series import series_acceleration, series_torque, tangent_torque
+from .series import drive_torque_equation_48, series_acceleration, series_torque
 
 ACCELERATION = ("series",)
 TORQUE = ("two masses by mass centre", "two masses, half and half", "series", "k F tan(alpha)")
@@ -40,13 +40,13 @@ class Comparison:
     torques: Mapping[str, Array]
 
 
-def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Comparison:
+def compare_approximations(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Comparison:
     """Return the curves of one fully rotating linkage at crank angles (n,), rad: inertia alone, at constant speed.
 
     Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass at its mass centre.
     Raises `InputError` if the crank speed is zero, and for a mass centre that is not between the pins.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     inert = _with_inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed
@@ -55,7 +55,7 @@ def compare(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> C
         cycle(lumped(inert, linkage), linkage, theta).torque,
         cycle(lumped(inert, linkage, crank_pin_share=0.5), linkage, theta).torque,
         series_torque(linkage, theta, speed=speed, reciprocating_mass=reciprocating),
-        tangent_torque(linkage, theta, speed=speed, rotating_mass=rotating, reciprocating_mass=reciprocating),
+        drive_torque_equation_48(linkage, theta, speed=speed, rotating_mass=rotating, reciprocating_mass=reciprocating),
     )
     return Comparison(
         theta,
@@ -80,14 +80,17 @@ class Errors:
     torques: Mapping[str, Array]
 
 
-def errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLike) -> Errors:
+def approximation_errors_over_offset(mechanism: Mechanism, linkage: Linkage, offsets: ArrayLike) -> Errors:
     """Return the errors for offsets (n,), m, with one linkage's crank and rod; 1440 crank angles each.
 
     Raises `AssemblyError` for an offset at which the linkage does not rotate fully.
     """
     values = np.atleast_1d(np.asarray(offsets, dtype=np.float64))
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
-    rows = [compare(mechanism, Linkage(linkage.crank, linkage.rod, offset, linkage.branch), theta) for offset in values]
+    rows = [
+        compare_approximations(mechanism, Linkage(linkage.crank, linkage.rod, offset, linkage.branch), theta)
+        for offset in values
+    ]
     return Errors(
         values,
         np.array([np.abs(row.acceleration).max() for row in rows]),

@@ -27,7 +27,7 @@ class MassProperties:
     inertia: float
 
 
-def mass_properties(link: Link, length: float) -> MassProperties:
+def link_mass_properties(link: Link, length: float) -> MassProperties:
     """Return the mass properties of a link with a given length between pin centres, m."""
     if isinstance(link, Bar):
         return MassProperties(link.mass(length), 0.5 * length, 0.0, link.principal_inertias(length)[0])
@@ -36,13 +36,13 @@ def mass_properties(link: Link, length: float) -> MassProperties:
     return MassProperties(link.mass, centre, link.centre_across, inertia)
 
 
-def share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
+def rod_mass_share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float:
     """Return the fraction of the rod's mass lumped at the crank pin, b / l.
 
     Raises `InputError` for a mass centre that is not between the pins: one mass would be negative.
     """
     length = float(linkage.rod)
-    share = 1.0 - mass_properties(mechanism.rod, length).centre / length
+    share = 1.0 - link_mass_properties(mechanism.rod, length).centre / length
     if not 0.0 <= share <= 1.0:
         raise InputError(
             "the two-mass model needs the rod's mass centre between the pins; got "
@@ -58,12 +58,12 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
     crank_pin_share: fraction of the rod's mass lumped at the crank pin; b / l if None. The distance of the mass centre
     from the rod axis is lost.
     """
-    share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
+    share = rod_mass_share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
     if not 0.0 <= share <= 1.0:
         raise InputError(f"the crank pin's share of the mass must be from 0 to 1; got {share:g}")
     radius = float(linkage.crank)
-    rod = mass_properties(mechanism.rod, float(linkage.rod)).mass
-    crank, added = mass_properties(mechanism.crank, radius), share * rod
+    rod = link_mass_properties(mechanism.rod, float(linkage.rod)).mass
+    crank, added = link_mass_properties(mechanism.crank, radius), share * rod
     total = crank.mass + added
     centre = (crank.mass * crank.centre + added * radius) / total if total > 0.0 else 0.0
     centre_across = crank.mass * crank.centre_across / total if total > 0.0 else 0.0
@@ -88,7 +88,7 @@ def rotating_and_reciprocating(
     The crank contributes its first moment, m centre / r (Eq. 35 of the paper); its counterweight does not count.
     """
     length, radius = float(linkage.rod), float(linkage.crank)
-    share = share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
-    rod = mass_properties(mechanism.rod, length).mass
-    crank = mass_properties(mechanism.crank, radius)
+    share = rod_mass_share_at_crank_pin(mechanism, linkage) if crank_pin_share is None else crank_pin_share
+    rod = link_mass_properties(mechanism.rod, length).mass
+    crank = link_mass_properties(mechanism.crank, radius)
     return crank.mass * crank.centre / radius + share * rod, mechanism.slider_mass + (1.0 - share) * rod

@@ -42,7 +42,7 @@ class Polygons:
     ACCELERATION: ClassVar = ("o1", "a11", "a1", "b11", "b1")
 
 
-def polygons(
+def motion_polygons(
     linkage: Linkage, crank_angle: ArrayLike, *, speed: ArrayLike = 0.0, acceleration: ArrayLike = 0.0
 ) -> Polygons:
     """Return the polygons at crank angles (rad) for crank speed (rad/s) and acceleration (rad/s^2); all broadcast.

@@ -46,7 +46,7 @@ def series_torque(linkage: Linkage, crank_angle: ArrayLike, *, speed: ArrayLike,
     return -np.asarray(reciprocating_mass) * (linkage.crank * w) ** 2 * shape
 
 
-def tangent_torque(
+def drive_torque_equation_48(
     linkage: Linkage,
     crank_angle: ArrayLike,
     *,

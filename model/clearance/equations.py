@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.segments import Segment, find_pieces, load_on_slider, with_formulas
+from ..dynamics.segments import Segment, add_formula_loads, find_pieces, load_on_slider
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
@@ -105,7 +105,7 @@ class Contact(NamedTuple):
 
 
 @analytic
-def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
+def configuration_of(time: float, gap: complex, gap_t: complex, s: System) -> Place:
     """Return the linkage's configuration, from the two components of the gap and of its derivative."""
     theta = s.start + s.speed * time
     crank = complex(math.cos(theta), math.sin(theta))
@@ -118,7 +118,7 @@ def locate(time: float, gap: complex, gap_t: complex, s: System) -> Place:
 
 
 @analytic
-def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) -> Contact:
+def contact_force(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) -> Contact:
     """Return the contact. rate: h / d'_0, s/m; negative while the journal is in free flight."""
     distance = abs(gap)
     depth = distance - s.clearance
@@ -148,7 +148,7 @@ def touch(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) ->
 
 
 @analytic
-def accelerate(
+def solve_accelerations(
     p: Place, force: complex, on_crank: float, on_rod: float, load: float, s: System
 ) -> tuple[complex, float, float]:
     """Return the second derivative of the gap, the slider acceleration, and the drive torque.
@@ -188,7 +188,9 @@ def load_along_x(
     force = load_on_slider(m, d, theta, Segment(block, loads, outward, piece, shift))
     moving = d.branch * p.x_t > 0.0
     if moving != outward:  # near a dead centre the loose slider lags; loads that oppose its motion reverse with it
-        force += with_formulas(0.0, m, d, block, 0, moving, loads) - with_formulas(0.0, m, d, block, 0, outward, loads)
+        force += add_formula_loads(0.0, m, d, block, 0, moving, loads) - add_formula_loads(
+            0.0, m, d, block, 0, outward, loads
+        )
     return float(d.branch * force)
 
 
@@ -197,18 +199,21 @@ def _fill_state_rates(
     time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads, out: Row
 ) -> None:
     gap, gap_t = complex(y[0], y[1]), complex(y[2], y[3])
-    p = locate(time, gap, gap_t, s)
+    p = configuration_of(time, gap, gap_t, s)
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     load = load_along_x(time, p, outward, s, block, loads, piece, shift)
-    c = touch(gap, gap_t, p.rod_t, rate, s)
-    gap_tt, _, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
+    c = contact_force(gap, gap_t, p.rod_t, rate, s)
+    gap_tt, _, torque = solve_accelerations(p, c.force, c.on_crank, c.on_rod, load, s)
     out[0], out[1] = gap_t.real, gap_t.imag
     out[2], out[3] = gap_tt.real, gap_tt.imag
     out[4], out[5], out[6] = torque * s.speed, load * p.x_t, c.lost
 
 
-def rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads) -> Row:
-    """Return the time derivative of the state (7,). rate: as in `touch`. outward: whether it is the outward stroke."""
+def state_rates(time: float, y: Row, rate: float, outward: bool, s: System, block: Table, loads: Loads) -> Row:
+    """Return the time derivative of the state (7,).
+
+    rate: as in `contact_force`. outward: whether it is the outward stroke.
+    """
     out = np.empty(STATES)
     _fill_state_rates(time, y, rate, outward, s, block, loads, out)
     return out
@@ -221,10 +226,10 @@ def _fill_reported_quantities(
     piece, shift = np.zeros(loads.kind.shape[0], np.int64), np.zeros(loads.kind.shape[0])
     for i in range(times.shape[0]):
         gap, gap_t = complex(y[0, i], y[1, i]), complex(y[2, i], y[3, i])
-        p = locate(times[i], gap, gap_t, s)
+        p = configuration_of(times[i], gap, gap_t, s)
         load = load_along_x(times[i], p, outward[i], s, block, loads, piece, shift)
-        c = touch(gap, gap_t, p.rod_t, rate[i], s)
-        _, x_tt, torque = accelerate(p, c.force, c.on_crank, c.on_rod, load, s)
+        c = contact_force(gap, gap_t, p.rod_t, rate[i], s)
+        _, x_tt, torque = solve_accelerations(p, c.force, c.on_crank, c.on_rod, load, s)
         out[0, i], out[1, i], out[2, i] = p.x, p.x_t, x_tt
         out[3, i], out[4, i], out[5, i], out[6, i] = c.normal, c.tangential, c.penetration, torque
         w, u = s.speed, p.rod_t
@@ -235,7 +240,9 @@ def _fill_reported_quantities(
         out[7, i], out[8, i], out[9, i] = kinetic, -(s.gravity.conjugate() * moment).real, c.elastic
 
 
-def observe(times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads) -> Table:
+def reported_quantities(
+    times: Row, y: Table, rate: Row, outward: Flags, s: System, block: Table, loads: Loads
+) -> Table:
     """Return the reported quantities for states (7, n), as (10, n).
 
     Slider position, velocity, acceleration; normal and tangential contact force; penetration; drive torque; kinetic,

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..errors import SlidercrankError
-from .equations import STATES, System, rates
+from .equations import STATES, System, state_rates
 
 BETWEEN = 4
 """Samples per integrator step; a vibration of the contact takes at least six steps."""
@@ -52,9 +52,9 @@ class Trace:
 class Integrator:
     """Time integration of one linkage.
 
-    system, block, loads: results of `system.build`. hysteresis, slow_impact: parameters of the clearance. tolerance:
-    relative error of a step in gap and gap velocity; the absolute tolerance relates to the clearance and to the speed
-    of a slow impact. time, state (7,), rate: current values. trace: past values.
+    system, block, loads: results of `system.build_system`. hysteresis, slow_impact: parameters of the clearance.
+    tolerance: relative error of a step in gap and gap velocity; the absolute tolerance relates to the clearance and to
+    the speed of a slow impact. time, state (7,), rate: current values. trace: past values.
     """
 
     system: System
@@ -75,11 +75,11 @@ class Integrator:
         integrator finds no sufficiently small step, or if the contact is too soft to contain the journal.
         """
         while self.time < end:
-            if not self._phase(end, outward, cancelled):
+            if not self._integrate_phase(end, outward, cancelled):
                 return False
         return True
 
-    def _phase(self, end: float, outward: bool, cancelled: Callable[[], bool] | None) -> bool:
+    def _integrate_phase(self, end: float, outward: bool, cancelled: Callable[[], bool] | None) -> bool:
         from scipy.integrate import DOP853
 
         fixed = (self.system, self.block, self.loads)
@@ -90,7 +90,7 @@ class Integrator:
         allowed[:2] = self.tolerance * self.system.clearance
         allowed[2:4] = self.tolerance * self.slow_impact
         solver = DOP853(
-            lambda t, y: rates(t, y, rate, outward, *fixed),
+            lambda t, y: state_rates(t, y, rate, outward, *fixed),
             self.time,
             self.state,
             end,
@@ -120,7 +120,7 @@ class Integrator:
                 )
             crossed = np.flatnonzero(sign * depth > 0.0)
             if len(crossed):
-                self._switch(interpolate, times[crossed[0]], times[crossed[0] + 1], sign)
+                self._switch_phase(interpolate, times[crossed[0]], times[crossed[0] + 1], sign)
                 count = crossed[0] + 1
                 times = np.append(times[:count], self.time)
                 states = np.column_stack([states[:, :count], self.state])
@@ -134,7 +134,7 @@ class Integrator:
         depth: Array = np.hypot(states[0], states[1]) - self.system.clearance
         return depth
 
-    def _switch(self, interpolate: Callable[[float], Array], before: float, after: float, sign: float) -> None:
+    def _switch_phase(self, interpolate: Callable[[float], Array], before: float, after: float, sign: float) -> None:
         """Integrate to where the gap crosses the clearance between two times, then switch to the other phase."""
         from scipy.optimize import brentq
 

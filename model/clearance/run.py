@@ -13,14 +13,14 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.clearance import Clearance
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
-from ..machine.members import require_plain
-from .equations import observe
+from ..machine.members import require_single_cylinder_at_constant_speed
+from .equations import reported_quantities
 from .phases import FLIGHT, Integrator, Trace
-from .system import build
+from .system import build_system
 
 Status = Literal["done", "cancelled"]
 
@@ -110,15 +110,15 @@ def simulate(
 
     tolerance: relative tolerance of an integration step (see `Integrator`). progress: function called after every turn.
     cancelled: function called every few steps; if it returns true, the motion so far is returned with status
-    "cancelled". Raises the errors of `system.build`, `InputError` for a crank at rest or if no turns remain, and
+    "cancelled". Raises the errors of `system.build_system`, `InputError` for a crank at rest or if no turns remain, and
     `SlidercrankError` for a contact that is too soft to contain the journal.
     """
     _require_simulable(mechanism, cycles, discard, tolerance)
     began = time.perf_counter()
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     # With the motion of the ideal linkage: zero gap and zero gap velocity.
     integrator = Integrator(
-        *build(mechanism, linkage, clearance),
+        *build_system(mechanism, linkage, clearance),
         hysteresis=clearance.hysteresis,
         slow_impact=clearance.slow_impact,
         tolerance=tolerance,
@@ -149,7 +149,7 @@ def simulate(
 def _require_simulable(mechanism: Mechanism, cycles: int, discard: int, tolerance: float) -> None:
     if not mechanism.speed:
         raise InputError("simulating a joint with clearance needs a crank speed; got none; add one")
-    require_plain(mechanism, "the simulation of a joint with clearance")
+    require_single_cylinder_at_constant_speed(mechanism, "the simulation of a joint with clearance")
     require_frictionless(mechanism.friction, "the simulation of a joint with clearance (with its own friction)")
     if not 0 <= discard < cycles:
         raise InputError(
@@ -178,7 +178,7 @@ def _collect_run(
     times = np.concatenate(trace.times)
     states = np.ascontiguousarray(np.concatenate(trace.states, axis=1))
     rate, outward = np.concatenate(trace.rates), np.concatenate(trace.outward)
-    observed = observe(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
+    observed = reported_quantities(times, states, rate, outward, integrator.system, integrator.block, integrator.loads)
     angle = mechanism.speed * times
     ideal = linkage.at(angle, speed=mechanism.speed)
     # With a loose crank pin, the gap points from the journal to the bearing (on the rod), else the reverse.

@@ -90,7 +90,7 @@ def summarise(run: ClearanceRun) -> ClearanceSummary:
     def greatest(values: Array) -> Array:
         return np.array([np.abs(values[span]).max() for span in spans])
 
-    def gained(values: Array) -> Array:
+    def gain_per_turn(values: Array) -> Array:
         return np.array([values[b] - values[a] for a, b in zip(first, last, strict=True)])
 
     lengths = np.append(np.diff(run.times), 0.0)
@@ -114,13 +114,13 @@ def summarise(run: ClearanceRun) -> ClearanceSummary:
         ),
         velocity_deviation=Estimate.from_turns(greatest(run.slider_velocity - run.ideal_velocity)),
         impacts=Estimate.from_turns(np.histogram(run.impact_times, marks)[0].astype(np.float64)),
-        contact_share=Estimate.from_turns(gained(touching) / run.period),
+        contact_share=Estimate.from_turns(gain_per_turn(touching) / run.period),
         peak_contact_force=Estimate.from_turns(greatest(run.contact_force)),
         penetration=Estimate.from_turns(np.array([run.penetration[span].max() for span in spans])),
         fastest_impact=float(run.impact_speeds[counted].max()) if counted.any() else None,
-        input_work=Estimate.from_turns(gained(run.input_work)),
-        load_work=Estimate.from_turns(gained(run.load_work)),
-        dissipated=Estimate.from_turns(gained(run.dissipated)),
-        stored=Estimate.from_turns(gained(run.stored)),
+        input_work=Estimate.from_turns(gain_per_turn(run.input_work)),
+        load_work=Estimate.from_turns(gain_per_turn(run.load_work)),
+        dissipated=Estimate.from_turns(gain_per_turn(run.dissipated)),
+        stored=Estimate.from_turns(gain_per_turn(run.stored)),
         energy_residual=float(max(residual)),
     )

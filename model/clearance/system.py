@@ -9,14 +9,14 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
 from ..machine.crank_loads import require_no_crank_load
-from ..machine.derived import derived
+from ..machine.derived import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, Raw, load_structure, raw_vector
 from .equations import System
 
 
-def build(
+def build_system(
     mechanism: Mechanism, linkage: Linkage, clearance: Clearance, *, start: float = 0.0
 ) -> tuple[System, Array, Loads]:
     """Return the system, its derived block and the structure of its loads. start: crank angle at time zero, rad.
@@ -31,7 +31,7 @@ def build(
     # Loads take the slider velocity as velocity per radian times speed; with unit speed they can use it directly.
     raw[Raw.SPEED] = 1.0
     loads = load_structure(mechanism)
-    block = derived(raw, loads)[0][0]
+    block = derived_blocks(raw, loads)[0][0]
     d = design_at(block, 0)
     crank_first = complex(d.crank_along, d.crank_across)
     rod_first = l * complex(d.rod_along, d.rod_across)
@@ -79,7 +79,7 @@ def build(
 
 
 def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Clearance) -> None:
-    """Raise the errors of `build`, except those about masses."""
+    """Raise the errors of `build_system`, except those about masses."""
     linkage.require_full_rotation()
     if mechanism.acceleration:
         raise InputError(

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..machine.mechanism import Mechanism
 
 
-def crank_speed(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
+def crank_speed_and_acceleration(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]:
     """Return crank speed, rad/s, and acceleration, rad/s^2, at crank angles (n,), rad."""
     profile, speed = mechanism.speed_profile, mechanism.speed
     if profile is None:
@@ -22,11 +22,11 @@ def crank_speed(mechanism: Mechanism, crank_angle: Array) -> tuple[Array, Array]
 def turn_time(mechanism: Mechanism) -> float:
     """Return the time of one turn, s, along the profile; infinite at rest. An accelerating crank has no turn time."""
     profile = mechanism.speed_profile
-    over_time = mechanism.speed * (1.0 if profile is None else profile.over_time)
+    over_time = mechanism.speed * (1.0 if profile is None else profile.time_mean_over_angle_mean)
     return 2.0 * math.pi / abs(over_time) if over_time else math.inf
 
 
-def acceleration_slope(mechanism: Mechanism, crank_angle: Array) -> Array:
+def acceleration_slope_by_angle(mechanism: Mechanism, crank_angle: Array) -> Array:
     """Return the derivative of the acceleration with respect to the crank angle, rad/s^2, at crank angles (n,), rad."""
     profile = mechanism.speed_profile
     if profile is None:

@@ -10,24 +10,24 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
-from ..dynamics.contact import rubs, sides_of
-from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
+from ..dynamics.contact import needs_friction_kernel, sides_of
+from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
+from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
-from ..machine.derived import derived
+from ..linkage.single_linkage import single_rotating_linkage
+from ..machine.derived import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.raw import Loads, load_structure, raw_vector
-from ..machine.two_turns import TURN, cycle_turns, half_at, halves, require_one_turn
+from ..machine.two_turns import TURN, cycle_turns, half_at, machines_of_both_turns, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
-from .crank_speed import crank_speed
+from .crank_speed import crank_speed_and_acceleration
 from .self_locking import require_driving
 
 _COLUMNS = 16
@@ -79,19 +79,19 @@ def _fill_cycle_curves(
         block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
         d = design_at(block, 0)
         sine, cosine = math.sin(theta), math.cos(theta)
-        _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+        _, outward = enter_segment(d, block, 0, theta, loads, watch, piece, shift)
         segment = Segment(block, loads, outward, piece, shift)
         m = design_motion(sine, cosine, d)
         load = load_on_slider(m, d, theta, segment)
         sides = sides_of(theta, d, segment, rubbing)
-        f = joint_forces(sine, cosine, m, d, load, sides)
+        f = joint_forces_with_optional_friction(sine, cosine, m, d, load, sides)
         j = influences(sine, cosine, m, d.l)
         out[0, i] = m.x
         out[1, i] = m.x_1 * d.speed
         out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
         out[3, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
         out[4, i] = load
-        way = sense_of(d)
+        way = rotation_sense(d)
         out[5, i] = torque_without_crank_loads(f.torque, theta, way, segment)
         out[6, i] = f.pivot_x
         out[7, i] = f.pivot_y
@@ -122,38 +122,44 @@ def cycle(
     zero speed. Torque and forces are NaN where friction locks the linkage (see `rubbing` for where they are
     undetermined). Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves all
-    mechanism_motion = crank_speed(mechanism, angles)
+    mechanism_motion = crank_speed_and_acceleration(mechanism, angles)
     speeds, accelerations = (
         np.array(np.broadcast_to(np.asarray(default if argument is None else argument, dtype=np.float64), angles.shape))
         for argument, default in zip((speed, acceleration), mechanism_motion, strict=True)
     )
     if not (np.isfinite(angles).all() and np.isfinite(speeds).all() and np.isfinite(accelerations).all()):
         raise InputError("crank angles, speeds and accelerations must be finite")
-    return curves_of(mechanism, linkage, angles, speeds, accelerations)
+    return cycle_at_speeds(mechanism, linkage, angles, speeds, accelerations)
 
 
-def curves_of(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
+def cycle_at_speeds(
+    mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array
+) -> Cycle:
     """Return the curves of one linkage, which need not rotate fully but must close at all crank angles (n,)."""
     if cycle_turns(mechanism) > 1:
-        return _of_two_turns(mechanism, linkage, angles, speeds, accelerations)
+        return _cycle_of_two_turns(mechanism, linkage, angles, speeds, accelerations)
     out = np.empty((_COLUMNS, len(angles)))
     watch, loads = CycleWindow(0, 0.0, 1.0, False), load_structure(mechanism)
     at, w, a = (np.require(values, np.float64, ["C", "W"]) for values in (angles, speeds, accelerations))
     block = _derived_block(mechanism, linkage).copy()  # the kernel sets the speed at each angle
-    _fill_cycle_curves(block, loads, watch, at, w, a, out, rubs(mechanism))
+    _fill_cycle_curves(block, loads, watch, at, w, a, out, needs_friction_kernel(mechanism))
     return Cycle(angles, *out)
 
 
-def _of_two_turns(mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array) -> Cycle:
+def _cycle_of_two_turns(
+    mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array
+) -> Cycle:
     """Return the curves over a cycle of two turns, each angle from the machine of its own turn."""
     turn = half_at(mechanism, *linkage.dead_centre_angles, angles)
-    parts = [curves_of(half, linkage, angles, speeds, accelerations) for half in halves(mechanism)]
+    parts = [
+        cycle_at_speeds(half, linkage, angles, speeds, accelerations) for half in machines_of_both_turns(mechanism)
+    ]
     return Cycle(*(np.where(turn == 0, *(getattr(part, field.name) for part in parts)) for field in fields(Cycle)))
 
 
-def design_of(mechanism: Mechanism, linkage: Linkage) -> Design:
+def derived_design(mechanism: Mechanism, linkage: Linkage) -> Design:
     """Return one linkage's numbers for the equations of motion; missing dead centres are NaN."""
     design: Design = design_at(_derived_block(mechanism, linkage), 0)
     return design
@@ -177,7 +183,7 @@ def _derived_block(mechanism: Mechanism, linkage: Linkage) -> Table:
 def _derived_blocks(mechanism: Mechanism, design: Array) -> Table:
     raw = raw_vector(mechanism)
     raw[:3] = design[0]
-    block: Table = derived(raw, load_structure(mechanism))[0][0]
+    block: Table = derived_blocks(raw, load_structure(mechanism))[0][0]
     block.flags.writeable = False
     return block
 
@@ -188,13 +194,13 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     There is at least one; in between, every curve is smooth. For a cycle of two turns, the angles are in [0, 4 pi).
     Raises `InputError` where friction locks the linkage.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     if cycle_turns(mechanism) > 1:
-        angles = np.concatenate([breakpoints(half, linkage) for half in halves(mechanism)])
+        angles = np.concatenate([breakpoints(half, linkage) for half in machines_of_both_turns(mechanism)])
         return np.unique(np.concatenate([angles, angles + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
     require_driving(mechanism.friction, linkage)
     watch = cycle_window(mechanism, Signal.TORQUE)
-    cuts = breakpoints_of(derived(raw, loads)[0], loads, watch, rubbing=rubs(mechanism))
+    cuts = breakpoints_of(derived_blocks(raw, loads)[0], loads, watch, rubbing=needs_friction_kernel(mechanism))
     return cuts.angle[0, : cuts.many[0]]

@@ -21,9 +21,9 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.segments import crowded, crowding, uncrowded
+from ..dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.averages import average
@@ -70,21 +70,21 @@ class Energies:
         return self.useful / net if self.useful > 0.0 else max(0.0, net / self.useful)
 
 
-def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
+def cycle_energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
     """Return the energies over one cycle for one linkage.
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not rotate fully.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     cuts = breakpoints(mechanism, linkage)
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
-    kappa = crowding(*map(float, dimensions[0]))
+    kappa = crowding_parameter(*map(float, dimensions[0]))
     turn = 1.0 if mechanism.speed >= 0.0 else -1.0
     friction = mechanism.friction
 
-    def rates(tau: Array) -> Array:
+    def energy_rates(tau: Array) -> Array:
         """Return all integrands (k, n) over the crowded angle."""
-        theta = np.array([uncrowded(angle, kappa) for angle in tau])
+        theta = np.array([crank_angle_from_crowded(angle, kappa) for angle in tau])
         weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2)
         curves = cycle(mechanism, linkage, theta)
         motion = linkage.at(theta, speed=1.0)
@@ -104,10 +104,10 @@ def energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
         return integrands
 
     turns = cycle_turns(mechanism)
-    edges = [crowded(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
+    edges = [crowded_from_crank_angle(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
     ends = np.concatenate([edges[:1], *(np.linspace(a, b, 1 + _PIECES)[1:] for a, b in pairwise(edges))])
-    sizes = np.abs(rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
-    panels = panels_of(rates, ends, np.where(sizes > 0.0, sizes, 1.0))
+    sizes = np.abs(energy_rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
+    panels = panels_of(energy_rates, ends, np.where(sizes > 0.0, sizes, 1.0))
     drive_work, useful, guide, pivot, crank_pin, slider_pin, throughput = map(panels.integral, range(len(sizes)))
     inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
     stored = turn * turns * TURN * mechanism.acceleration * float(inertia)

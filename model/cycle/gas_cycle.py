@@ -17,19 +17,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.gas import compressed_at, expanded_at
+from ..dynamics.gas import compression_end_position, expansion_end_position
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import turning
-from ..machine.derived import derived
+from ..kernel.batches import require_full_rotation
+from ..machine.derived import derived_blocks
 from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.compressor import Compressor
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.members import cylinder_count
-from ..machine.numbers import numbers_of
-from ..machine.raw import fullest_inputs
-from ..machine.two_turns import cycle_turns, halves
+from ..machine.numbers import raw_numbers_of_designs
+from ..machine.raw import raw_inputs_with_all_features
+from ..machine.two_turns import cycle_turns, machines_of_both_turns
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
 _SERIES = 1e-4  # |x| below which f is computed from its series: x^4 / 120 is then below rounding
@@ -66,33 +66,33 @@ def compressors(mechanism: Mechanism) -> tuple[Compressor, ...]:
     return tuple(load for load in mechanism.loads if isinstance(load, Compressor))
 
 
-def may_deliver_nothing(mechanism: Mechanism) -> bool:
+def compressor_may_deliver_nothing(mechanism: Mechanism) -> bool:
     """Return whether the delivery of a compressor depends on the design; otherwise it has been checked beforehand."""
-    gas = {k: load for k, load in cylinders(mechanism.fullest) if isinstance(load, Compressor)}
+    gas = {k: load for k, load in cylinders(mechanism.with_largest_variables) if isinstance(load, Compressor)}
     varied = {path.split(".")[1] for item in mechanism.varying for path in item.paths if path.startswith("loads.")}
     return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
 
 
-def gas_cycle(
+def gas_cycle_number(
     mechanism: Mechanism, designs: Array, number: Callable[[GasCycle], Any], *, gradients: bool = False
 ) -> tuple[Array, Array | None]:
     """Return one number (n,) from the `GasCycle` for designs (n, 3 + k), and its derivatives (n, 3 + k).
 
     For several cylinders on one crankshaft, volumes and works are totals.
     """
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     count = cylinder_count(mechanism)
     if count > 1:
         single = replace(mechanism, arrangement=None)
-        return gas_cycle(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
+        return gas_cycle_number(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _gas_cycle_of_two_turns(mechanism, designs, gradients=gradients)
         return np.asarray(number(sums), dtype=np.float64), None if rates is None else _derivatives_by_design(
             number, sums, rates
         )
-    raw, loads = fullest_inputs(mechanism)
-    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
-    blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+    raw, loads = raw_inputs_with_all_features(mechanism)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
+    blocks, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
     values = np.asarray(number(_sum_gas_cycles(mechanism, blocks[:, :, 0])), dtype=np.float64)
     if not gradients:
         return values, None
@@ -106,10 +106,10 @@ def _gas_cycle_of_two_turns(
     """Return the sums over a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
     four = [load.cycle_turns > 1 for load in mechanism.loads]
     sums, slopes = [], []
-    for half in halves(mechanism):
-        raw, loads = fullest_inputs(half)
-        numbers = numbers_of(half, designs, limit=len(raw), gradients=gradients)
-        blocks, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+    for half in machines_of_both_turns(mechanism):
+        raw, loads = raw_inputs_with_all_features(half)
+        numbers = raw_numbers_of_designs(half, designs, limit=len(raw), gradients=gradients)
+        blocks, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
         sums.append(_sum_gas_cycles(half, blocks[:, :, 0], four))
         if gradients:
             shape = len(designs), len(numbers.columns)
@@ -157,7 +157,10 @@ def _sum_gas_cycles(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()
 
 def _stroke_work(stroke: Any, h: Any, low: Any, high: Any, compression: Any, expansion: Any) -> Any:
     """Return the work of expansion and of compression per piston area, J/m^2, and the intake fraction of the stroke."""
-    expanded, compressed = expanded_at(h, high / low, expansion), compressed_at(stroke, h, high / low, compression)
+    expanded, compressed = (
+        expansion_end_position(h, high / low, expansion),
+        compression_end_position(stroke, h, high / low, compression),
+    )
     with np.errstate(divide="ignore", invalid="ignore"):  # without clearance the gas is expanded from the start
         full_stroke, ratio = np.log((h + stroke) / h), np.log(high / low)
     opens, delivers = expanded.real < stroke.real, compressed.real > 0.0

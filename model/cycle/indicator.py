@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..dynamics.gas import compressed_at, expanded_at
+from ..dynamics.gas import compression_end_position, expansion_end_position
 from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import half_at, in_cycle
+from ..machine.two_turns import half_at, shift_into_half
 
 _BEFORE = 5e-10  # shift to an earlier crank angle, rad: less than the width at which figures mark jumps
 
@@ -33,7 +33,7 @@ class Indicator:
 
 def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
     """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     stroke, sign, top = _stroke_and_piston_top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
@@ -60,32 +60,35 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
 
     None if there is no such event.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     stroke = _stroke_and_piston_top(linkage, load)[0]
     if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
         return None, None
     h, ratio = load.clearance * stroke + load.clearance_volume / load.area, load.high / load.low
-    events = expanded_at(h, ratio, load.expansion_exponent), compressed_at(stroke, h, ratio, load.compression_exponent)
+    events = (
+        expansion_end_position(h, ratio, load.expansion_exponent),
+        compression_end_position(stroke, h, ratio, load.compression_exponent),
+    )
     ends = [
         _angle_at(mechanism, linkage, load, float(z), away=away) for z, away in zip(events, (True, False), strict=True)
     ]
     return ends[0], ends[1]
 
 
-def burning_ends(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> float | None:
+def burning_end_angle(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> float | None:
     """Return the crank angle at which burning at peak pressure ends, rad in [0, 4 pi).
 
     None if there is no such phase.
     """
     if not isinstance(load, LimitedPressure):
         return None
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angle = _angle_at(
         mechanism, linkage, load, load.burning_share * _stroke_and_piston_top(linkage, load)[0], away=True
     )
     if angle is None or load.cycle_turns == 1:
         return angle
-    return float(in_cycle(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
+    return float(shift_into_half(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
 
 
 def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..dynamics.torque import Balance, balance
+from ..dynamics.torque import Balance, balance_before_pin_force
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
-from ..machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
+from ..linkage.single_linkage import single_rotating_linkage
+from ..machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure, raw_vector
@@ -42,9 +42,9 @@ class Verdict:
         return not self.margin > 0.0
 
 
-def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
+def locking_verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     """Return whether friction locks one fully rotating linkage, and where."""
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     margin = float(locking_margin(mechanism.friction, np.array([_float_dimensions(linkage)]))[0][0])
     if margin > 0.0:
         return Verdict(margin, (), None)
@@ -62,7 +62,7 @@ def verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
 
 def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
     """Return whether one linkage "drives", "locks" or "may jam" under its loads at each crank angle (n,), rad."""
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _derived_design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load
@@ -83,7 +83,7 @@ def _derived_design(mechanism: Mechanism, linkage: Linkage) -> Design:
     raw, loads = raw_vector(mechanism)[:, None], load_structure(mechanism)
     raw[:3, 0] = _float_dimensions(linkage)
     block = np.empty((DESIGN + LOAD_ROWS * len(loads.kind), 1))
-    derive(raw, loads.kind, loads.datum, block)
+    derive_design(raw, loads.kind, loads.datum, block)
     design: Design = design_at(block, 0)
     return design
 
@@ -135,7 +135,7 @@ def _has_equilibrium_in_between(d: Design, theta: float, load: float) -> bool:
     """Return whether h crosses zero in between although both its ends have the same sign."""
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, d.r, d.l, d.e, d.branch)
-    b: Balance = balance(sine, cosine, m, d, load)
+    b: Balance = balance_before_pin_force(sine, cosine, m, d, load)
     turn = 1.0 if d.speed >= 0.0 else -1.0
     slide, swing = np.sign(m.x_1 * turn), np.sign(m.rod_1 * turn)
     weight = d.slider_mass * d.gravity_y

@@ -16,15 +16,15 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.arrangement import Arrangement
 from ..machine.mechanism import Mechanism
-from ..machine.members import members
+from ..machine.members import member_machines
 from ..machine.speed_profile import time_per_angle
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
 from ..signals.panels import Extreme, Panels, panels_of, peak_of
-from .crank_speed import crank_speed, speed_knots
+from .crank_speed import crank_speed_and_acceleration, speed_knots
 from .cycle import breakpoints, cycle
 from .shaking import shaking_curves
 
@@ -82,9 +82,9 @@ class MultiCylinderCycle:
 def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> MultiCylinderCurves:
     """Return the combined curves of all cylinders at shaft crank angles (n,), rad; raises as `cycle` does."""
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    speed, acceleration = crank_speed(mechanism, theta)
+    speed, acceleration = crank_speed_and_acceleration(mechanism, theta)
     torques, sums, sizes = [], np.zeros((5, len(theta))), np.zeros((5, len(theta)))
-    for member in members(mechanism):
+    for member in member_machines(mechanism):
         at = theta + member.lead
         torques.append(cycle(member.mechanism, linkage, at, speed=speed, acceleration=acceleration).torque)
         shaken = shaking_curves(member.mechanism, linkage, at, speed=speed, acceleration=acceleration)
@@ -102,14 +102,14 @@ def multi_cylinder_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: A
 
 def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the shaft crank angles, rad from 0, at which the torque may have a jump or a kink."""
-    angles = [breakpoints(member.mechanism, linkage) - member.lead for member in members(mechanism)]
+    angles = [breakpoints(member.mechanism, linkage) - member.lead for member in member_machines(mechanism)]
     angles += [speed_knots(mechanism) + turn * TURN for turn in range(cycle_turns(mechanism))]
     return np.unique(np.mod(np.concatenate(angles), cycle_turns(mechanism) * TURN))
 
 
 def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinderCycle:
     """Return the statistics for all cylinders together; raises as `cycle` and `breakpoints` do."""
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     cuts = multi_cylinder_breakpoints(mechanism, linkage)
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
@@ -128,7 +128,7 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
         mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
         rms=math.sqrt(panels.mean_square(_TORQUE, time=time)),
         fluctuation=math.sqrt(panels.mean_square(_TORQUE, subtract=mean)),
-        energy_change=panels.swing(_TORQUE),
+        energy_change=panels.integral_range(_TORQUE),
         shaking_force=_force_extreme(panels, _FORCE, sizes, period),
         rms_shaking_force=math.sqrt(max(0.0, panels.mean(_FORCE, time))),
         shaking_moment=_zero_if_cancelled(Extreme(abs(moment.value), moment.angle), sizes[_MOMENT], period),
@@ -150,7 +150,7 @@ def _magnitudes_without_cancelling(mechanism: Mechanism, linkage: Linkage) -> Ar
     theta = np.linspace(0.0, cycle_turns(mechanism) * TURN, _SAMPLES, endpoint=False)
     profile, sizes = mechanism.speed_profile, np.zeros(7)
     sizes[_TIME] = 1.0 if profile is None else time_per_angle(profile, theta).max()
-    for member in members(mechanism):
+    for member in member_machines(mechanism):
         single = replace(mechanism, arrangement=Arrangement(phases=(member.lead,)), gravity=member.mechanism.gravity)
         curves = multi_cylinder_curves(single, linkage, theta)
         force, torque = np.hypot(curves.force_x, curves.force_y).max(), np.abs(curves.torque).max()

@@ -33,7 +33,7 @@ from ..kinematics.geometry import least_transmission_angle
 from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import number_of, require_width
+from ..machine.numbers import raw_number_at_slot, require_width
 from ..machine.raw import Raw
 
 
@@ -43,7 +43,7 @@ def locking_margin(friction: Friction, designs: Array, *, gradients: bool = Fals
     It does not depend on loads and masses: zero or less means that the linkage locks or may jam somewhere (see module).
     -inf if the sum of the friction circle radii is at least the rod length.
     """
-    return varied_margin(Mechanism(friction=friction), designs, gradients=gradients)
+    return locking_margin_with_variables(Mechanism(friction=friction), designs, gradients=gradients)
 
 
 def locking_reason(friction: Friction, linkage: Linkage) -> str:
@@ -64,7 +64,9 @@ def require_driving(friction: Friction, linkage: Linkage) -> None:
         raise InputError(reason)
 
 
-def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
+def locking_margin_with_variables(
+    mechanism: Mechanism, designs: Array, *, gradients: bool = False
+) -> tuple[Array, Array | None]:
     """Return the self-locking margin, like `locking_margin`, for designs (n, 3 + k) of a machine with variables."""
     designs = np.asarray(designs, dtype=np.float64)
     require_width(mechanism, designs)
@@ -79,7 +81,7 @@ def varied_margin(mechanism: Mechanism, designs: Array, *, gradients: bool = Fal
         (Raw.SLIDER_PIN_RADIUS, friction.slider_pin.radius),
         (Raw.SLIDER_PIN_FRICTION, friction.slider_pin.coefficient),
     )
-    (mu, mu_slope), *pins = (number_of(mechanism, slot, designs, otherwise=value) for slot, value in slots)
+    (mu, mu_slope), *pins = (raw_number_at_slot(mechanism, slot, designs, otherwise=value) for slot, value in slots)
     (a, a_slope), (b, b_slope), (c, c_slope), (d, d_slope) = pins
     sums = a * b + c * d
     slopes = a[:, None] * b_slope + b[:, None] * a_slope + c[:, None] * d_slope + d[:, None] * c_slope

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.inertia import reflected_inertia, shaking
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
-from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
+from ..linkage.single_linkage import single_rotating_linkage
+from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import inertial_inputs, raw_vector
-from ..machine.two_turns import one_turn
+from ..machine.raw import raw_inputs_with_added_masses_only, raw_vector
+from ..machine.two_turns import machine_of_first_turn
 from ..signals.signals import design_motion
-from .crank_speed import crank_speed
+from .crank_speed import crank_speed_and_acceleration
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,16 @@ def shaking_curves(
     speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,); by default those of the
     mechanism, along its profile if it has one.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    _, structure = inertial_inputs(one_turn(mechanism))
+    _, structure = raw_inputs_with_added_masses_only(machine_of_first_turn(mechanism))
     raw = raw_vector(mechanism)[:, None]
     raw[:3, 0] = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     block = np.empty((DESIGN + LOAD_ROWS * len(structure.kind), 1))
-    derive(raw, structure.kind, structure.datum, block)
+    derive_design(raw, structure.kind, structure.datum, block)
     d = design_at(block, 0)
     if mechanism.speed_profile is not None:
-        profile_motion = crank_speed(mechanism, theta)
+        profile_motion = crank_speed_and_acceleration(mechanism, theta)
         speed = profile_motion[0] if speed is None else speed
         acceleration = profile_motion[1] if acceleration is None else acceleration
     d = d if speed is None else d._replace(speed=speed)

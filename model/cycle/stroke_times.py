@@ -17,7 +17,7 @@ from ..arrays import Array
 from ..kinematics import geometry
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinders_of
+from ..machine.members import cylinder_machines
 from ..machine.speed_profile import Profile
 
 _EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is a rounding error
@@ -48,13 +48,13 @@ def scaled_stroke_times(
     """
     profile = mechanism.speed_profile
     if profile is None:
-        inward_span: Any = math.pi + mechanism.sign * geometry.excess_angle(crank, rod, offset)
+        inward_span: Any = math.pi + mechanism.sign * geometry.excess_stroke_angle(crank, rod, offset)
         turn = 2.0 * math.pi
     else:
         outer, inner = geometry.outer_crank_angle(crank, rod, offset), geometry.inner_crank_angle(crank, rod, offset)
         if mechanism.branch == "crossed":
             outer, inner = math.pi - outer, 3.0 * math.pi - inner
-        lead = cylinders_of(mechanism)[cylinder].lead
+        lead = cylinder_machines(mechanism)[cylinder].lead
         inward_span = _elapsed_time(profile, inner - lead) - _elapsed_time(profile, outer - lead)
         turn = profile.elapsed_time.full_turn
     outward, inward = (
@@ -100,7 +100,7 @@ def slow_stroke(mechanism: Mechanism, linkage: Linkage) -> NDArray[np.str_]:
         return linkage.slow_stroke(direction=mechanism.direction)
     linkage.require_full_rotation()
     slower = []
-    for cylinder in range(len(cylinders_of(mechanism))):
+    for cylinder in range(len(cylinder_machines(mechanism))):
         times = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset, cylinder=cylinder)
         difference = np.asarray((times.outward - times.inward) / (times.outward + times.inward))
         slower.append(np.where(difference > _EQUAL, "outward", np.where(difference < -_EQUAL, "inward", "equal")))

@@ -10,7 +10,7 @@ from ..arrays import Array
 from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
 from ..machine.design import design_at
 from ..machine.raw import Loads
-from .contact import cut_contacts
+from .contact import add_contact_cuts
 from .rubbing import always_drives
 from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
 
@@ -42,7 +42,7 @@ def _fill_breakpoints(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoint
         cuts = Cuts(breakpoints.angle[n], breakpoints.code[n], breakpoints.number[n], breakpoints.load[n])
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if rubbing:
-            count = cut_contacts(d, block, loads, watch, cuts, count, piece, shift)
+            count = add_contact_cuts(d, block, loads, watch, cuts, count, piece, shift)
         breakpoints.many[n] = count
 
 

@@ -47,6 +47,6 @@ def torque_without_crank_loads(torque: Any, theta: Any, way: float, segment: Seg
 
 
 @analytic
-def sense_of(d: Any) -> float:
+def rotation_sense(d: Any) -> float:
     """Return the sense of rotation of the crank: 1 counter-clockwise or at rest, -1 clockwise."""
     return 1.0 if d.speed.real >= 0.0 else -1.0

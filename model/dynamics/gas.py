@@ -29,19 +29,19 @@ _NEAR = 1e-12
 
 
 @analytic
-def expanded_at(h: Any, ratio: Any, exponent: Any) -> Any:
+def expansion_end_position(h: Any, ratio: Any, exponent: Any) -> Any:
     """Return z_e, m, for a ratio p_h / p_l: where the gas has expanded to low pressure."""
     return h * (power(ratio, inverse(exponent)) - 1.0)
 
 
 @analytic
-def compressed_at(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
+def compression_end_position(stroke: Any, h: Any, ratio: Any, exponent: Any) -> Any:
     """Return z_c, m, for a ratio p_h / p_l: where the gas has been compressed to high pressure."""
     return (h + stroke) * inverse(power(ratio, inverse(exponent))) - h
 
 
 @analytic
-def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
+def valve_event_positions(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
     """Return z_e and z_c for the cylinder that is load k in a derived block.
 
     If gas burns, the first is z_b, and there is no second event.
@@ -52,23 +52,25 @@ def events_of(d: Any, block: Any, j: int, k: int, kind: int) -> Any:
     stroke, h, ratio = d.outer - d.inner, block[q + 1, j], block[q + 3, j] * inverse(block[q + 2, j])
     if block[q + 4, j].real == 0.0:
         return 0.0 * h, stroke + 0.0 * h
-    return expanded_at(h, ratio, block[q + 5, j]), compressed_at(stroke, h, ratio, block[q + 4, j])
+    return expansion_end_position(h, ratio, block[q + 5, j]), compression_end_position(
+        stroke, h, ratio, block[q + 4, j]
+    )
 
 
 @analytic
-def piece_at(d: Any, block: Any, j: int, k: int, kind: int, x: float) -> int:
+def pressure_piece_at(d: Any, block: Any, j: int, k: int, kind: int, x: float) -> int:
     """Return 1 beyond z_e or z_b, plus 2 beyond z_c, for a slider distance x from the crank pivot."""
     q = DESIGN + LOAD_ROWS * k
-    expanded, compressed = events_of(d, block, j, k, kind)
+    expanded, compressed = valve_event_positions(d, block, j, k, kind)
     z, near = block[q, j] * (x - block[q + 1, j]), _NEAR * (d.outer - d.inner)
     return (1 if z >= expanded - near else 0) + (2 if z > compressed + near else 0)
 
 
 @analytic
 def gas_force(m: Any, d: Any, block: Any, j: int, k: int, outward: bool, piece: int) -> Any:
-    """Return the force from gas and back pressure on the piston, N outward, on a piece from `piece_at`."""
+    """Return the force from gas and back pressure on the piston, N outward, on a piece from `pressure_piece_at`."""
     q = DESIGN + LOAD_ROWS * k
-    # Selected, as in `segments.with_formulas`, so that results without a cylinder are unchanged to the last digit.
+    # Selected, as in `segments.add_formula_loads`, so that results without a cylinder are unchanged to the last digit.
     position = m.x if d.branch.real > 0.0 else -m.x
     sign, z = block[q, j], block[q, j] * (position - block[q + 1, j])
     area, h, low, high = block[q + 2, j], block[q + 3, j], block[q + 4, j], block[q + 5, j]

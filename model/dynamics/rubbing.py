@@ -33,7 +33,7 @@ from typing import Any, NamedTuple
 from ..kernel.arithmetic import analytic, inverse, root
 from ..kinematics.position import Motion
 from ..machine.design import Design
-from .torque import Forces, balance, forces, joined
+from .torque import Forces, balance_before_pin_force, forces, forces_from_slider_pin_force
 
 _ITERATIONS = 100
 _CONVERGED = 1e-15
@@ -55,7 +55,7 @@ class Sides(NamedTuple):
 
 
 @analytic
-def drives(l_cos: Any, l_sin: Any, d: Design) -> Any:
+def determinacy_margin(l_cos: Any, l_sin: Any, d: Design) -> Any:
     """Return the margin in condition (*), m: positive where the forces are determined for any load."""
     mu = d.guide_friction
     return abs(l_cos) - mu * abs(l_sin) - root(1.0 + mu * mu) * (d.crank_pin_circle + d.slider_pin_circle)
@@ -63,15 +63,15 @@ def drives(l_cos: Any, l_sin: Any, d: Design) -> Any:
 
 @analytic
 def always_drives(d: Design) -> Any:
-    """Return the minimum of `drives` over the cycle, at sin(theta) = -sgn(e)."""
+    """Return the minimum of `determinacy_margin` over the cycle, at sin(theta) = -sgn(e)."""
     pin_distance = d.r + abs(d.e)
-    return drives(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
+    return determinacy_margin(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
 
 
 @analytic
-def touch(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, swing: Any) -> Any:
+def guide_side_function(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, grip: Any, swing: Any) -> Any:
     """Return h(-W) times the branch: it has the sign of the guide force, and is smooth between other breakpoints."""
-    b = balance(sine, cosine, m, d, load)
+    b = balance_before_pin_force(sine, cosine, m, d, load)
     y = -d.slider_mass * d.gravity_y
     ax, ay = b.pull + b.rod_x, y + b.rod_y
     pins = d.slider_pin_circle * swing * root(b.pull * b.pull + y * y)
@@ -95,14 +95,14 @@ def _rod_moment_residual(
 @analytic
 def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: Sides) -> Forces:
     """Return drive torque and reactions with friction; all NaN where they are not determined."""
-    b = balance(sine, cosine, m, d, load)
+    b = balance_before_pin_force(sine, cosine, m, d, load)
     weight = d.slider_mass * d.gravity_y
     mu = d.guide_friction * (s.slide * s.press)
     slope = m.l_cos - m.l_sin * mu
     pull = b.pull + mu * weight
     rest = b.moment - m.l_sin * pull
     p, q = -d.crank_pin_circle * s.grip, d.slider_pin_circle * s.swing
-    least = drives(m.l_cos.real, m.l_sin.real, d)
+    least = determinacy_margin(m.l_cos.real, m.l_sin.real, d)
     y = math.nan
     if least.real > 0.0:
         steep, still = slope.real, rest.real
@@ -129,7 +129,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
                     break
     h, rate = _rod_moment_residual(y, slope, rest, mu, pull, b.rod_x, b.rod_y, p, q)
     by = y - h * inverse(rate)
-    f = joined(sine, cosine, d, b, pull + mu * by, by)
+    f = forces_from_slider_pin_force(sine, cosine, d, b, pull + mu * by, by)
     pin = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y)
     pivot = root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
     torque = f.torque + (s.grip * d.crank_pin_circle * pin + s.turn * d.crank_pivot_circle * pivot)
@@ -137,7 +137,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
 
 
 @analytic
-def joint_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
+def joint_forces_with_optional_friction(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
     """Return drive torque and reactions, with friction unless `sides` are 0, or None if friction is not compiled."""
     if sides is None:
         return forces(sine, cosine, m, d, load)

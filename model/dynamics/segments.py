@@ -19,8 +19,8 @@ from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.load import Enters
 from ..machine.loads.registry import force_of
 from ..machine.raw import Loads
-from .gas import burning_force, events_of, gas_force, piece_at
-from .torque import smooth_load
+from .gas import burning_force, gas_force, pressure_piece_at, valve_event_positions
+from .torque import load_without_pieces
 
 _ANGLE_TABLE, _FORMULA = int(Enters.ANGLE_TABLE), int(Enters.FORMULA)
 _CYLINDER, _BURNING_CYLINDER = int(Enters.CYLINDER), int(Enters.BURNING_CYLINDER)
@@ -61,7 +61,7 @@ class Segment(NamedTuple):
     """State that determines the loads within one segment of a design's cycle.
 
     block: derived numbers (rows, 1), real or with an imaginary step. outward: the slider's stroke. piece, shift: the
-    piece of every table and cylinder, and the turns by which an angle table is shifted, filled by `enter`.
+    piece of every table and cylinder, and the turns by which an angle table is shifted, filled by `enter_segment`.
     """
 
     block: Any
@@ -111,7 +111,7 @@ def _cut_valves(d: Design, block: Any, j: int, k: int, kind: int, margin: float,
     Each is added in its own stroke or, if the crank is at rest, in both.
     """
     sign, origin = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
-    expanded, compressed = events_of(d, block, j, k, kind)
+    expanded, compressed = valve_event_positions(d, block, j, k, kind)
     first = _BURNT if kind == _BURNING_CYLINDER else _EXPANDED
     for event in range(2):
         x = origin + sign * (compressed if event else expanded)
@@ -169,7 +169,7 @@ def cut_cycle(d: Design, block: Any, j: int, loads: Loads, watch: CycleWindow, c
 
 
 @analytic
-def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> float:
+def frictionless_cut_imaginary_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> float:
     """Return the imaginary part of the angle of breakpoint i when the design carries an imaginary step."""
     code = cuts.code[i]
     if code == _FIXED:
@@ -188,7 +188,7 @@ def cut_shift(d: Any, block: Any, j: int, theta: float, cuts: Cuts, i: int) -> f
         target = (block[row + 1, j] + block[row, j] * block[row + AREA + 7, j]).imag
     elif code in (_EXPANDED, _COMPRESSED):
         row = DESIGN + LOAD_ROWS * cuts.load[i]
-        expanded, compressed = events_of(d, block, j, cuts.load[i], _CYLINDER)
+        expanded, compressed = valve_event_positions(d, block, j, cuts.load[i], _CYLINDER)
         target = (block[row + 1, j] + block[row, j] * (compressed if code == _COMPRESSED else expanded)).imag
     else:
         row = DESIGN + LOAD_ROWS * cuts.load[i]
@@ -214,7 +214,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if loads.kind[k] == _CYLINDER or loads.kind[k] == _BURNING_CYLINDER:
-            piece[k] = piece_at(d, block, j, k, loads.kind[k], x)
+            piece[k] = pressure_piece_at(d, block, j, k, loads.kind[k], x)
         if first == last:
             continue
         if loads.kind[k] == _ANGLE_TABLE:
@@ -243,7 +243,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 
 
 @analytic
-def enter(
+def enter_segment(
     d: Design, block: Any, j: int, probe: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
     """Fix the table pieces for the segment that contains the crank angle `probe`; return (counts, outward).
@@ -263,13 +263,13 @@ def enter(
 
 
 @analytic
-def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
+def add_formula_loads(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool, loads: Loads) -> Any:
     """Return a force plus all loads with their own formula, N outward."""
     way = 1.0 if outward else -1.0
     for k in range(loads.kind.shape[0]):
         if loads.kind[k] >= _FORMULA:
-            # Selected rather than multiplied by the branch: the compiler regroups a product shared with `smooth_load`,
-            # which would change the last digits of machines without such a load.
+            # Selected rather than multiplied by the branch: the compiler regroups a product shared with
+            # `load_without_pieces`, which would change the last digits of machines without such a load.
             position, pace = (m.x, m.x_1) if d.branch.real > 0.0 else (-m.x, -m.x_1)
             first, second = block[DESIGN + LOAD_ROWS * k, j], block[DESIGN + LOAD_ROWS * k + 1, j]
             force = force + force_of(loads.kind[k], position, pace * d.speed, way, first, second)
@@ -280,8 +280,8 @@ def with_formulas(force: Any, m: Any, d: Any, block: Any, j: int, outward: bool,
 def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
     """Return the load on the slider at a crank angle within a segment, N outward."""
     block, loads, outward, piece, shift = segment
-    force = smooth_load(m, d, d.outward_force if outward else d.inward_force)
-    force = with_formulas(force, m, d, block, 0, outward, loads)
+    force = load_without_pieces(m, d, d.outward_force if outward else d.inward_force)
+    force = add_formula_loads(force, m, d, block, 0, outward, loads)
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
         if loads.kind[k] == _CYLINDER:
@@ -313,7 +313,7 @@ def load_on_slider(m: Any, d: Any, theta: Any, segment: Segment) -> Any:
 
 
 @analytic
-def crowding(r: float, l: float, e: float) -> float:
+def crowding_parameter(r: float, l: float, e: float) -> float:
     """Return kappa for the crowded angle tau with tan(theta - pi/2) = kappa tan(tau).
 
     The curves are singular at theta = +-pi/2 + i w with cosh(w) = (l - |e|) / r: the closer the linkage is to locking,
@@ -326,7 +326,7 @@ def crowding(r: float, l: float, e: float) -> float:
 
 
 @analytic
-def crowded(theta: float, kappa: float) -> float:
+def crowded_from_crank_angle(theta: float, kappa: float) -> float:
     """Return tau for a crank angle, in the same half-turn as theta - pi/2."""
     psi = theta - 0.5 * math.pi
     turn = math.atan2(math.sin(psi), kappa * math.cos(psi)) - psi
@@ -334,7 +334,7 @@ def crowded(theta: float, kappa: float) -> float:
 
 
 @analytic
-def uncrowded(tau: float, kappa: float) -> float:
-    """Return the crank angle for tau; inverse of `crowded`."""
+def crank_angle_from_crowded(tau: float, kappa: float) -> float:
+    """Return the crank angle for tau; inverse of `crowded_from_crank_angle`."""
     turn = math.atan2(kappa * math.sin(tau), math.cos(tau)) - tau
     return 0.5 * math.pi + tau + turn - _TURN * math.floor(turn / _TURN + 0.5)

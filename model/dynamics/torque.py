@@ -38,7 +38,7 @@ class Forces(NamedTuple):
 
 
 @analytic
-def smooth_load(m: Motion, d: Design, stroke_force: Any) -> Any:
+def load_without_pieces(m: Motion, d: Design, stroke_force: Any) -> Any:
     """Return the load on the slider, N outward: stroke force, springs and viscous resistance."""
     return stroke_force + d.spring_force - d.stiffness * d.branch * m.x - d.viscous * d.branch * m.x_1 * d.speed
 
@@ -60,7 +60,7 @@ class Balance(NamedTuple):
 
 
 @analytic
-def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
+def balance_before_pin_force(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
     """Return the `Balance` for a load on the slider (N, outward)."""
     w2 = d.speed * d.speed
     gx, gy = d.gravity_x, d.gravity_y
@@ -84,13 +84,13 @@ def balance(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Balance:
 
 
 @analytic
-def with_couple(b: Balance, couple: Any) -> Balance:
+def add_crank_couple(b: Balance, couple: Any) -> Balance:
     """Return a balance with a couple added on the crank, N m."""
     return Balance(b.pull, b.moment, b.rod_x, b.rod_y, b.crank_x, b.crank_y, b.couple + couple)
 
 
 @analytic
-def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
+def forces_from_slider_pin_force(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> Forces:
     """Return drive torque and reactions for a slider pin force; the torque excludes pin friction."""
     ax = bx + b.rod_x
     ay = by + b.rod_y
@@ -101,6 +101,6 @@ def joined(sine: Any, cosine: Any, d: Design, b: Balance, bx: Any, by: Any) -> F
 @analytic
 def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
     """Return drive torque and reactions without friction for a load on the slider (N, outward)."""
-    b = balance(sine, cosine, m, d, load)
+    b = balance_before_pin_force(sine, cosine, m, d, load)
     by = m.tangent * b.pull - b.moment * m.per_l_cos
-    return joined(sine, cosine, d, b, b.pull, by)
+    return forces_from_slider_pin_force(sine, cosine, d, b, b.pull, by)

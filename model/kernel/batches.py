@@ -15,12 +15,12 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import AssemblyError
-from .interruption import ask_between
+from .interruption import poll_between_parts
 
 _KNOTS = 10_000  # for the loads of designs that are computed together: some tenths of a second
 
 
-def turning(designs: ArrayLike) -> Array:
+def require_full_rotation(designs: ArrayLike) -> Array:
     """Return fully rotating designs (n, 3 + k) as a contiguous array: crank, rod, offset, m, and more.
 
     Raises `AssemblyError` where rod > crank + |offset| > 0 does not hold, because a formula might still return a number
@@ -70,7 +70,7 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
 
     def in_parts(begin: int, end: int) -> None:
         for first in range(begin, end, part):
-            ask_between()
+            poll_between_parts()
             work(first, min(first + part, end))
 
     if count <= size:

@@ -22,7 +22,7 @@ import numpy as np
 _PLAIN = (int, float, complex, str, bytes, bool, type(None), type(Ellipsis))
 
 
-def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
+def kernel_digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     """Return the digest of a kernel for arguments with the types of the examples."""
     hashed = hashlib.sha256(_environment_digest())
     hashed.update(_fingerprint(examples).encode())
@@ -31,7 +31,7 @@ def digest(function: Callable[..., Any], examples: tuple[Any, ...]) -> str:
     return hashed.hexdigest()[:24]
 
 
-def codes(function: Callable[..., Any]) -> dict[int, int]:
+def code_lengths(function: Callable[..., Any]) -> dict[int, int]:
     """Return the code length of a kernel and of each of its formulas, by identity."""
     return {id(formula): len(formula.__code__.co_code) for formula, _ in _walk_callees(function)}
 

@@ -17,8 +17,18 @@ from pathlib import Path
 from threading import Thread
 from typing import NamedTuple
 
-from .closure import codes
-from .disk import INTO, MODEL, KernelSource, awaited_files, building, compile_in_processes, keep, locked, read_any
+from .closure import code_lengths
+from .disk import (
+    INTO,
+    MODEL,
+    KernelSource,
+    awaited_files,
+    build_lock_file,
+    compile_in_processes,
+    keep,
+    locked,
+    read_from_any_folder,
+)
 from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
 
@@ -35,26 +45,26 @@ class _Task(NamedTuple):
     def size(self) -> int:
         return sum(self.codes.values())
 
-    def cheap_after(self, compiled: Iterable[int]) -> bool:
+    def is_cheap_after(self, compiled: Iterable[int]) -> bool:
         return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
 
-    def follows(self, larger: _Task) -> bool:
+    def is_left_to(self, larger: _Task) -> bool:
         """Whether the process that compiles the larger set also compiles this one."""
-        return self.size() < larger.size() and self.cheap_after(larger.codes)
+        return self.size() < larger.size() and self.is_cheap_after(larger.codes)
 
     def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
         """Return a rank, lowest first: long tasks with their followers, then small tasks."""
         if 2 * self.size() < max(task.size() for task in tasks):
             return True, self.size()
-        return False, -sum(task.size() for task in tasks if task is self or task.follows(self))
+        return False, -sum(task.size() for task in tasks if task is self or task.is_left_to(self))
 
 
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
     """Compile the missing kernels in packages or modules that no other process is compiling.
 
     Kernels that a process waits for come first, then those in `modules` that many jobs need. Among these, kernels with
-    mostly formulas that this process has already compiled come first, then urgent kernels. The file of `building`
-    records the progress. Ends if nothing can be stored.
+    mostly formulas that this process has already compiled come first, then urgent kernels. The file of
+    `build_lock_file` records the progress. Ends if nothing can be stored.
     """
     names = awaited_files(folder)
     tasks_found = _tasks(folder, packages, modules)
@@ -76,25 +86,25 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
             key=lambda task: (
                 task.file.name not in names,
                 task.seldom,
-                not task.cheap_after(compiled),
-                any(task.follows(larger) for larger in everything),
+                not task.is_cheap_after(compiled),
+                any(task.is_left_to(larger) for larger in everything),
                 task.urgency(everything),
             ),
         )
         tasks.remove(task)
         with locked(task.file.with_suffix(".lock")) as lock:
-            if lock is not None and read_any(task.file.name, folder) is None:
+            if lock is not None and read_from_any_folder(task.file.name, folder) is None:
                 reported = [job for job in everything if job.file.name in awaited.union(names)]
                 if task in reported:  # nobody waits for kernels that are compiled ahead
                     number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
-                        building(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
+                        build_lock_file(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
                 if not keep(task.file, task.source.compile()):
                     return
                 compiled.update(task.codes)
 
 
-def end_with(parent: int) -> None:
+def end_with_parent(parent: int) -> None:
     """End this process, even in the middle of a kernel, once its parent has ended."""
     while os.getppid() == parent:
         time.sleep(0.5)
@@ -117,12 +127,12 @@ def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
 
 def _task(kernel: Kernel, folder: Path) -> _Task:
     source = kernel.source()
-    return _Task(source, source.file(folder), codes(source.function), kernel.seldom)
+    return _Task(source, source.file(folder), code_lengths(source.function), kernel.seldom)
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == [INTO]:
-        Thread(target=end_with, args=(os.getppid(),), daemon=True).start()
+        Thread(target=end_with_parent, args=(os.getppid(),), daemon=True).start()
         gc.set_threshold(50_000, 1000, 1000)  # a fifth faster, for 80 MB more
         compile_missing(Path(sys.argv[2]), sys.argv[3], sys.argv[4:])
     elif (place := kernel_folder()) is not None:

@@ -50,13 +50,13 @@ class _FormulaCompiler(CompilerBase):
 _FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
-_TRIED = "0.68."  # tested numba version: `_linked` and `_memoised_resolution` use its internals
+_TRIED = "0.68."  # tested numba version: `_compiled_for_linking` and `_memoised_resolution` use its internals
 
 _registered: dict[Callable[..., Any], None] = {}
 _resolved: dict[Any, Any] = {}
 
 
-def know_formulas() -> None:
+def register_formulas() -> None:
     """Register all formulas marked so far with numba."""
     for formula in FORMULAS[len(_registered) :]:
         register_jitable(**_FORMULA)(formula)
@@ -91,7 +91,7 @@ def _memoised_resolution() -> Iterator[None]:
 
 
 @contextmanager
-def _linked(kernel: str) -> Iterator[None]:
+def _compiled_for_linking(kernel: str) -> Iterator[None]:
     """Compile formulas only as far as linking into the kernel requires, because nothing calls them alone.
 
     Otherwise each formula would be optimised like the kernel and turned into machine code, which takes a fifth of the
@@ -122,7 +122,7 @@ def _linked(kernel: str) -> Iterator[None]:
         libraries.finalize, engine.set_env = finalize_original, set_env
 
 
-class _NoArrays(event.Listener):
+class _ArrayReturnRejector(event.Listener):
     """Rejects formulas that return arrays: without reference counting these would be freed too soon."""
 
     def on_start(self, event: Any) -> None:
@@ -140,10 +140,14 @@ class _NoArrays(event.Listener):
 
 def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> MachineCode:
     """Return the machine code of a function for arguments of the examples' types."""
-    know_formulas()
+    register_formulas()
     signature = tuple(map(typeof, examples))
     dispatcher: Any = njit(**_KERNEL)(function)
-    with _memoised_resolution(), _linked(function.__qualname__), event.install_listener("numba:run_pass", _NoArrays()):
+    with (
+        _memoised_resolution(),
+        _compiled_for_linking(function.__qualname__),
+        event.install_listener("numba:run_pass", _ArrayReturnRejector()),
+    ):
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     symbol = compiled.fndesc.llvm_func_name

@@ -18,9 +18,9 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from .closure import digest
-from .folder import kernel_folder, log_refused_folders, other_folders
-from .interruption import ask
+from .closure import kernel_digest
+from .folder import kernel_folder, log_refused_folders, read_only_folders
+from .interruption import poll_interruption
 from .machine_code import MachineCode
 
 _log = logging.getLogger(__name__)
@@ -53,7 +53,7 @@ class KernelSource(NamedTuple):
 
     def file(self, folder: Path) -> Path:
         """Return the file for its machine code."""
-        return folder / f"{self.name}.{digest(self.function, self.examples)}"
+        return folder / f"{self.name}.{kernel_digest(self.function, self.examples)}"
 
     def compile(self) -> MachineCode:
         """Return its machine code, compiled in this process now."""
@@ -70,7 +70,7 @@ def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCo
     kernels in these modules come before the rest.
     """
     folder, name = kernel_folder(), source.file(Path()).name
-    code = read_any(name, folder)
+    code = read_from_any_folder(name, folder)
     if code is not None:
         return code
     log_refused_folders()
@@ -95,9 +95,9 @@ def _package_of(module: str) -> str:
     return ".".join(module.split(".")[:2])
 
 
-def read_any(name: str, folder: Path | None) -> MachineCode | None:
+def read_from_any_folder(name: str, folder: Path | None) -> MachineCode | None:
     """Return the machine code stored under a name, in this folder or in a read-only one."""
-    codes = (read(place / name) for place in (folder, *other_folders()) if place is not None)
+    codes = (read(place / name) for place in (folder, *read_only_folders()) if place is not None)
     return next((code for code in codes if code is not None), None)
 
 
@@ -167,18 +167,18 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
-            with locked(building(folder, packages)) as lock:
+            with locked(build_lock_file(folder, packages)) as lock:
                 if lock is not None:
                     _report_compilation()
-                    workers = _start(folder, packages, modules, lock)
+                    workers = _start_compilers(folder, packages, modules, lock)
         _waits[-1] = time.monotonic() - start_time
         if time.monotonic() > last_report + _REPORT_INTERVAL:
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
-                if far := building(folder, packages).read_text():
+                if far := build_lock_file(folder, packages).read_text():
                     report_progress(f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far")
         time.sleep(_TICK)
-        ask()
+        poll_interruption()
 
 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
@@ -188,10 +188,10 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     """
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"
-    if folder is not None and not any(any(place.glob(begins)) for place in (folder, *other_folders())):
-        with locked(building(folder, packages)) as lock:
+    if folder is not None and not any(any(place.glob(begins)) for place in (folder, *read_only_folders())):
+        with locked(build_lock_file(folder, packages)) as lock:
             if lock is not None:
-                _ahead[packages] = _start(folder, packages, modules, lock)
+                _ahead[packages] = _start_compilers(folder, packages, modules, lock)
 
 
 @cache
@@ -214,7 +214,7 @@ _ahead: dict[str, list[subprocess.Popen[bytes]]] = {}
 """Processes that `compile_ahead` has started and nobody has waited for yet."""
 
 
-def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> list[subprocess.Popen[bytes]]:
+def _start_compilers(folder: Path, packages: str, modules: Iterable[str], lock: int) -> list[subprocess.Popen[bytes]]:
     """Start one process per processor; they hold the lock as long as they live, and end with this process."""
     if not sys.executable:
         return []
@@ -233,7 +233,7 @@ def _start(folder: Path, packages: str, modules: Iterable[str], lock: int) -> li
     return started
 
 
-def building(folder: Path, packages: str) -> Path:
+def build_lock_file(folder: Path, packages: str) -> Path:
     """Return the file that is locked while kernels in packages are compiled, and that records the progress."""
     return folder / f"{packages.replace(' ', '+')}.building"
 

@@ -39,7 +39,7 @@ def kernel_folder() -> Path | None:
     return _chosen().folder
 
 
-def other_folders() -> tuple[Path, ...]:
+def read_only_folders() -> tuple[Path, ...]:
     """Return folders from which kernels can only be read, as in an image."""
     return _chosen().readable
 

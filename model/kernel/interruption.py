@@ -47,27 +47,27 @@ def interrupted_by(
         _CURRENT.reset(token)
 
 
-def ask() -> None:
+def poll_interruption() -> None:
     """Raise the exception that ends the current call, if there is one."""
     interruption = _CURRENT.get()
     if interruption is not None:
         interruption.poll()
 
 
-def ask_between() -> None:
+def poll_between_parts() -> None:
     """Raise the exception that ends long work between two of its parts, if there is one."""
     interruption = _CURRENT.get()
     if interruption is not None and interruption.between_parts is not None:
         interruption.between_parts()
 
 
-def farewell() -> float:
+def interruption_grace_time() -> float:
     """Return the time that an interrupted call may still take, s."""
     interruption = _CURRENT.get()
     return FAREWELL if interruption is None else interruption.farewell
 
 
-def killed() -> None:
+def record_killed_call() -> None:
     """Record that a call did not end in its remaining time."""
     interruption = _CURRENT.get()
     if interruption is not None:

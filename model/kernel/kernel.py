@@ -52,7 +52,7 @@ def kernel(function: Function) -> Function:
     return _register(function, seldom=False)
 
 
-def seldom_kernel(function: Function) -> Function:
+def rarely_used_kernel(function: Function) -> Function:
     """Compile a function like `kernel`, but after all others: few jobs need it, and its compilation is slow."""
     return _register(function, seldom=True)
 

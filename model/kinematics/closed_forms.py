@@ -12,7 +12,7 @@ from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import Row, Table, kernel
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
-from .in_line import in_line
+from .in_line import is_in_line
 
 
 class ClosedForm(IntEnum):
@@ -32,7 +32,7 @@ _TIME_RATIO, _TRANSMISSION, _STROKE, _ROD_TO_OFFSET, _ROD_TO_CRANK, _OF_CRANK, _
 
 
 @analytic
-def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
+def closed_form_value(kind: Any, r: Any, l: Any, e: Any) -> Any:
     """Return one quantity of a fully rotating linkage.
 
     Footprint: area of the rectangle around the pin centres over the cycle, (x_out + r) (r + max(r, |e|)), as two smooth
@@ -58,16 +58,16 @@ def closed_form(kind: Any, r: Any, l: Any, e: Any) -> Any:
 def _fill_closed_forms(kind: Any, work: Any, slopes: Any) -> None:
     """Fill value and, if requested, slopes (rows 3 to 6) for designs (rows 0 to 2)."""
     for j in range(_LANES):
-        work[3, j] = closed_form(kind, work[0, j], work[1, j], work[2, j])
+        work[3, j] = closed_form_value(kind, work[0, j], work[1, j], work[2, j])
     for j in range(_LANES if slopes else 0):
         r, l, e = work[0, j], work[1, j], work[2, j]
-        work[4, j] = closed_form(kind, complex(r, STEP), complex(l, 0.0), complex(e, 0.0)).imag / STEP
-        work[5, j] = closed_form(kind, complex(r, 0.0), complex(l, STEP), complex(e, 0.0)).imag / STEP
-        work[6, j] = closed_form(kind, complex(r, 0.0), complex(l, 0.0), complex(e, STEP)).imag / STEP
+        work[4, j] = closed_form_value(kind, complex(r, STEP), complex(l, 0.0), complex(e, 0.0)).imag / STEP
+        work[5, j] = closed_form_value(kind, complex(r, 0.0), complex(l, STEP), complex(e, 0.0)).imag / STEP
+        work[6, j] = closed_form_value(kind, complex(r, 0.0), complex(l, 0.0), complex(e, STEP)).imag / STEP
 
 
 @kernel
-def _evaluate(kind: int, designs: Table, values: Row, gradients: Table) -> None:
+def _fill_values_and_gradients(kind: int, designs: Table, values: Row, gradients: Table) -> None:
     n, slopes = designs.shape[0], gradients.shape[0] > 0
     work = np.empty((7, _LANES))
     for begin in range(0, n, _LANES):
@@ -97,9 +97,11 @@ def evaluate_closed_form(kind: ClosedForm, designs: Array, *, gradients: bool = 
     slopes = np.empty((n if gradients else 0, 3))
 
     def work(begin: int, end: int) -> None:
-        _evaluate(int(kind), designs[begin:end], values[begin:end], slopes[begin:end] if gradients else slopes)
+        _fill_values_and_gradients(
+            int(kind), designs[begin:end], values[begin:end], slopes[begin:end] if gradients else slopes
+        )
 
     in_chunks(n, work, size=4096)
     if kind == ClosedForm.ROD_TO_OFFSET:
-        values[in_line(designs[:, 1], designs[:, 2])] = np.inf
+        values[is_in_line(designs[:, 1], designs[:, 2])] = np.inf
     return values, slopes if gradients else None

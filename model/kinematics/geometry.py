@@ -47,7 +47,7 @@ def inner_crank_angle(r: Any, l: Any, e: Any) -> Any:
 
 
 @analytic
-def excess_angle(r: Any, l: Any, e: Any) -> Any:
+def excess_stroke_angle(r: Any, l: Any, e: Any) -> Any:
     """Return the excess of a stroke's crank angle over pi, asin(e/(l - r)) - asin(e/(l + r)), rad. Sign of e."""
     return arcsine(e * inverse(l - r)) - arcsine(e * inverse(l + r))
 
@@ -55,7 +55,7 @@ def excess_angle(r: Any, l: Any, e: Any) -> Any:
 @analytic
 def time_ratio(r: Any, l: Any, e: Any) -> Any:
     """Return slower over faster stroke duration, (pi + b) / (pi - b), for offset e >= 0."""
-    b = excess_angle(r, l, e)
+    b = excess_stroke_angle(r, l, e)
     return (math.pi + b) * inverse(math.pi - b)
 
 

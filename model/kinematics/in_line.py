@@ -10,11 +10,11 @@ _ROUNDING = 1e-15
 """Fraction of the rod. An offset this small changes closed-form values and positions only within rounding."""
 
 
-def in_line(rod: Any, offset: Any) -> Any:
+def is_in_line(rod: Any, offset: Any) -> Any:
     """Return whether linkages have no offset beyond rounding, |e| <= 1e-15 l; arguments in m, broadcast."""
     return np.abs(offset) <= _ROUNDING * np.asarray(rod)
 
 
-def without_rounding(rod: Any, offset: Any) -> Any:
+def offset_without_rounding(rod: Any, offset: Any) -> Any:
     """Return offsets, m, with those below rounding set to zero; arguments broadcast."""
-    return np.where(in_line(rod, offset), 0.0, offset)
+    return np.where(is_in_line(rod, offset), 0.0, offset)

@@ -56,11 +56,11 @@ def motion(sine: Any, cosine: Any, r: Any, l: Any, e: Any, branch: Any) -> Motio
     Requires l > |e - r sin(theta)| (the linkage can be assembled at this angle).
     """
     l_sin = e - r * sine
-    return motion_of(sine, cosine, r, l_sin, branch * root(l * l - l_sin * l_sin))
+    return motion_from_rod_vector(sine, cosine, r, l_sin, branch * root(l * l - l_sin * l_sin))
 
 
 @analytic
-def motion_of(sine: Any, cosine: Any, r: Any, l_sin: Any, l_cos: Any) -> Motion:
+def motion_from_rod_vector(sine: Any, cosine: Any, r: Any, l_sin: Any, l_cos: Any) -> Motion:
     """Return the `Motion` from sine and cosine of the crank angle, crank r and the rod vector's components, m."""
     per_l_cos = inverse(l_cos)
     tangent = l_sin * per_l_cos
@@ -73,7 +73,7 @@ def motion_of(sine: Any, cosine: Any, r: Any, l_sin: Any, l_cos: Any) -> Motion:
 
 
 @analytic
-def third_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
+def third_slider_derivative(sine: Any, cosine: Any, m: Motion, r: Any) -> Any:
     """Return x''', the third derivative of the slider position with respect to crank angle, m/rad^3.
 
     With a = l cos(phi), b = l sin(phi): phi''' = (r cos(theta) + a phi'^3 + 3 b phi' phi'') / a and

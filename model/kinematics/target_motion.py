@@ -20,11 +20,11 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..checks import keep_tuples
+from ..checks import store_as_tuples
 from ..errors import InputError
 from ..kernel.arithmetic import analytic
-from ..kernel.batches import in_chunks, turning
-from ..kernel.kernel import Row, Table, seldom_kernel
+from ..kernel.batches import in_chunks, require_full_rotation
+from ..kernel.kernel import Row, Table, rarely_used_kernel
 from .position import motion
 
 Freedom = Literal["fixed", "free"]
@@ -53,7 +53,7 @@ class TargetMotion:
     shift: Freedom = "fixed"
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "crank_angles", "positions")
+        store_as_tuples(self, "crank_angles", "positions")
         for name in ("phase", "shift"):
             if getattr(self, name) not in ("fixed", "free"):
                 raise InputError(f"{name} of a target motion must be 'fixed' or 'free'; got {getattr(self, name)!r}")
@@ -266,7 +266,7 @@ def _least_square(case: _Case, grid: Any) -> float:
     return best_phase
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _fit(
     designs: Table, b: float, angles: Row, positions: Row, rms: bool, turns: bool, shifts: bool, out: Table
 ) -> None:
@@ -286,7 +286,7 @@ def _fit(
 
 def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
     """Return the minimum deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     angles, positions = np.array(target.crank_angles), np.array(target.positions)
     free = target.phase == "free", target.shift == "free"
     out = np.empty((len(designs), 3))

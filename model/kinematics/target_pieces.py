@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import turning
+from ..kernel.batches import require_full_rotation
 from .position import motion
 from .target_motion import Measure, TargetMotion, fit
 
@@ -57,12 +57,12 @@ def _slider_position_slopes(target: TargetMotion, branch: float, phase: Array, d
     return slopes
 
 
-def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
+def deviation_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
     """Return the minimum deviation for designs (n, 3) as the maximum of smooth pieces.
 
     The root mean square has one piece; its gradient is zero where it is only a rounding error.
     """
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     fitted = fit(target, branch, measure, designs)
     if measure == "rms":
         d = branch * _motion_at_points(target, branch, fitted.phase, designs).x - np.array(target.positions)
@@ -74,19 +74,19 @@ def fit_pieces(target: TargetMotion, branch: float, measure: Measure, designs: A
         gradients = np.einsum("ni,niv->nv", d, slopes) * per[:, None]
         return FitPieces(fitted.values[:, None], gradients[:, None], np.zeros((len(designs), 1)))
     phase = fitted.phase.copy()
-    sides = _Sides.from_points(target, branch, phase, designs)
+    sides = _DeviationCandidates.from_points(target, branch, phase, designs)
     if target.phase == "free":
         # Golden-section search locates a smooth turning point only to the square root of rounding, so a Newton step
         # follows.
-        step = sides.settling()
+        step = sides.newton_step_at_turning_point()
         if np.any(step != 0.0):
             phase = phase + step
-            sides = _Sides.from_points(target, branch, phase, designs)
-        sides = sides.crossed()
+            sides = _DeviationCandidates.from_points(target, branch, phase, designs)
+        sides = sides.crossing_pairs()
     return sides.highest(_PIECES)
 
 
-class _Sides(NamedTuple):
+class _DeviationCandidates(NamedTuple):
     """Candidates (n, m) for the maximum deviation at a phase, -inf where there are fewer.
 
     values, slope, bend: deviations and their first and second derivatives with respect to the phase. gradients: (n, m,
@@ -100,7 +100,7 @@ class _Sides(NamedTuple):
     labels: Array
 
     @classmethod
-    def from_points(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _Sides:
+    def from_points(cls, target: TargetMotion, branch: float, phase: Array, designs: Array) -> _DeviationCandidates:
         """Return the local peaks of both signs over the points; if the shift is free, half-sums of pairs."""
         m = _motion_at_points(target, branch, phase, designs)
         d = branch * m.x - np.array(target.positions)
@@ -119,7 +119,7 @@ class _Sides(NamedTuple):
         labels = positive.labels[:, :, None] + _MIX * negative.labels[:, None, :]
         return cls(values, slope, bend, gradients.reshape(n, -1, 3), labels.reshape(n, -1))
 
-    def settling(self) -> Array:
+    def newton_step_at_turning_point(self) -> Array:
         """Return the Newton step (n,) in the phase where the highest deviation has its own turning point, else zero."""
         top = np.argmax(self.values, axis=1)[:, None]
         value, slope, bend = (
@@ -132,7 +132,7 @@ class _Sides(NamedTuple):
         np.put_along_axis(after_step, top, -np.inf, axis=1)
         return np.where(after_step.max(axis=1) < value, step, 0.0)
 
-    def crossed(self) -> _Sides:
+    def crossing_pairs(self) -> _DeviationCandidates:
         """Return pairs of a falling and a rising deviation, and the highest deviation where it has a turning point."""
         few = self._take_highest(_CROSSED)
         n, k = few.values.shape
@@ -152,7 +152,7 @@ class _Sides(NamedTuple):
         labels = few.labels[:, :, None] + 0.5 * _MIX * few.labels[:, None, :]
         by_itself = turning | (~is_pair.any(axis=(1, 2))[:, None] & (np.arange(k) == 0))
         zeros = np.zeros((n, k + k * k))
-        return _Sides(
+        return _DeviationCandidates(
             np.concatenate([np.where(by_itself, few.values, -np.inf), values], axis=1),
             zeros,
             zeros,
@@ -165,15 +165,19 @@ class _Sides(NamedTuple):
         few = self._take_highest(count)
         return FitPieces(few.values, np.where(np.isfinite(few.values)[..., None], few.gradients, 0.0), few.labels)
 
-    def _take_highest(self, count: int) -> _Sides:
+    def _take_highest(self, count: int) -> _DeviationCandidates:
         order = np.argsort(-self.values, axis=1, kind="stable")[:, :count]
         values, slope, bend, labels = (
             np.take_along_axis(getattr(self, name), order, axis=1) for name in ("values", "slope", "bend", "labels")
         )
-        return _Sides(values, slope, bend, np.take_along_axis(self.gradients, order[..., None], axis=1), labels)
+        return _DeviationCandidates(
+            values, slope, bend, np.take_along_axis(self.gradients, order[..., None], axis=1), labels
+        )
 
 
-def _highest_deviations(sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array) -> _Sides:
+def _highest_deviations(
+    sign: float, d: Array, slope: Array, bend: Array, slopes: Array, angles: Array
+) -> _DeviationCandidates:
     """Return the highest deviations times a sign: local peaks over the points, and others that may tie with them."""
     values = sign * d
     padded = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.inf)
@@ -181,7 +185,7 @@ def _highest_deviations(sign: float, d: Array, slope: Array, bend: Array, slopes
     labels = angles + (0.0 if sign > 0.0 else 0.5 * math.pi)
     curves = sign * slope, sign * bend, sign * slopes, labels
     parts = (
-        _Sides(np.where(peaks, values, -np.inf), *curves)._take_highest(_PEAKS),
-        _Sides(np.where(peaks, -np.inf, values), *curves)._take_highest(_OTHER_POINTS),
+        _DeviationCandidates(np.where(peaks, values, -np.inf), *curves)._take_highest(_PEAKS),
+        _DeviationCandidates(np.where(peaks, -np.inf, values), *curves)._take_highest(_OTHER_POINTS),
     )
-    return _Sides(*(np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)))
+    return _DeviationCandidates(*(np.concatenate(pair, axis=1) for pair in zip(*parts, strict=True)))

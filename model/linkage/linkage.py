@@ -24,10 +24,10 @@ from .linkage_values import (
     Kinematics,
     PointMotion,
     dimensions,
-    direction,
-    in_a_turn,
+    direction_angle,
     in_mm,
     numbers,
+    wrap_into_turn,
 )
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ class Linkage:
         angles = (geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions))
         if self.branch == "crossed":
             angles = (np.pi - angles[0], np.pi - angles[1])
-        return in_a_turn(angles[0]), in_a_turn(angles[1])
+        return wrap_into_turn(angles[0]), wrap_into_turn(angles[1])
 
     @property
     def stroke(self) -> Array:
@@ -180,10 +180,10 @@ class Linkage:
             m.x,
             m.x_1 * speed,
             m.x_2 * w2 + m.x_1 * acceleration,
-            direction(m.l_sin, m.l_cos),
+            direction_angle(m.l_sin, m.l_cos),
             m.rod_1 * speed,
             m.rod_2 * w2 + m.rod_1 * acceleration,
-            direction(magnitude(m.l_cos), magnitude(m.l_sin)),
+            direction_angle(magnitude(m.l_cos), magnitude(m.l_sin)),
         )
         return Kinematics(*(np.broadcast_to(field, shape) for field in fields))
 

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
-from ..input_warning import LONGEST, both_readings
-from ..kinematics.in_line import in_line
+from ..input_warning import LONGEST, reading_in_both_units
+from ..kinematics.in_line import is_in_line
 from .dimensions import DIMENSIONS
 
 
@@ -77,13 +77,13 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
             "|offset| must be less than crank + rod, or the linkage cannot close; got "
             f"{in_mm(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
         )
-    rounding = in_line(real[1], real[2]) & (real[2] != 0.0)
+    rounding = is_in_line(real[1], real[2]) & (real[2] != 0.0)
     if np.any(rounding):
         values[2] = np.where(rounding, values[2] - real[2], values[2])
     return values[0], values[1], values[2]
 
 
-def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,) * 3) -> str | None:
+def implausible_length_text(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,) * 3) -> str | None:
     """Return the first implausibly long dimension in words, as read in m and as probably meant in mm.
 
     None if there is no such length. longest: plausible limits for crank, rod and offset, m.
@@ -91,11 +91,11 @@ def in_both_units(lengths: Iterable[Array], longest: Iterable[float] = (LONGEST,
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
         is_too_long = np.isfinite(size) & (np.abs(size) > limit)
         if np.any(is_too_long):
-            return both_readings(name, first_marked(size, is_too_long), "m", "mm", 1e3)
+            return reading_in_both_units(name, first_marked(size, is_too_long), "m", "mm", 1e3)
     return None
 
 
-def direction(y: Array, x: Array) -> Array:
+def direction_angle(y: Array, x: Array) -> Array:
     """Return the angle of (x, y), rad, with its derivative if these are complex."""
     angle: Array = np.arctan2(y.real, x.real)
     if np.iscomplexobj(x) or np.iscomplexobj(y):
@@ -104,7 +104,7 @@ def direction(y: Array, x: Array) -> Array:
     return angle
 
 
-def in_a_turn(angle: Array) -> Array:
+def wrap_into_turn(angle: Array) -> Array:
     """Return an angle in [0, 2 pi), rad."""
     in_turn = np.mod(angle.real, 2.0 * np.pi)
     # Rounding takes a tiny negative angle to 2 pi itself.

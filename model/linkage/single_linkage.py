@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import InputError
-from ..machine.crank_loads import require_no_winding
+from ..machine.crank_loads import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
 
-def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+def single_rotating_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one fully rotating linkage, with dimensions as floats.
 
     Raises `InputError` for an array of linkages, for a linkage on another branch than the mechanism's, and for a spring
@@ -18,14 +18,14 @@ def single(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """
     require_slider(mechanism)
     linkage.require_full_rotation()
-    require_no_winding(mechanism)
-    return one_linkage(mechanism, linkage)
+    require_loads_repeating_each_turn(mechanism)
+    return single_linkage(mechanism, linkage)
 
 
-def one_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+def single_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one linkage that need not rotate fully, with dimensions as floats.
 
-    Raises `InputError` as `single` does.
+    Raises `InputError` as `single_rotating_linkage` does.
     """
     if np.ndim(linkage.rotates_fully):
         raise InputError(

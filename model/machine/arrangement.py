@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..checks import keep_tuples, require_all_finite
+from ..checks import require_all_finite, store_as_tuples
 from ..errors import InputError
 
 MOST = 24
@@ -32,7 +32,7 @@ class Arrangement:
     places: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "phases", "banks", "places")
+        store_as_tuples(self, "phases", "banks", "places")
         for name in ("phases", "banks", "places"):
             require_all_finite(f"{name} of cylinders", getattr(self, name))
         count = len(self.phases)

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Integers, Row, Table, kernel
-from .design import DESIGN, LOAD_ROWS, derive
+from .design import DESIGN, LOAD_ROWS, derive_design
 from .raw import Loads
 
 _ONE, _NONE = np.zeros((1, 0)), np.zeros(0, np.int64)
 
 
 @kernel
-def _derive(
+def _fill_derived_blocks(
     raw: Row, columns: Integers, designs: Table, kind: Integers, datum: Integers, blocks: Cube, steps: ComplexCube
 ) -> None:
     # Complex throughout: compiling the real formulas as well would double the time. Zeros, because loads do not fill
@@ -34,7 +34,7 @@ def _derive(
             unstepped = stepped[columns[max(v, 0)], 0] if count else 0j
             if v >= 0:
                 stepped[columns[v], 0] = unstepped + complex(0.0, STEP)
-            derive(stepped, kind, datum, block)
+            derive_design(stepped, kind, datum, block)
             if v >= 0:
                 stepped[columns[v], 0] = unstepped
             for i in range(blocks.shape[1]):
@@ -44,7 +44,7 @@ def _derive(
                     steps[n * count + v, i, 0] = block[i, 0]
 
 
-def derived(
+def derived_blocks(
     raw: Array, loads: Loads, columns: IntArray = _NONE, designs: Array = _ONE, *, steps: bool = False
 ) -> tuple[Array, NDArray[Any]]:
     """Return blocks (n, DESIGN + LOAD_ROWS k, 1) from raw numbers (END + LOAD_SLOTS k,); designs (n, c) set `columns`.
@@ -56,5 +56,5 @@ def derived(
     blocks = np.empty((n, rows, 1))
     stepped = np.empty((n * len(columns) if steps else 0, rows, 1), np.complex128)
     if n:
-        _derive(raw, columns, designs, loads.kind, loads.datum, blocks, stepped)
+        _fill_derived_blocks(raw, columns, designs, loads.kind, loads.datum, blocks, stepped)
     return blocks, stepped

@@ -1,7 +1,7 @@
 """A design as the equations of motion use it: masses, moments and forces that follow from raw numbers.
 
-Because `derive` is also compiled for complex numbers, any raw number (`raw`) can be a design variable with an exact
-derivative.
+Because `derive_design` is also compiled for complex numbers, any raw number (`raw`) can be a design variable with an
+exact derivative.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, inverse, magnitude, root
 from ..kinematics.geometry import inner_crank_angle, inner_dead_centre, outer_crank_angle, outer_dead_centre
-from .loads.engine import burning_share
+from .loads.engine import burning_stroke_fraction
 from .loads.load import Enters
 from .raw import LOAD_SLOTS, Raw
 
@@ -222,7 +222,7 @@ def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: A
             out[q + AREA + 2 + i, j] = raw[p + 6 + i, j]
         if kind == _BURNING_CYLINDER:
             clearance, low, high, exponent = raw[p + 4, j], raw[p + 6, j], raw[p + 7, j], raw[p + 8, j]
-            share = burning_share(clearance, low, high, exponent, raw[p + 11, j], raw[p + 12, j])
+            share = burning_stroke_fraction(clearance, low, high, exponent, raw[p + 11, j], raw[p + 12, j])
             out[q + AREA + 7, j] = share * (out[22, j] - out[21, j])
     elif kind == _CRANK_TORQUE:
         for i in range(4):
@@ -232,7 +232,7 @@ def _derive_load(raw: Any, kind: Any, datum: Any, p: Any, q: Any, j: Any, out: A
 
 
 @analytic
-def derive(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
+def derive_design(raw: Any, kind: Any, datum: Any, out: Any, moved: Any = -1) -> None:
     """Fill `out` (DESIGN + LOAD_ROWS k, n) from raw numbers (END + LOAD_SLOTS k, n), real or complex.
 
     moved: the only raw number that has changed since `out` was filled; a changed dimension needs less work.

@@ -21,7 +21,7 @@ _ROUNDING = 1e-12
 """Fraction of the forces by which their sum may be off, because decimal numbers add inexactly."""
 
 
-def works_over_a_turn(mechanism: Mechanism) -> bool:
+def may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may be nonzero for some design.
 
     It is zero without all of these: friction in loaded joints, crank acceleration, loads that depend on speed or have
@@ -34,8 +34,11 @@ def works_over_a_turn(mechanism: Mechanism) -> bool:
     )
 
 
-def load_works_over_a_turn(mechanism: Mechanism) -> bool:
-    """Return whether the loads may absorb or supply net work over a turn for some design; see `works_over_a_turn`."""
+def loads_may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
+    """Return whether the loads may absorb or supply net work over a turn for some design.
+
+    See `may_do_work_over_a_turn`.
+    """
     return any(map(_load_works, _trial_machines(mechanism)))
 
 
@@ -61,30 +64,30 @@ def with_loads_alone(mechanism: Mechanism) -> Mechanism:
     )
 
 
-def rubs_under_load(mechanism: Mechanism) -> bool:
+def has_friction_under_load(mechanism: Mechanism) -> bool:
     """Return whether friction acts in a joint that carries a force, for some design."""
     return any(map(_has_friction, _trial_machines(mechanism)))
 
 
-def linkage_loaded(machine: Mechanism) -> bool:
+def carries_linkage_forces(machine: Mechanism) -> bool:
     """Return whether forces act on rod or slider: loads, or weight and inertia of moving parts."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
-    return (moves(machine) and driven) or pushed(machine)
+    return (has_rod_or_slider_mass(machine) and driven) or has_slider_loads(machine)
 
 
-def pushed(machine: Mechanism) -> bool:
+def has_slider_loads(machine: Mechanism) -> bool:
     """Return whether loads act on the slider: at rest only speed-independent loads, in motion any load."""
     return any(not load.on_crank for load in _acting_loads(machine))
 
 
-def drive_loaded(machine: Mechanism) -> bool:
+def needs_drive_torque(machine: Mechanism) -> bool:
     """Return whether the drive needs a torque: for the linkage, for loads on the crank, or for the crank itself.
 
     At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
     """
     turned = any(load.on_crank for load in _acting_loads(machine))
     lifted = crank_weighs(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
-    return linkage_loaded(machine) or turned or lifted
+    return carries_linkage_forces(machine) or turned or lifted
 
 
 def _acting_loads(machine: Mechanism) -> list[Load]:
@@ -97,13 +100,13 @@ def _acting_loads(machine: Mechanism) -> list[Load]:
     ]
 
 
-def pivot_loaded(machine: Mechanism) -> bool:
+def carries_pivot_force(machine: Mechanism) -> bool:
     """Return whether a force acts on the crank pivot: from the linkage, or from weight and inertia of the crank."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
-    return linkage_loaded(machine) or (crank_weighs(machine) and driven)
+    return carries_linkage_forces(machine) or (crank_weighs(machine) and driven)
 
 
-def moves(machine: Mechanism) -> bool:
+def has_rod_or_slider_mass(machine: Mechanism) -> bool:
     """Return whether rod or slider has a mass or an inertia."""
     return machine.slider_mass > 0.0 or _has_weight(machine.rod)
 
@@ -120,7 +123,9 @@ def _has_weight(link: Link) -> bool:
 def _has_friction(machine: Mechanism) -> bool:
     friction = machine.friction
     past_pivot = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
-    return (past_pivot and linkage_loaded(machine)) or (friction.crank_pivot.circle > 0.0 and pivot_loaded(machine))
+    return (past_pivot and carries_linkage_forces(machine)) or (
+        friction.crank_pivot.circle > 0.0 and carries_pivot_force(machine)
+    )
 
 
 def _trial_machines(mechanism: Mechanism) -> list[Mechanism]:
@@ -128,7 +133,7 @@ def _trial_machines(mechanism: Mechanism) -> list[Mechanism]:
     if not mechanism.varying:
         return [mechanism]
     inner = [item.lower + (0.618 * n % 1.0) * (item.upper - item.lower) for n, item in enumerate(mechanism.varying, 1)]
-    return [mechanism.fullest, mechanism.with_values(inner)]
+    return [mechanism.with_largest_variables, mechanism.with_values(inner)]
 
 
 def _load_works(machine: Mechanism) -> bool:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..checks import keep_tuples, require_all_finite, require_numbers
+from ..checks import require_all_finite, require_numbers, store_as_tuples
 from ..errors import InputError
 
 
@@ -86,7 +86,7 @@ class TorqueTable:
     torques: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "speeds", "torques")
+        store_as_tuples(self, "speeds", "torques")
         if len(self.speeds) != len(self.torques) or len(self.speeds) < 2:
             raise InputError(
                 f"a torque table needs as many torques as speeds, at least two; got {len(self.speeds)} speeds and "

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array, Mask
-from ..quadrature import Samples, gauss, legendre_fit, resolve
+from ..quadrature import Samples, gauss, legendre_fit_matrix, resolve
 
 _TURN = 2.0 * math.pi
 _NODES = 20  # nodes in each panel
@@ -35,7 +35,7 @@ class ElapsedTime:
     @classmethod
     def integrate(cls, ratio: Callable[[Array], Array], ends: Array) -> ElapsedTime:
         """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles in a turn, rad; p is analytic in between."""
-        nodes, basis = gauss(_NODES)[0], legendre_fit(_NODES).T
+        nodes, basis = gauss(_NODES)[0], legendre_fit_matrix(_NODES).T
 
         def sample(low: Array, width: Array) -> Samples:
             values = 1.0 / ratio(low[:, None] + width[:, None] * nodes)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from ..checks import keep_tuples, require_all_finite, require_kinds, require_numbers
+from ..checks import require_all_finite, require_kinds, require_numbers, store_as_tuples
 from ..errors import InputError
 from .arrangement import Arrangement
 from .clearance import Clearance
@@ -21,7 +21,7 @@ from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .strength import Strength
 from .swing_start import Start
-from .varying import Varying, require_possible, with_values
+from .varying import Varying, require_valid_variables, with_values
 
 Branch = Literal["open", "crossed"]
 
@@ -151,7 +151,7 @@ class Mechanism:
     varying: tuple[Varying, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "gravity", "loads", "varying")
+        store_as_tuples(self, "gravity", "loads", "varying")
         require_kinds(self, _KINDS, _TABLES)
         require_kinds(self, {"varying": Varying}, _TABLES, item_by_item=True)
         require_numbers(self, "speed", "acceleration", phrase="{}")
@@ -177,7 +177,7 @@ class Mechanism:
         if self.lever is not None:
             require_lever_alone(self)
         if self.varying:
-            require_possible(self)
+            require_valid_variables(self)
 
     @cached_property
     def nominal(self) -> Mechanism:
@@ -195,15 +195,15 @@ class Mechanism:
 
         A varying speed has one sign, which counts whatever the nominal speed is.
         """
-        return -1.0 if self.fullest.speed < 0.0 else 1.0
+        return -1.0 if self.with_largest_variables.speed < 0.0 else 1.0
 
     @cached_property
-    def fullest(self) -> Mechanism:
+    def with_largest_variables(self) -> Mechanism:
         """The machine with each variable at its bound of larger magnitude: it has all features of any design."""
-        return self.with_values([item.fullest for item in self.varying]) if self.varying else self
+        return self.with_values([item.largest_magnitude_bound for item in self.varying]) if self.varying else self
 
     @property
-    def ends(self) -> tuple[Mechanism, Mechanism]:
+    def at_lower_and_upper_bounds(self) -> tuple[Mechanism, Mechanism]:
         """The machines with all variables at their lower and at their upper bounds."""
         lower, upper = ([getattr(item, end) for item in self.varying] for end in ("lower", "upper"))
         return self.with_values(lower), self.with_values(upper)
@@ -211,7 +211,7 @@ class Mechanism:
     @property
     def load_texts(self) -> list[str]:
         """Each load in a sentence, with the ranges of its variables."""
-        low, high = self.ends
+        low, high = self.at_lower_and_upper_bounds
         return [range_text(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)]
 
     def with_values(self, values: Sequence[float]) -> Mechanism:

@@ -28,7 +28,7 @@ class Member(NamedTuple):
     place: float
 
 
-def is_shaft(mechanism: Mechanism) -> bool:
+def is_treated_as_shaft(mechanism: Mechanism) -> bool:
     """Return whether a machine has individually stated cylinders or a speed profile."""
     return mechanism.arrangement is not None or mechanism.speed_profile is not None
 
@@ -41,11 +41,11 @@ def cylinder_count(mechanism: Mechanism) -> int:
 @memoise_by_machine
 def single_cylinder(mechanism: Mechanism) -> Mechanism:
     """Return one cylinder of a machine by itself, at zero bank angle and constant mean speed."""
-    return replace(mechanism, arrangement=None, speed_profile=None) if is_shaft(mechanism) else mechanism
+    return replace(mechanism, arrangement=None, speed_profile=None) if is_treated_as_shaft(mechanism) else mechanism
 
 
 @memoise_by_machine
-def members(mechanism: Mechanism) -> tuple[Member, ...]:
+def member_machines(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of a machine, each as a separate machine. Raises `InputError` without an arrangement.
 
     Gravity is rotated into the axes of each bank; varying gravity keeps its values.
@@ -67,7 +67,7 @@ def members(mechanism: Mechanism) -> tuple[Member, ...]:
     return tuple(cylinders)
 
 
-def require_plain(mechanism: Mechanism, subject: str) -> None:
+def require_single_cylinder_at_constant_speed(mechanism: Mechanism, subject: str) -> None:
     """Raise an error for several cylinders or a speed profile if an analysis covers neither. subject: the analysis."""
     require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
@@ -77,10 +77,10 @@ def require_plain(mechanism: Mechanism, subject: str) -> None:
         )
 
 
-def cylinders_of(mechanism: Mechanism) -> tuple[Member, ...]:
+def cylinder_machines(mechanism: Mechanism) -> tuple[Member, ...]:
     """Return the cylinders of any machine: a machine without an arrangement has only one."""
     return (
-        members(mechanism)
+        member_machines(mechanism)
         if mechanism.arrangement is not None
         else (Member(single_cylinder(mechanism), 0.0, 0.0, 0.0),)
     )

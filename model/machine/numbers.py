@@ -19,7 +19,7 @@ import numpy as np
 from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
-from .loads.registry import kinds
+from .loads.registry import load_classes
 from .mechanism import Mechanism
 from .memoise import memoise_by_batch, memoise_by_machine
 from .raw import LOAD_SLOTS, Raw, raw_vector
@@ -34,7 +34,7 @@ _LINK = {
     "centre_across": (6, "m"),
     "inertia": (7, "kg m^2"),
 }
-_LOAD = {name: place for kind in kinds() for name, place in kind.slots.items()}
+_LOAD = {name: place for kind in load_classes() for name, place in kind.slots.items()}
 _SLOTS: dict[str, tuple[int, str]] = {
     "speed": (Raw.SPEED, "rad/s"),
     "acceleration": (Raw.ACCELERATION, "rad/s^2"),
@@ -129,7 +129,7 @@ _THREE = np.arange(3)
 
 
 @memoise_by_batch
-def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
+def raw_numbers_of_designs(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k variables set.
 
     limit: number of raw numbers; a signal independent of loads has fewer. gradients: whether to return slopes.
@@ -137,7 +137,7 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     require_width(mechanism, designs)
     if not mechanism.varying:
         return Numbers(_THREE, designs, None)
-    by_slot = {slot: value for slot, value in raw_numbers(mechanism, designs).items() if slot < limit}
+    by_slot = {slot: value for slot, value in raw_numbers_by_slot(mechanism, designs).items() if slot < limit}
     columns = np.array(list(by_slot), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
@@ -149,17 +149,17 @@ def numbers_of(mechanism: Mechanism, designs: Array, *, limit: int, gradients: b
     for v in range(designs.shape[1] if gradients else 0):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += 1j * STEP
-        moved = raw_numbers(mechanism, stepped)
+        moved = raw_numbers_by_slot(mechanism, stepped)
         slopes[:, :, v] = np.stack([moved[slot].imag for slot in by_slot], axis=1) / STEP
     return Numbers(columns, values, slopes)
 
 
-def number_of(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
+def raw_number_at_slot(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
     """Return one raw number (n,) for designs (n, 3 + k) and its derivatives (n, 3 + k).
 
     `otherwise`: value if designs do not set it.
     """
-    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=True)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=True)
     place = np.flatnonzero(numbers.columns == slot)
     if numbers.slopes is None or not len(place):
         return np.full(len(designs), otherwise), np.zeros(designs.shape)
@@ -174,7 +174,7 @@ def formula_of_numbers(
     formula: smooth formula that accepts real or complex numbers. Its argument is a function that returns the raw number
     at a slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
     """
-    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=gradients)
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
     slots_used: dict[int, None] = {}
 
@@ -231,7 +231,7 @@ def _raw_number_slopes(varying: tuple[Varying, ...]) -> dict[int, tuple[float, .
     return {slot: tuple(row.get(column, 0.0) for column in range(count)) for slot, row in rates.items()}
 
 
-def raw_numbers(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
+def raw_numbers_by_slot(mechanism: Mechanism, designs: Any) -> dict[int, Any]:
     """Return the raw numbers that designs set, each (n,); complex if the designs are complex."""
     by_slot: dict[int, Any] = {column: designs[:, column] for column in range(3)}
     polar: dict[str, Any] = {}

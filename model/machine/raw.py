@@ -109,9 +109,9 @@ def raw_vector(mechanism: Mechanism) -> Array:
 
 
 @memoise_by_machine
-def fullest_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
+def raw_inputs_with_all_features(mechanism: Mechanism) -> tuple[Array, Loads]:
     """Return the raw numbers, read-only, and the loads of a machine that has all features of any of its designs."""
-    raw = raw_vector(mechanism.fullest)
+    raw = raw_vector(mechanism.with_largest_variables)
     raw.flags.writeable = False
     return raw, load_structure(mechanism)
 
@@ -124,7 +124,7 @@ def _link_numbers(link: Link) -> tuple[float, ...]:
     return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
 
 
-def _factors(load: Load) -> tuple[float, float, float]:
+def _table_acts_in(load: Load) -> tuple[float, float, float]:
     if load.on_crank:
         return (0.0, 0.0, 1.0)
     outward, inward = load.numbers()[:2]
@@ -153,7 +153,7 @@ def load_structure(mechanism: Mechanism) -> Loads:
     return Loads(
         np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),
         np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
-        np.array([_factors(load) for load in mechanism.loads], dtype=np.float64).reshape(-1, 3),
+        np.array([_table_acts_in(load) for load in mechanism.loads], dtype=np.float64).reshape(-1, 3),
         np.array(start, dtype=np.int64),
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),
@@ -162,9 +162,9 @@ def load_structure(mechanism: Mechanism) -> Loads:
 
 
 @memoise_by_machine
-def inertial_inputs(mechanism: Mechanism) -> tuple[Array, Loads]:
+def raw_inputs_with_added_masses_only(mechanism: Mechanism) -> tuple[Array, Loads]:
     """Return raw numbers and loads in which only added masses act: loads without effect create no breakpoints."""
-    raw, _ = fullest_inputs(mechanism)
+    raw, _ = raw_inputs_with_all_features(mechanism)
     if not any(load.inertial for load in mechanism.loads):
         return raw[: int(Raw.END)], load_structure(Mechanism())
     nothing = StrokeForce(outward=0.0, inward=0.0)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..checks import keep_tuples, require_all_finite
+from ..checks import require_all_finite, store_as_tuples
 from ..errors import InputError
 from .elapsed_time import ElapsedTime
 
@@ -38,7 +38,7 @@ class Harmonics:
     sines: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "cosines", "sines")
+        store_as_tuples(self, "cosines", "sines")
         require_all_finite("harmonics of a speed", (*self.cosines, *self.sines))
         if not 1 <= max(len(self.cosines), len(self.sines)) <= _MOST:
             raise InputError(
@@ -82,7 +82,7 @@ class Harmonics:
         )
 
     @property
-    def over_time(self) -> float:
+    def time_mean_over_angle_mean(self) -> float:
         """Mean speed over time divided by the mean over the crank angle."""
         return _TURN / self.elapsed_time.full_turn
 
@@ -111,7 +111,7 @@ class SpeedTable:
     speeds: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "angles", "speeds")
+        store_as_tuples(self, "angles", "speeds")
         require_all_finite("a table of speeds", (*self.angles, *self.speeds), "throughout")
         if len(self.angles) != len(self.speeds) or len(self.angles) < _LEAST:
             raise InputError(
@@ -124,7 +124,7 @@ class SpeedTable:
                     f"crank angles of a table of speeds must increase; got {math.degrees(after):.6g} deg after "
                     f"{math.degrees(before):.6g} deg; sort the table and remove repeated points"
                 )
-        self._require_open()
+        self._require_less_than_a_turn()
         for angle, speed in zip(self.angles, self.speeds, strict=True):
             if not speed * self.speeds[0] > 0.0:
                 raise InputError(
@@ -135,7 +135,7 @@ class SpeedTable:
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
         _require_positive(ends, self.ratio(ends))
 
-    def _require_open(self) -> None:
+    def _require_less_than_a_turn(self) -> None:
         """Raise an error for a table that spans a turn or more."""
         span = self.angles[-1] - self.angles[0]
         if span >= _TURN - _CLOSED:
@@ -188,7 +188,7 @@ class SpeedTable:
         return ElapsedTime.integrate(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
 
     @property
-    def over_time(self) -> float:
+    def time_mean_over_angle_mean(self) -> float:
         """Mean speed over time divided by the mean over the crank angle."""
         return _TURN / self.elapsed_time.full_turn
 
@@ -211,7 +211,7 @@ def time_per_angle(profile: Profile, theta: Array) -> Array:
 
     It is the weight in averages over time: dt = d(theta) / (speed p).
     """
-    return np.asarray(profile.over_time / profile.ratio(theta))
+    return np.asarray(profile.time_mean_over_angle_mean / profile.ratio(theta))
 
 
 def _require_positive(theta: Array, ratio: Array) -> None:

@@ -66,6 +66,6 @@ class Strength:
         require_word("criterion", self.criterion, Criterion)
 
     @property
-    def steady(self) -> float:
+    def mean_stress_reference_strength(self) -> float:
         """Reference strength for mean stresses: ultimate (Goodman) or yield (Soderberg), Pa."""
         return self.material.ultimate_strength if self.criterion == "goodman" else self.material.yield_strength

@@ -38,7 +38,7 @@ def turns_per_cycle(loads: Iterable[Load]) -> int:
 
 
 @memoise_by_machine
-def halves(mechanism: Mechanism) -> tuple[Mechanism, ...]:
+def machines_of_both_turns(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
     _datum(mechanism)
     return tuple(_machine_of_turn(mechanism, turn) for turn in (1, 2))
@@ -52,7 +52,7 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
         sets = []
         for path, factor in item.sets:
             match = re.fullmatch(r"loads\.(\d+)\.(\w+)", path)
-            name = path if match is None else loads[int(match[1])].number_on_turn(match[2], turn)
+            name = path if match is None else loads[int(match[1])].name_of_number_on_turn(match[2], turn)
             if name is not None:
                 sets.append((path if match is None else f"loads.{match[1]}.{name}", factor))
         return replace(item, sets=tuple(sets), idle=not sets)
@@ -61,9 +61,9 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
     return replace(mechanism, loads=tuple(load.on_turn(turn) for load in loads), varying=varying)
 
 
-def one_turn(mechanism: Mechanism) -> Mechanism:
+def machine_of_first_turn(mechanism: Mechanism) -> Mechanism:
     """Return the machine for the first turn, for results independent of loads that differ between turns."""
-    return halves(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
+    return machines_of_both_turns(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
 
 
 def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:
@@ -75,7 +75,7 @@ def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) ->
     return np.asarray(np.mod(np.floor(way * (crank_angle - start) / TURN), 2.0), dtype=np.int64)
 
 
-def in_cycle(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
+def shift_into_half(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
     """Return crank angles shifted by whole turns into [0, 4 pi), rad, and into a given half there."""
     angle = np.mod(crank_angle, TURN)
     return np.where(half_at(mechanism, inner, outer, angle) == half, angle, angle + TURN)

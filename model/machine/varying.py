@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from ..checks import keep_tuples
+from ..checks import store_as_tuples
 from ..errors import InputError
 
 
@@ -30,7 +30,7 @@ class Varying:
     idle: bool = False
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "sets")
+        store_as_tuples(self, "sets")
         if not (math.isfinite(self.lower) and math.isfinite(self.upper) and self.lower <= self.upper):
             raise InputError(
                 f"a range must have lower <= upper, both finite; got {self.lower:g} to {self.upper:g} for {self.name}"
@@ -39,7 +39,7 @@ class Varying:
             raise InputError(f"{self.name} must set at least one number of the machine, each with a non-zero factor")
 
     @property
-    def fullest(self) -> float:
+    def largest_magnitude_bound(self) -> float:
         """The bound with the larger magnitude."""
         return max(self.lower, self.upper, key=abs)
 
@@ -69,7 +69,7 @@ def number_at(part: Any, path: str) -> float | None:
     return part
 
 
-def require_possible(mechanism: Any) -> None:
+def require_valid_variables(mechanism: Any) -> None:
     """Raise `InputError` unless a machine's variables exist, set different numbers, and are valid at both ends."""
     varying: tuple[Varying, ...] = mechanism.varying
     paths = [path for item in varying for path in item.paths]

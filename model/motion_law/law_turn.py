@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import cycle_turns
@@ -62,38 +62,40 @@ class LawTurn:
         equation: with friction, several cylinders, a two-turn cycle, or speed-dependent loads.
         """
         self.machine = with_drive_inertia(mechanism)
-        self.linkage = single(self.machine, linkage)
+        self.linkage = single_rotating_linkage(self.machine, linkage)
         _require_torque_from_energy_alone(self.machine)
         equation = CrankEquation(self.machine, self.linkage, marks=marks)
         equation.require_inertia(0.0)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
-        self._take(PeriodicTurn(equation, dimensions))
+        self._copy_cells(PeriodicTurn(equation, dimensions))
         if self._turn.terms.speed_dependent:
             raise InputError(
                 "a motion law only takes loads that do not depend on the speed; got one that does; leave out "
                 "viscous loads and drag"
             )
 
-    def _take(self, turn: PeriodicTurn) -> None:
+    def _copy_cells(self, turn: PeriodicTurn) -> None:
         self._turn, self.way = turn, turn.way
         self.start, self.width = float(turn.low[0]), np.abs(turn.width)
         self.passed = np.concatenate([[0.0], np.cumsum(self.width)[:-1]])
         self.angle = turn.angle
         slope, load = 2.0 * self.way * turn.terms.spin, self.way * turn.terms.static
-        self.terms = LawTerms(turn.terms.inertia, slope, load, *self.slider(turn.angle))
+        self.terms = LawTerms(turn.terms.inertia, slope, load, *self.slider_derivatives(turn.angle))
         cells = np.arange(len(turn.width))
 
-        def at_ends(values: Array) -> Array:
+        def at_cell_ends(values: Array) -> Array:
             return np.stack([values_at(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)])
 
         angles = np.stack([turn.low, turn.low + turn.width])
-        self.end_terms = LawTerms(self.inertia_at(angles), at_ends(slope), at_ends(load), *self.slider(angles))
+        self.end_terms = LawTerms(
+            self.inertia_at(angles), at_cell_ends(slope), at_cell_ends(load), *self.slider_derivatives(angles)
+        )
 
     def finer(self, cells: Mask) -> LawTurn:
         """Return the turn with the chosen cells (n,) halved."""
         turn = object.__new__(LawTurn)
         turn.machine, turn.linkage = self.machine, self.linkage
-        turn._take(self._turn.cut(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
+        turn._copy_cells(self._turn.cut(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
         return turn
 
     @property
@@ -107,11 +109,11 @@ class LawTurn:
         return self._turn.low
 
     @property
-    def work(self) -> float:
+    def load_work(self) -> float:
         """Work that the loads absorb in a turn, J; gravity absorbs none."""
         return float(np.sum(self.weights * self.terms.load))
 
-    def slider(self, crank_angle: Array) -> tuple[Array, Array]:
+    def slider_derivatives(self, crank_angle: Array) -> tuple[Array, Array]:
         """Return x' and x'' by phi, m, at crank angles, rad."""
         motion = self.linkage.at(crank_angle, speed=self.way)
         return motion.slider_velocity, motion.slider_acceleration
@@ -132,7 +134,7 @@ class LawTurn:
 
     def integral_of(self, values: Array, cell: IntArray, place: Array) -> Array:
         """Return integrals over phi of values at all nodes, from the start of cells (n,) to positions within them."""
-        return np.asarray(self.width[cell] * np.einsum("ni,ni->n", integrals_to(place), values[cell]))
+        return np.asarray(self.width[cell] * np.einsum("ni,ni->n", cell_integral_weights(place), values[cell]))
 
 
 def values_at(values: Array, cell: IntArray, place: Array) -> Array:
@@ -141,7 +143,7 @@ def values_at(values: Array, cell: IntArray, place: Array) -> Array:
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))
 
 
-def integrals_to(place: Array) -> Array:
+def cell_integral_weights(place: Array) -> Array:
     """Return weights (n, 16) for integrals over a unit cell, from its start to positions from 0 to 1."""
     return np.asarray(legendre.legvander(2.0 * place - 1.0, DEGREE + 1) @ INTEGRATED @ FIT)
 

@@ -34,9 +34,9 @@ class MotionLaw:
     start_energy: float
 
     @classmethod
-    def closed(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
+    def made_periodic(cls, turn: LawTurn, torque: Array, start_energy: float) -> MotionLaw:
         """Return the law with a constant torque added that makes it repeat."""
-        excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.work
+        excess = float(turn.width @ (0.5 * (torque + np.roll(torque, -1)))) - turn.load_work
         return cls(turn, torque - excess / float(turn.width.sum()), start_energy)
 
     @cached_property
@@ -114,12 +114,14 @@ class MotionLaw:
     def time(self, crank_angle: Array) -> Array:
         """Return the time since the start of the turn, s, at crank angles (n,), rad."""
         cell, place = self.turn.locate(crank_angle)
-        return np.asarray(self._starts[cell] + self.turn.integral_of(self.node_slowness, cell, place))
+        return np.asarray(self._cell_start_times[cell] + self.turn.integral_of(self.node_slowness, cell, place))
 
     def angle_at(self, time: Array) -> Array:
         """Return the crank angle, rad, not reduced modulo a turn, at times (n,) from 0 to the period, s."""
-        cell = np.clip(np.searchsorted(self._starts, time, side="right") - 1, 0, len(self._starts) - 1)
-        rest = time - self._starts[cell]
+        cell = np.clip(
+            np.searchsorted(self._cell_start_times, time, side="right") - 1, 0, len(self._cell_start_times) - 1
+        )
+        rest = time - self._cell_start_times[cell]
         lasts = self.turn.integral_of(self.node_slowness, cell, np.ones(len(time)))
         place = rest / lasts
         for _ in range(_NEWTON):
@@ -130,7 +132,7 @@ class MotionLaw:
         return np.asarray(self.turn.start + self.turn.way * (self.turn.passed[cell] + place * self.turn.width[cell]))
 
     @cached_property
-    def _starts(self) -> Array:
+    def _cell_start_times(self) -> Array:
         lasts = np.sum(self.turn.weights * self.node_slowness, axis=1)
         return np.concatenate([[0.0], np.cumsum(lasts)[:-1]])
 

@@ -10,18 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import rubs
-from ..kernel.batches import turning
-from ..machine.dissipation import works_over_a_turn
+from ..dynamics.contact import needs_friction_kernel
+from ..kernel.batches import require_full_rotation
+from ..machine.dissipation import may_do_work_over_a_turn
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_shaft
+from ..machine.members import is_treated_as_shaft
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, halves
+from ..machine.two_turns import cycle_turns, machines_of_both_turns
 from .shaft_statistics import shaft_signal_averages
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 from .turn_means import MeansTask, turn_means
-from .two_turns import averaged
+from .two_turns import averages_of_both_turns
 
 
 @dataclass(frozen=True)
@@ -86,15 +86,17 @@ def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bo
 @memoise_by_batch
 def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradients: bool) -> Averages:
     """Return memoised averages: one batch is evaluated for mean and RMS torque, power, energy and more."""
-    designs = turning(designs)
-    if is_shaft(mechanism):
+    designs = require_full_rotation(designs)
+    if is_treated_as_shaft(mechanism):
         return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
-        first, second = (average(half, kind, designs, gradients=gradients) for half in halves(mechanism))
-        return Averages(*averaged(first, second))
+        first, second = (
+            average(half, kind, designs, gradients=gradients) for half in machines_of_both_turns(mechanism)
+        )
+        return Averages(*averages_of_both_turns(first, second))
     raw, loads = signal_inputs(mechanism, kind)
-    rubbing = kind.needs_forces and rubs(mechanism)
-    jumps = rubbing or (kind.needs_forces and any(load.steps for load in mechanism.fullest.loads))
+    rubbing = kind.needs_forces and needs_friction_kernel(mechanism)
+    jumps = rubbing or (kind.needs_forces and any(load.steps for load in mechanism.with_largest_variables.loads))
     task = MeansTask(int(kind), loads, cycle_window(mechanism, kind), rubbing, jumps)
     means = turn_means(task, raw, mechanism, designs, squares=True, gradients=gradients)
     mean, rms = means.mean[:, 0], np.sqrt(means.square[:, 0])
@@ -105,7 +107,7 @@ def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradient
         by_mean, by_rms = means.mean_slope[:, 0], means.square_slope[:, 0]
         by_rms = np.divide(by_rms, rms[:, None], out=np.zeros_like(by_rms), where=rms[:, None] > 0.0)
         slopes = np.stack([by_mean, by_rms, by_rms])
-    if kind is Signal.TORQUE and not works_over_a_turn(
+    if kind is Signal.TORQUE and not may_do_work_over_a_turn(
         mechanism
     ):  # exact, because cancelling terms leave no rounding error
         mean[:] = 0.0

@@ -42,7 +42,7 @@ _ROUNDING = 2.0**-20  # rounding error of a sample, with a margin, for a linkage
 
 
 @analytic
-def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
+def fill_curve_numbers(block: Any, kappa: Any, direction: Any, b: Any) -> None:
     """Fill `b` (ROWS, LANES), single precision, from derived designs, kappa of the crowded angle, sense of rotation."""
     for j in range(LANES):
         d = design_at(block, j)
@@ -91,7 +91,7 @@ def prepare(block: Any, kappa: Any, direction: Any, b: Any) -> None:
 
 
 @analytic
-def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
+def _crank_sine_and_cosine(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
     """Sine and cosine of the crank angle at tau: tan(theta - pi/2) = kappa tan(tau)."""
     if crowd:
         y = kappa * sine_tau
@@ -156,7 +156,7 @@ def _sample_torque_and_worst_case(
 ) -> None:
     """Torque and worst-case position error for all lanes at tau and -tau."""
     for j in range(LANES):
-        sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
+        sine, cosine = _crank_sine_and_cosine(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
         at_tau[0, j], at_minus_tau[0, j], at_tau[1, j], at_minus_tau[1, j], _, _ = _torque_and_position_errors(
             b, j, sine, cosine
         )
@@ -168,7 +168,7 @@ def _sample_squared_rss_error(
 ) -> None:
     """Squares of the root-sum-square for all lanes at tau and -tau."""
     for j in range(LANES):
-        sine, cosine = _turned(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
+        sine, cosine = _crank_sine_and_cosine(sine_tau, cosine_tau, crowd, b[_KAPPA, j])
         _, _, _, _, at_tau[2, j], at_minus_tau[2, j] = _torque_and_position_errors(b, j, sine, cosine)
 
 
@@ -179,7 +179,7 @@ def row_of(kind: Any) -> Any:
 
 
 @analytic
-def sweep(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
+def sample_curves(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> None:
     """Fill the samples (3, angles + 2, LANES) at `tau` (2, angles): rows 1 to angles, and the wrapped ends.
 
     Torque and worst case are always computed together. Two ways of computing a curve would round differently, and

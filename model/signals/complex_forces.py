@@ -10,14 +10,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.contact import rubs, sides_of
-from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
+from ..dynamics.contact import needs_friction_kernel, sides_of
+from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
+from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
 from ..dynamics.torque import Forces
 from ..kernel.batches import in_chunks
-from ..kernel.kernel import ComplexCube, ComplexTable, Row, seldom_kernel
-from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
+from ..kernel.kernel import ComplexCube, ComplexTable, Row, rarely_used_kernel
+from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import Loads, load_structure, raw_vector
 from .signals import design_motion
@@ -27,7 +27,7 @@ ComplexArray = NDArray[np.complex128]
 _ROWS = len(Forces._fields) + 1
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _fill_forces(
     raw: Row, designs: ComplexTable, loads: Loads, angles: ComplexTable, out: ComplexCube, rubbing: bool
 ) -> None:
@@ -41,7 +41,7 @@ def _fill_forces(
             stepped[i, 0] = complex(raw[i], 0.0)
         for v in range(3):
             stepped[v, 0] = designs[n, v]
-        derive(stepped, loads.kind, loads.datum, curved)
+        derive_design(stepped, loads.kind, loads.datum, curved)
         for i in range(rows):
             block[i, 0] = curved[i, 0].real
         d, z = design_at(block, 0), design_at(curved, 0)
@@ -50,13 +50,13 @@ def _fill_forces(
             sine, cosine = math.sin(theta), math.cos(theta)
             step = angles[n, k].imag
             s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
-            _, outward = enter(d, block, 0, theta, loads, watch, piece, shift)
+            _, outward = enter_segment(d, block, 0, theta, loads, watch, piece, shift)
             sides = sides_of(theta, d, Segment(block, loads, outward, piece, shift), rubbing)
             segment = Segment(curved, loads, outward, piece, shift)
             m = design_motion(s, c, z)
             load = load_on_slider(m, z, angles[n, k], segment)
-            f = joint_forces(s, c, m, z, load, sides)
-            out[n, 0, k] = torque_without_crank_loads(f.torque, angles[n, k], sense_of(d), segment)
+            f = joint_forces_with_optional_friction(s, c, m, z, load, sides)
+            out[n, 0, k] = torque_without_crank_loads(f.torque, angles[n, k], rotation_sense(d), segment)
             out[n, 1, k] = f.pivot_x
             out[n, 2, k] = f.pivot_y
             out[n, 3, k] = f.crank_pin_x
@@ -78,7 +78,7 @@ def complex_joint_forces(
     # Arrays of one type, so that one compiled kernel serves all.
     designs, angles = (np.require(array, np.complex128, ["C", "W"]) for array in (designs, angles))
     out = np.empty((len(angles), _ROWS, angles.shape[1]), np.complex128)
-    raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), rubs(mechanism)
+    raw, loads, rubbing = raw_vector(mechanism), load_structure(mechanism), needs_friction_kernel(mechanism)
 
     def work(begin: int, end: int) -> None:
         _fill_forces(raw, designs[begin:end], loads, angles[begin:end], out[begin:end], rubbing)

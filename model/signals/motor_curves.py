@@ -23,18 +23,18 @@ from numpy.typing import NDArray
 from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
-from ..kernel.batches import in_chunks, turning
+from ..kernel.batches import in_chunks, require_full_rotation
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
 from ..machine.members import cylinder_count
 from ..machine.memoise import memoise_by_batch
-from ..machine.numbers import DRIVE, number_of
+from ..machine.numbers import DRIVE, raw_number_at_slot
 from ..machine.raw import Raw, knot_count
 from .peaks import Peaks
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE_OVER_TIME, shaft_means
 from .shaft_peaks import shaft_peaks
-from .shaft_segments import GEAR, SUPPLY, Breaks, joined
+from .shaft_segments import GEAR, SUPPLY, Breaks, join_breaks
 from .signals import Signal
 
 _CHUNK = 128  # designs
@@ -109,7 +109,7 @@ class MotorShaft(Shaft):
         breaks = super()._cut_at_kinks(breaks)
         codes = ([GEAR] if self._lossy else []) + ([SUPPLY] if self.curve is MotorCurve.DRAWN else [])
         for code in codes:
-            breaks = joined([breaks, self.crossings(breaks, partial(self._values, _KINKS[code]), code)])
+            breaks = join_breaks([breaks, self.crossings(breaks, partial(self._values, _KINKS[code]), code)])
         return breaks
 
     def _values(self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array) -> Array:
@@ -126,7 +126,7 @@ class MotorShaft(Shaft):
         moves = np.ones((len(angle), steps.shape[2]))
         if gradients:
             moves[:, 1:] = 0.0 if rate is None else rate
-        speed, acceleration = self._motion(train, angle, 1j * STEP * moves[:, None])
+        speed, acceleration = self._crank_speed_and_acceleration(train, angle, 1j * STEP * moves[:, None])
         through_gear = self._direction * (torque[:, :, :1] + steps) + train.flywheel * acceleration
         drives = through_gear[:, -1:, :1].real >= 0.0
         share = np.where(drives, 1.0 / train.gear_efficiency, train.braking_efficiency)
@@ -148,7 +148,7 @@ class MotorShaft(Shaft):
         out = np.concatenate([values[:, :-1, :1].real, values[:, :-1].imag / STEP], axis=2)
         return out, np.asarray(sizes[:, :-1, 0])
 
-    def _motion(self, train: _Numbers, angle: Array, step: _Stepped) -> tuple[_Stepped, _Stepped]:
+    def _crank_speed_and_acceleration(self, train: _Numbers, angle: Array, step: _Stepped) -> tuple[_Stepped, _Stepped]:
         """Return speed and acceleration of the crank in its direction of rotation, stepped, (p, k, c)."""
         speed = self._direction * train.speed
         if self.profile is None:
@@ -172,7 +172,7 @@ def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
     """Return the numbers of the drive train for designs (n, 3 + k)."""
 
     def stepped(slot: int, otherwise: float | None) -> _Stepped:
-        values, slopes = number_of(mechanism, slot, designs, otherwise=0.0 if otherwise is None else otherwise)
+        values, slopes = raw_number_at_slot(mechanism, slot, designs, otherwise=0.0 if otherwise is None else otherwise)
         return np.concatenate([values[:, None] + 0j, values[:, None] + 1j * STEP * slopes], axis=1)
 
     numbers = {name: stepped(slot, getattr(drive, name)) for name, slot in DRIVE.items()}
@@ -188,7 +188,7 @@ def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
 @memoise_by_batch
 def motor_peaks(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradients: bool, limit: int) -> Peaks:
     """Return the highest local peaks of the magnitude of a motor's curve for designs (n, 3 + k); see `Peaks`."""
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     values, angles = np.empty((len(designs), limit)), np.empty((len(designs), limit))
     slopes = np.empty((len(designs), limit, designs.shape[1])) if gradients else None
 
@@ -218,7 +218,7 @@ class MotorAverages:
 @memoise_by_batch
 def motor_averages(mechanism: Mechanism, designs: Array, curve: MotorCurve, gradients: bool) -> MotorAverages:
     """Return the averages of a motor's curve for designs (n, 3 + k)."""
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     values, slopes = np.empty((2, len(designs))), np.zeros((2, *designs.shape))
 
     def work(begin: int, end: int) -> None:

@@ -15,7 +15,17 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array, Mask
-from ..quadrature import ANGLE_ROUNDING, DEGREE, FIT, MOST_HALVINGS, NODES, Samples, gauss, resolve, resolved_tail
+from ..quadrature import (
+    ANGLE_ROUNDING,
+    DEGREE,
+    FIT,
+    MOST_HALVINGS,
+    NODES,
+    Samples,
+    gauss,
+    last_coefficients_magnitude,
+    resolve,
+)
 from .first_greatest import first_greatest
 
 Curves = Callable[[Array], Array]
@@ -79,7 +89,7 @@ class Panels:
         """Return the integral over the crank angle."""
         return float(np.sum(self.width * self.coefficients[:, 0, curve]))
 
-    def swing(self, curve: int) -> float:
+    def integral_range(self, curve: int) -> float:
         """Return the range of the integral of the curve minus its mean; J for a torque."""
         c = self.coefficients[:, :, curve].copy()
         c[:, 0] -= self.mean(curve)
@@ -124,7 +134,7 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
         angles = low[:, None] + width[:, None] * NODES
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
         steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
-        rough: Mask = np.any(np.maximum(_RESOLVED * sizes, steep) < resolved_tail(values).T, axis=1)
+        rough: Mask = np.any(np.maximum(_RESOLVED * sizes, steep) < last_coefficients_magnitude(values).T, axis=1)
         return rough, [np.einsum("ki,mpi->pkm", FIT, values)]
 
     lows, widths, coefficients = resolve(sample, low, width, limit=len(low) + MOST_HALVINGS)

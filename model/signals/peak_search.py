@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..quadrature import NODES, Samples, resolve, resolved_tail
+from ..quadrature import NODES, Samples, last_coefficients_magnitude, resolve
 from .cycle_segments import Segments
 from .roots import find_roots
 
@@ -115,7 +115,7 @@ class _Search:
     counted: Mask
     signed: bool
 
-    def judged(self, curve: Array) -> Array:
+    def signed_as_judged(self, curve: Array) -> Array:
         """Return the curve (..., c) with derivatives, negated where its magnitude counts and its value is negative."""
         return curve if self.signed else np.asarray(np.where(curve[..., :1] < 0.0, -curve, curve))
 
@@ -130,8 +130,8 @@ class _Search:
             place = low[:, None] + width[:, None] * _NODES
             curve, sizes = self.curve.evaluate(row, probe, place)
             np.maximum.at(size, row, sizes.max(axis=1, initial=0.0))
-            rough: Mask = resolved_tail(curve[:, 1:-1, 0]) > _ROUGH * size[row]
-            return rough, [place, self.judged(curve)]
+            rough: Mask = last_coefficients_magnitude(curve[:, 1:-1, 0]) > _ROUGH * size[row]
+            return rough, [place, self.signed_as_judged(curve)]
 
         panels = resolve(sample, low, width, row, probe, segment, deepest=_DEEPEST)
         _, _, row, probe, segment, place, curve = panels
@@ -155,7 +155,7 @@ class _Search:
             panel, at = panel[near], at[near]
         begin = place[panel, at], slope[panel, at], value[panel, at]
         end = place[panel, at + 1], slope[panel, at + 1]
-        top, top_places = self.refined(row[panel], probe[panel], begin, end)
+        top, top_places = self.maxima_in_brackets(row[panel], probe[panel], begin, end)
         # At a kink, rounding may give the slope from the other side: a root that close to a breakpoint moves with it.
         panel_segment = segment[panel]
         from_low, from_high = (
@@ -165,7 +165,7 @@ class _Search:
         edge = np.where(from_low < _ON_EDGE, -1, np.where(from_high < _ON_EDGE, 1, 0))
         return _Tops(row[panel], top, top_places, panel_segment, edge), best, size
 
-    def refined(
+    def maxima_in_brackets(
         self, row: IntArray, probe: Array, begin: tuple[Array, Array, Array], end: tuple[Array, Array]
     ) -> tuple[Array, Array]:
         """Return value and place of the maxima in brackets: roots of the slope.
@@ -176,7 +176,7 @@ class _Search:
 
         def slope(brackets: IntArray, trial: Array) -> Array:
             evaluated = self.curve.evaluate(row[brackets], probe[brackets], trial[:, None])[0][:, 0, :2]
-            curve = self.judged(evaluated)
+            curve = self.signed_as_judged(evaluated)
             value[brackets] = curve[:, 0]
             return np.asarray(curve[:, 1])
 
@@ -188,7 +188,9 @@ class _Search:
         n = len(live)
         edge = np.full((n + 1, 2, 2), -np.inf)  # the last one belongs to no segment
         ends = np.stack([segments.low[live], segments.high[live]], axis=1)
-        edge[:-1][live] = self.judged(self.curve.evaluate(segments.row[live], segments.probe[live], ends)[0][..., :2])
+        edge[:-1][live] = self.signed_as_judged(
+            self.curve.evaluate(segments.row[live], segments.probe[live], ends)[0][..., :2]
+        )
         first = np.setdiff1d(np.arange(n), segments.next_segment)
         before, following = np.append(np.arange(n), np.full(len(first), -1)), np.append(segments.next_segment, first)
         left, falls_not = edge[before, 1, 0], edge[before, 1, 1] >= 0.0
@@ -221,7 +223,7 @@ class _Search:
         at = begins[moves]
         rate[moves] = self.curve.rates(segments.cut[at], segments.probe[at])
         probe, place = segments.probe[tops.segment], tops.place[:, None]
-        curve = self.judged(self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0])
+        curve = self.signed_as_judged(self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0])
         return np.asarray(curve[:, 2:])
 
 

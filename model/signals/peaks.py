@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import rubs
-from ..kernel.batches import in_chunks, turning
-from ..machine.derived import derived
+from ..dynamics.contact import needs_friction_kernel
+from ..kernel.batches import in_chunks, require_full_rotation
+from ..machine.derived import derived_blocks
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_shaft
-from ..machine.numbers import numbers_of
-from ..machine.two_turns import cycle_turns, halves
+from ..machine.members import is_treated_as_shaft
+from ..machine.numbers import raw_numbers_of_designs
+from ..machine.two_turns import cycle_turns, machines_of_both_turns
 from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 from .turn_peaks import TurnTask, find_in_turns
-from .two_turns import highest
+from .two_turns import highest_peaks_of_both_turns
 
 ANGLES = 128
 """Sampled angles per turn. Alone, they miss the higher of two close peaks on 3 of 750,000 random machines with all
@@ -59,8 +59,8 @@ def find_peaks(
     over the window in the mechanism's tolerances. limit: peaks returned per design. angles: samples per turn.
     `shaft_statistics` describes how several cylinders and a speed profile are included.
     """
-    designs = turning(designs)
-    if is_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
+    designs = require_full_rotation(designs)
+    if is_treated_as_shaft(mechanism) or kind is Signal.ROCKING_COUPLE:
         parts = [
             find_peaks(crank, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
             for crank in equivalent_single_cranks(mechanism, kind)
@@ -71,20 +71,20 @@ def find_peaks(
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
             find_peaks(half, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
-            for half in halves(mechanism)
+            for half in machines_of_both_turns(mechanism)
         )
-        return Peaks(*highest(mechanism, designs, first, second))
+        return Peaks(*highest_peaks_of_both_turns(mechanism, designs, first, second))
     n = len(designs)
     values, peak_angles = np.empty((n, limit)), np.empty((n, limit))
     raw, loads = signal_inputs(mechanism, kind)
-    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((n if gradients else 0, limit, len(columns)))
-    rubbing = kind.needs_forces and rubs(mechanism)
+    rubbing = kind.needs_forces and needs_friction_kernel(mechanism)
     task = TurnTask(int(kind), loads, cycle_window(mechanism, kind, during=during), angles, rubbing)
 
     def work(begin: int, end: int) -> None:
-        blocks, steps = derived(raw, loads, columns, designs[begin:end], steps=gradients)
+        blocks, steps = derived_blocks(raw, loads, columns, designs[begin:end], steps=gradients)
         part = slice(begin, end)
         find_in_turns(task, blocks, steps, values[part], peak_angles[part], slopes[part] if gradients else slopes)
 

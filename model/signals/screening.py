@@ -17,21 +17,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.segments import crowding
-from ..dynamics.torque import forces, smooth_load
+from ..dynamics.segments import crowding_parameter
+from ..dynamics.torque import forces, load_without_pieces
 from ..kernel.arithmetic import STEP, analytic, inverse, root
-from ..kernel.batches import in_chunks, turning
+from ..kernel.batches import in_chunks, require_full_rotation
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.design import DESIGN, LOAD_ROWS, derive, design_at
+from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
-from ..machine.members import is_shaft
+from ..machine.members import is_treated_as_shaft
 from ..machine.memoise import memoise_by_machine
-from ..machine.numbers import numbers_of
-from ..machine.raw import fullest_inputs
-from ..machine.two_turns import one_turn
+from ..machine.numbers import raw_numbers_of_designs
+from ..machine.raw import raw_inputs_with_all_features
+from ..machine.two_turns import machine_of_first_turn
 from .coarse_peaks import LANES as LANES
-from .coarse_peaks import ROWS, prepare, row_of, sweep, two_highest
+from .coarse_peaks import ROWS, fill_curve_numbers, row_of, sample_curves, two_highest
 from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal
 
@@ -99,12 +99,12 @@ class _Tops(NamedTuple):
 
 
 @memoise_by_machine
-def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
-    """Whether `screen` supports this signal for this mechanism."""
+def is_supported(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> bool:
+    """Whether `screened_maxima` supports this signal for this mechanism."""
     if kind not in (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         return False
-    watch, shaft = cycle_window(mechanism, kind, during=during), is_shaft(mechanism)
-    mechanism = mechanism.fullest
+    watch, shaft = cycle_window(mechanism, kind, during=during), is_treated_as_shaft(mechanism)
+    mechanism = mechanism.with_largest_variables
     full_cycle = watch.strokes == 0 and watch.start == 0.0 and watch.end == 1.0
     if kind == Signal.POSITION_ERROR_RSS and mechanism.tolerances.clearances != Clearances():
         return False  # `coarse_peaks` samples the squares with the tolerances alone
@@ -122,12 +122,12 @@ def screens(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> boo
 def _signal_value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: Any) -> Any:
     """Value of a signal, with the load for the stroke that the slider is in."""
     outward = d.branch.real * m.x_1.real * direction > 0.0
-    load = smooth_load(m, d, d.outward_force if outward else d.inward_force)
+    load = load_without_pieces(m, d, d.outward_force if outward else d.inward_force)
     return signal(kind, sine, cosine, m, d, load)
 
 
 @analytic
-def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
+def _crank_sine_and_cosine(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
     """Sine and cosine of the crank angle at tau: tan(theta - pi/2) = kappa tan(tau)."""
     if crowd:
         y = kappa * sine_tau
@@ -139,7 +139,7 @@ def _turned(sine_tau: Any, cosine_tau: Any, crowd: Any, kappa: Any) -> Any:
 @analytic
 def _curve(kind: Any, sine_tau: Any, cosine_tau: Any, kappa: Any, d: Any, direction: Any) -> Any:
     """Value at one tau, real or complex."""
-    sine, cosine = _turned(sine_tau, cosine_tau, True, kappa)
+    sine, cosine = _crank_sine_and_cosine(sine_tau, cosine_tau, True, kappa)
     return _signal_value(kind, sine, cosine, design_motion(sine, cosine, d), d, direction)
 
 
@@ -291,7 +291,7 @@ def _fill_gradients(task: Screening, lanes: _Lanes, raw: Any, peaks: Any, worksp
         for i in range(block.shape[0]):
             for j in range(LANES):
                 block[i, j] = lanes.block[i, j]
-        derive(stepped, task.load_kind, task.load_datum, block, column)
+        derive_design(stepped, task.load_kind, task.load_datum, block, column)
         for q in range(task.kinds.shape[0]):
             _fill_design_derivatives(
                 task.kinds[q], _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2]), block, lanes.direction, slope
@@ -323,11 +323,11 @@ def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) ->
         for i in range(task.columns.shape[0]):
             for j in range(LANES):
                 raw[task.columns[i], j] = designs[min(begin + j, n - 1), i]
-        derive(raw, task.load_kind, task.load_datum, lanes.block)
+        derive_design(raw, task.load_kind, task.load_datum, lanes.block)
         for j in range(LANES if task.crowd else 0):
-            lanes.kappa[j] = crowding(raw[0, j], raw[1, j], raw[2, j])
-        prepare(lanes.block, lanes.kappa, lanes.direction, scaled)
-        sweep(task.kinds, coarse, task.crowd, scaled, samples)
+            lanes.kappa[j] = crowding_parameter(raw[0, j], raw[1, j], raw[2, j])
+        fill_curve_numbers(lanes.block, lanes.kappa, lanes.direction, scaled)
+        sample_curves(task.kinds, coarse, task.crowd, scaled, samples)
         last, here = min(LANES, n - begin), first + begin
         for j in range(LANES if out.still.shape[0] else 0):
             slope[j] = _torque_at_dead_centres(design_at(lanes.block, j))
@@ -346,7 +346,7 @@ def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) ->
             _fill_gradients(task, lanes, raw, peaks, workspace, out.gradients[:, here : here + last])
 
 
-def screen(
+def screened_maxima(
     mechanism: Mechanism,
     kinds: tuple[Signal, ...],
     designs: Array,
@@ -361,16 +361,16 @@ def screen(
 
     The k additional columns are the values of the machine's variables.
 
-    kinds: signals that `screens` accepts; they are evaluated together and share the motion. places, still: whether to
-    return these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples where
-    the linkage is close to locking.
+    kinds: signals that `is_supported` accepts; they are evaluated together and share the motion. places, still: whether
+    to return these, see `Screened`. angles: samples per turn, a multiple of 4. crowd: whether to concentrate samples
+    where the linkage is close to locking.
     """
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     n, signals = len(designs), len(kinds)
     values, peak_angles = np.empty((signals, n)), np.empty((signals, n if places else 0))
     standing = np.empty(n if still else 0)
-    raw, loads = fullest_inputs(one_turn(mechanism))
-    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
+    raw, loads = raw_inputs_with_all_features(machine_of_first_turn(mechanism))
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))
     codes = np.array([int(kind) for kind in kinds])

@@ -10,18 +10,18 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import breakpoints_of
-from ..dynamics.contact import rubs
+from ..dynamics.contact import needs_friction_kernel
 from ..dynamics.rubbing import always_drives
-from ..dynamics.segments import crowding
+from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
 from ..kinematics import geometry
-from ..machine.derived import derived
+from ..machine.derived import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinders_of, single_cylinder
-from ..machine.numbers import numbers_of
+from ..machine.members import cylinder_machines, single_cylinder
+from ..machine.numbers import raw_numbers_of_designs
 from ..machine.raw import Loads
-from ..machine.two_turns import TURN, cycle_turns, half_at, halves
+from ..machine.two_turns import TURN, cycle_turns, half_at, machines_of_both_turns
 from .cycle_segments import Segments
 from .roots import find_roots
 from .shaft_curves import (
@@ -37,7 +37,7 @@ from .shaft_curves import (
     cut_rates,
     fill_curves,
 )
-from .shaft_segments import CONTACT, FIXED, Breaks, joined, segments_of
+from .shaft_segments import CONTACT, FIXED, Breaks, join_breaks, segments_of
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 
@@ -67,11 +67,11 @@ class Shaft:
         single = single_cylinder(mechanism)
         self._single, self._designs = single, designs
         two_turns = signal.needs_forces and cycle_turns(single) > 1
-        self._parts = halves(single) if two_turns else (single,)
+        self._parts = machines_of_both_turns(single) if two_turns else (single,)
         self.period = len(self._parts) * TURN
         self.vector = kind in [int(vector) for vector in VECTORS]
-        self.rubbing = signal.needs_forces and rubs(single)
-        cylinders = cylinders_of(mechanism)
+        self.rubbing = signal.needs_forces and needs_friction_kernel(single)
+        cylinders = cylinder_machines(mechanism)
         lead, bank = (
             np.array([cylinder.lead for cylinder in cylinders]),
             np.array([cylinder.bank for cylinder in cylinders]),
@@ -83,8 +83,8 @@ class Shaft:
         plain, stepped = [], []
         for part in self._parts:
             raw, loads = signal_inputs(part, signal)
-            numbers = numbers_of(part, designs, limit=len(raw), gradients=gradients)
-            numbers_block, steps = derived(raw, loads, numbers.columns, numbers.values, steps=gradients)
+            numbers = raw_numbers_of_designs(part, designs, limit=len(raw), gradients=gradients)
+            numbers_block, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
             self._loads.append(loads)
             plain.append(numbers_block)
             cylinder = numbers_block[:, None, :, 0].astype(np.complex128)
@@ -122,10 +122,10 @@ class Shaft:
     def fineness(self) -> Array:
         """Initial panels per turn (n,): more for designs near locking and for rough profiles."""
         r, l, e = self._designs[:, :3].T
-        crowd = np.array([crowding(*lengths) for lengths in zip(r, l, e, strict=True)])
+        crowd = np.array([crowding_parameter(*lengths) for lengths in zip(r, l, e, strict=True)])
         return np.asarray(np.ceil(np.maximum(12.0 / np.maximum(crowd, 0.05), 1.0 * len(self._pace.cosines))))
 
-    def half(self, angle: Array, row: IntArray) -> IntArray:
+    def half_of_each_cylinder(self, angle: Array, row: IntArray) -> IntArray:
         """Return the half (p, m) of its cycle in which every cylinder is at shaft angles (p,)."""
         if len(self._parts) < 2:
             return np.zeros((len(angle), len(self._axes.lead)), dtype=np.int64)
@@ -148,26 +148,26 @@ class Shaft:
         Value, slope over the crank angle and, if requested, derivatives. rate: (p, v), derivatives of the angles with
         respect to the design.
         """
-        evaluated = self._evaluate(self._curve, self._items(row, probe, angle, rate), gradients)
+        evaluated = self._evaluate(self._curve, self._evaluations(row, probe, angle, rate), gradients)
         return evaluated.curve, evaluated.size
 
     def outward(self, segments: Segments) -> Mask:
         """Return whether the slider of the first cylinder moves outward in the segments."""
-        items = self._items(segments.row, segments.probe, segments.probe[:, None])
+        items = self._evaluations(segments.row, segments.probe, segments.probe[:, None])
         return np.asarray(self._evaluate(self._curve, items).outward[:, 0] == 1)
 
     @property
     def _curve(self) -> ShaftCurve:
         return ShaftCurve(self.kind, self.members, self.vector, self.rubbing)
 
-    def _touch(self, member: int) -> ShaftCurve:
+    def _guide_side_curve(self, member: int) -> ShaftCurve:
         """Return the curve that has the sign of the force on a cylinder's guide."""
         return ShaftCurve(TOUCH, np.array([member]), False, self.rubbing)
 
-    def _items(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
+    def _evaluations(self, row: IntArray, probe: Array, angle: Array, rate: Array | None = None) -> Evaluations:
         rate = np.zeros((len(row), self.numbers)) if rate is None else rate
         contiguous = np.ascontiguousarray
-        half = self.half(probe, row)
+        half = self.half_of_each_cylinder(probe, row)
         return Evaluations(contiguous(row), contiguous(probe), contiguous(angle), contiguous(rate), contiguous(half))
 
     def _evaluate(self, curve: ShaftCurve, items: Evaluations, gradients: bool = False) -> CurveArrays:
@@ -200,19 +200,19 @@ class Shaft:
         row, angle = np.repeat(rows, len(fixed)), np.tile(fixed, len(rows))
         zeros = np.zeros(len(row), dtype=np.int64)
         parts.append(Breaks(row, angle, zeros, zeros, zeros + FIXED, np.zeros(len(row)), zeros))
-        return self._cut_at_kinks(joined(parts))
+        return self._cut_at_kinks(join_breaks(parts))
 
     def _cut_at_kinks(self, breaks: Breaks) -> Breaks:
         """Return breakpoints together with those at which friction changes sides, between which the curve is smooth."""
         parts = [breaks]
         for member in self.members if self.rubbing else ():
-            touch = self._touch(member)
+            touch = self._guide_side_curve(member)
 
             def contact(row: IntArray, probe: Array, angle: Array, touch: ShaftCurve = touch) -> Array:
-                return self._evaluate(touch, self._items(row, probe, angle)).curve[:, :, 0]
+                return self._evaluate(touch, self._evaluations(row, probe, angle)).curve[:, :, 0]
 
             parts.append(self.crossings(breaks, contact, CONTACT, int(member)))
-        return joined(parts)
+        return join_breaks(parts)
 
     def _breaks_of_half(self, half: int) -> Breaks:
         """Return the breakpoints of every cylinder in one of two turns."""
@@ -240,7 +240,7 @@ class Shaft:
                         cuts.load[row, place][belongs],
                     )
                 )
-        return joined(parts)
+        return join_breaks(parts)
 
     def crossings(
         self, breaks: Breaks, curve: Callable[[IntArray, Array, Array], Array], code: int, member: int = 0
@@ -290,7 +290,7 @@ class Shaft:
             out[rows] = member_rates
         for member in self.members:
             rows = np.flatnonzero((code == CONTACT) & (breaks.member[cuts] == member))
-            items = self._items(row[rows], probe[rows], breaks.angle[cuts[rows], None])
-            member_rates = self._evaluate(self._touch(member), items, gradients=True).curve[:, 0]
+            items = self._evaluations(row[rows], probe[rows], breaks.angle[cuts[rows], None])
+            member_rates = self._evaluate(self._guide_side_curve(member), items, gradients=True).curve[:, 0]
             out[rows] = -member_rates[:, 2:] / member_rates[:, 1:2]
         return out

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..machine.speed_profile import time_per_angle
-from ..quadrature import NODES, WEIGHTS, Samples, resolve, resolved_tail
+from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve
 from .cycle_segments import Segments
 from .shaft import Shaft
 from .shaft_peaks import NOTHING
@@ -80,7 +80,7 @@ def _is_rough(value: Array, size: Array, sizes: Array, row: IntArray, width: Arr
     Raises the maxima (n,) of the designs.
     """
     np.maximum.at(sizes, row, size.max(axis=1, initial=0.0))
-    rough: Mask = resolved_tail(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
+    rough: Mask = last_coefficients_magnitude(value) * np.minimum(1.0, width) > _RESOLVED * sizes[row]
     return rough
 
 

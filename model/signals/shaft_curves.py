@@ -15,21 +15,28 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.contact import sides_of
-from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
+from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.rubbing import Sides, joint_forces, touch
-from ..dynamics.segments import Cuts, CycleWindow, Segment, cut_shift, enter, load_on_slider
+from ..dynamics.rubbing import Sides, guide_side_function, joint_forces_with_optional_friction
+from ..dynamics.segments import (
+    Cuts,
+    CycleWindow,
+    Segment,
+    enter_segment,
+    frictionless_cut_imaginary_shift,
+    load_on_slider,
+)
 from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
-from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, seldom_kernel
-from ..kinematics.position import third_derivative
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, rarely_used_kernel
+from ..kinematics.position import third_slider_derivative
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
-from .signals import Signal, design_motion, guide_lever
+from .signals import Signal, design_motion, slider_pin_to_guide_centre
 
 TOUCH, WORK = 100, 101
-"""Curves in addition to signals: one with the sign of the guide force (`rubbing.touch`), and those of `turn_work` from
-`WORK` on, in order."""
+"""Curves besides signals: one with the sign of the guide force (`rubbing.guide_side_function`), and from `WORK` on
+those of `turn_work`, in order."""
 CURVES = 5
 VECTORS = (
     Signal.PIVOT_FORCE,
@@ -103,7 +110,7 @@ def vector_of_force(kind: Any, f: Any, m: Any, d: Any) -> Any:
     if kind == _LINE:
         return f.slider_pin_x, zero
     if kind == _GUIDE_MOMENT:
-        return f.guide * guide_lever(m, d), zero
+        return f.guide * slider_pin_to_guide_centre(m, d), zero
     return f.guide, zero
 
 
@@ -116,7 +123,7 @@ def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> An
     if kind == _ACCELERATION:
         return m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration, zero
     if kind == _JERK:
-        third = third_derivative(s, c, m, d.r)
+        third = third_slider_derivative(s, c, m, d.r)
         return (third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration + m.x_1 * rate) * d.speed, zero
     if kind == _INERTIA:
         return reflected_inertia(s, c, m, d), zero
@@ -134,18 +141,18 @@ def _components(kind: Any, s: Any, c: Any, m: Any, d: Any, sides: Any, place: An
     theta, segment = place
     load = load_on_slider(m, d, theta, segment)
     if kind == TOUCH:
-        return touch(s, c, m, d, load, sides.turn, sides.swing), zero
+        return guide_side_function(s, c, m, d, load, sides.turn, sides.swing), zero
     if kind > _LINE and kind < WORK:
         return vector_of_motion(kind, s, c, m, d, rate)
-    f = joint_forces(s, c, m, d, load, sides)
+    f = joint_forces_with_optional_friction(s, c, m, d, load, sides)
     if kind in (_TORQUE, _POWER):
-        torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
+        torque = torque_without_crank_loads(f.torque, theta, rotation_sense(d), segment)
         return (torque * d.speed, zero) if kind == _POWER else (torque, zero)
     x, y = vector_of_force(kind, f, m, d)
     if kind < WORK:
         return x, y
     if kind == WORK:
-        return -sense_of(d) * d.branch * load * m.x_1, zero
+        return -rotation_sense(d) * d.branch * load * m.x_1, zero
     if kind == WORK + 1:
         return magnitude(x * m.x_1), zero
     turned = 1.0 + zero if kind == WORK + 2 else 1.0 - m.rod_1 if kind == WORK + 3 else magnitude(m.rod_1)
@@ -212,7 +219,7 @@ def _enter_segment(
             shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real
         )
         d, local = design_at(space.real, 0), items.probe[p] + shaft.axes.lead[k]
-        _, outward = enter(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
+        _, outward = enter_segment(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
         segment = Segment(space.real, loads, outward, space.piece[i], space.shift[i])
         signs = sides_of(local, d, segment, curve.rubbing)
         space.sides[i, 0], space.sides[i, 1], space.sides[i, 2] = signs.turn, signs.slide, signs.swing
@@ -256,7 +263,7 @@ def _sum_members(
     return (root(sum_x * sum_x + sum_y * sum_y) if curve.vector else sum_x), size
 
 
-@seldom_kernel
+@rarely_used_kernel
 def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: CurveArrays) -> None:
     """Fill `out` with a curve for each design, added up over its members."""
     rows, count, loads = shaft.blocks.plain.shape[1], curve.members.shape[0], shaft.first_turn.kind.shape[0]
@@ -277,7 +284,7 @@ def fill_curves(curve: ShaftCurve, shaft: Crankshaft, items: Evaluations, out: C
                     out.curve[p, a, 0], out.size[p, a] = value.real, size
 
 
-@seldom_kernel
+@rarely_used_kernel
 def cut_rates(
     chosen: Integers, angle: Row, code: Integers, number: Row, load: Integers, stepped: ComplexCube, out: Table
 ) -> None:
@@ -286,4 +293,4 @@ def cut_rates(
     for p in range(chosen.shape[0]):
         for v in range(out.shape[1]):
             block = stepped[chosen[p] * (out.shape[1] + 1) + 1 + v]
-            out[p, v] = cut_shift(design_at(block, 0), block, 0, angle[p], cuts, p) / STEP
+            out[p, v] = frictionless_cut_imaginary_shift(design_at(block, 0), block, 0, angle[p], cuts, p) / STEP

@@ -32,7 +32,7 @@ class Breaks:
     load: IntArray
 
 
-def joined(parts: list[Breaks]) -> Breaks:
+def join_breaks(parts: list[Breaks]) -> Breaks:
     """Return the breakpoints of several lists as one."""
     columns = zip(*((p.row, p.angle, p.member, p.half, p.code, p.number, p.load) for p in parts), strict=True)
     return Breaks(*(np.concatenate(column) for column in columns))

@@ -14,9 +14,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.batches import in_chunks
-from ..machine.dissipation import works_over_a_turn
+from ..machine.dissipation import may_do_work_over_a_turn
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_count, cylinders_of, single_cylinder
+from ..machine.members import cylinder_count, cylinder_machines, single_cylinder
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw import knot_count
 from ..machine.two_turns import TURN
@@ -48,11 +48,11 @@ def equivalent_single_cranks(mechanism: Mechanism, kind: Signal) -> tuple[Mechan
     """Return single-crank machines at constant speed that have the same highest peak as the shaft, if there are any."""
     if kind in _GEOMETRY:
         return (single_cylinder(mechanism),)
-    banked = any(cylinder.bank for cylinder in cylinders_of(mechanism))
+    banked = any(cylinder.bank for cylinder in cylinder_machines(mechanism))
     turned = banked and any(path.startswith("gravity.") for item in mechanism.varying for path in item.paths)
     if kind in SUMS or mechanism.speed_profile is not None or turned:
         return ()
-    return tuple({cylinder.mechanism.gravity: cylinder.mechanism for cylinder in cylinders_of(mechanism)}.values())
+    return tuple({cylinder.mechanism.gravity: cylinder.mechanism for cylinder in cylinder_machines(mechanism)}.values())
 
 
 def shaft_signal_peaks(
@@ -77,7 +77,7 @@ def shaft_signal_peaks(
             peaks = shaft_peaks(shaft, limit=limit, stroke=_STROKES[during])
             values[begin:end, index], angles[begin:end, index] = peaks[:2]
             if len(group) == 1 and cylinders > 1:
-                angles[begin:end, index] = np.mod(peaks[1] + cylinders_of(mechanism)[index].lead, shaft.period)
+                angles[begin:end, index] = np.mod(peaks[1] + cylinder_machines(mechanism)[index].lead, shaft.period)
             if slopes is not None:
                 slopes[begin:end, index] = peaks[2]
 
@@ -113,7 +113,7 @@ def shaft_signal_averages(
     values, slopes = averages[:, :, 0], None if slopes is None else slopes[:, :, 0]
     locks = np.isnan(values[1])
     values[1:, locks] = np.inf
-    if kind is Signal.TORQUE and not works_over_a_turn(mechanism):  # exact, without rounding error
+    if kind is Signal.TORQUE and not may_do_work_over_a_turn(mechanism):  # exact, without rounding error
         values[0] = np.where(locks, np.nan, 0.0)
         if slopes is not None:
             slopes[0] = 0.0
@@ -169,7 +169,7 @@ def shaft_turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool) ->
 
 def mean_speed_ratio(mechanism: Mechanism) -> float:
     """Return the mean speed over time divided by that over the crank angle; 1 without a profile."""
-    return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.over_time
+    return 1.0 if mechanism.speed_profile is None else mechanism.speed_profile.time_mean_over_angle_mean
 
 
 @memoise_by_machine

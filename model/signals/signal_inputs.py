@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from ..arrays import Array
 from ..dynamics.segments import CycleWindow
-from ..machine.crank_loads import require_no_winding
+from ..machine.crank_loads import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
-from ..machine.raw import Loads, fullest_inputs, inertial_inputs
-from ..machine.two_turns import one_turn
+from ..machine.raw import Loads, raw_inputs_with_added_masses_only, raw_inputs_with_all_features
+from ..machine.two_turns import machine_of_first_turn
 from .signals import Signal
 
 
 def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> CycleWindow:
     """Return the part of the cycle that counts for a mechanism's signal."""
     strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
-    friction = mechanism.fullest.friction
-    split = kind.needs_forces and (stroke_dependent(mechanism) or friction.guide > 0.0)
+    friction = mechanism.with_largest_variables.friction
+    split = kind.needs_forces and (has_load_change_at_dead_centres(mechanism) or friction.guide > 0.0)
     swing = kind.needs_forces and friction.slider_pin.circle > 0.0
     if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         window = mechanism.tolerances.window
@@ -27,15 +27,15 @@ def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -
 def signal_inputs(mechanism: Mechanism, kind: Signal) -> tuple[Array, Loads]:
     """Return the raw numbers and loads that a signal needs; irrelevant loads create no breakpoints."""
     if kind.needs_forces:
-        require_no_winding(mechanism)
-        return fullest_inputs(mechanism)
-    return inertial_inputs(one_turn(mechanism))
+        require_loads_repeating_each_turn(mechanism)
+        return raw_inputs_with_all_features(mechanism)
+    return raw_inputs_with_added_masses_only(machine_of_first_turn(mechanism))
 
 
 @memoise_by_machine
-def stroke_dependent(mechanism: Mechanism) -> bool:
+def has_load_change_at_dead_centres(mechanism: Mechanism) -> bool:
     """Whether a load changes at the dead centres."""
-    if any(load.by_stroke for load in mechanism.fullest.loads):
+    if any(load.has_stroke_dependent_formula for load in mechanism.with_largest_variables.loads):
         return True
     # Forces in the two strokes that vary independently may agree at one value only.
     forces: dict[str, list[tuple[str, float]]] = {}

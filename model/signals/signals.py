@@ -5,13 +5,13 @@ from __future__ import annotations
 from enum import IntEnum, auto
 from typing import Any
 
-from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
+from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.rubbing import Sides, joint_forces
+from ..dynamics.rubbing import Sides, joint_forces_with_optional_friction
 from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import forces
 from ..kernel.arithmetic import analytic, magnitude, root
-from ..kinematics.position import motion, third_derivative
+from ..kinematics.position import motion, third_slider_derivative
 from ..machine.design import Design
 from .position_error import influences, root_sum_square, worst_case
 
@@ -54,7 +54,7 @@ _SPEED, _ACCELERATION, _JERK, _WORST, _RSS, _INERTIA, _SHAKING_FORCE, *_ = _OTHE
 
 
 @analytic
-def guide_lever(m: Any, d: Design) -> Any:
+def slider_pin_to_guide_centre(m: Any, d: Design) -> Any:
     """Return the distance of the slider pin from the centre of the guide, m."""
     return d.outer + d.guide_distance - d.branch * m.x
 
@@ -74,14 +74,14 @@ def size_of_force(kind: Any, f: Any, m: Any, d: Design) -> Any:
         return root(f.slider_pin_x * f.slider_pin_x + f.slider_pin_y * f.slider_pin_y)
     if kind == _LINE:
         return magnitude(f.slider_pin_x)
-    return magnitude(f.guide * guide_lever(m, d)) if kind == _MOMENT else magnitude(f.guide)
+    return magnitude(f.guide * slider_pin_to_guide_centre(m, d)) if kind == _MOMENT else magnitude(f.guide)
 
 
 @analytic
 def signal_of_forces(kind: Any, f: Any, m: Any, d: Design, theta: Any, segment: Segment) -> Any:
     """Return the value of a `Signal` that follows from the joint forces and the loads on the crank."""
     if kind in (_TORQUE, _POWER):
-        torque = torque_without_crank_loads(f.torque, theta, sense_of(d), segment)
+        torque = torque_without_crank_loads(f.torque, theta, rotation_sense(d), segment)
         return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
     return size_of_force(kind, f, m, d)
 
@@ -94,7 +94,7 @@ def signal_of_motion(kind: Any, sine: Any, cosine: Any, m: Any, d: Design) -> An
     if kind == _ACCELERATION:
         return magnitude(m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration)
     if kind == _JERK:
-        third = third_derivative(sine, cosine, m, d.r)
+        third = third_slider_derivative(sine, cosine, m, d.r)
         return magnitude((third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration) * d.speed)
     if kind == _WORST:
         return worst_case(influences(sine, cosine, m, d.l), d)
@@ -115,7 +115,7 @@ def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> A
 
 
 @analytic
-def signal_within(
+def signal_in_segment(
     kind: Any, theta: Any, sine: Any, cosine: Any, m: Any, d: Design, segment: Segment, sides: Sides
 ) -> Any:
     """Return the value of a `Signal` at a crank angle within a segment.
@@ -124,7 +124,9 @@ def signal_within(
     """
     load = load_on_slider(m, d, theta, segment)
     if kind <= _LINE:
-        return signal_of_forces(kind, joint_forces(sine, cosine, m, d, load, sides), m, d, theta, segment)
+        return signal_of_forces(
+            kind, joint_forces_with_optional_friction(sine, cosine, m, d, load, sides), m, d, theta, segment
+        )
     return signal_of_motion(kind, sine, cosine, m, d)
 
 

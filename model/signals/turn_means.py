@@ -3,10 +3,10 @@
 Smooth curves are integrated with the trapezoidal rule in the crowded angle, which converges geometrically for periodic
 analytic functions. Piecewise curves are integrated on Gauss-Legendre panels between breakpoints. The closer a linkage
 is to locking, the closer are the curves' singularities, at the distance atanh(kappa) in the crowded angle
-(`segments.crowding`). The number of nodes therefore grows with 1 / kappa. The rod's direction would lose digits in the
-same way; `_squared_rod_along_line` keeps them. Loads that jump at a dead centre do so while the slider stands still.
-Without friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump times its own
-motion to the derivatives.
+(`segments.crowding_parameter`). The number of nodes therefore grows with 1 / kappa. The rod's direction would lose
+digits in the same way; `_squared_rod_along_line` keeps them. Loads that jump at a dead centre do so while the slider
+stands still. Without friction, therefore, only steps in tables make the torque jump. A moving breakpoint adds the jump
+times its own motion to the derivatives.
 
 Magnitudes of joint forces, such as |A|, have sharp bends where a force is close to zero. Friction transfers these bends
 to the torque. There, panels are halved until the last Legendre coefficients of curve and derivatives have died out, or
@@ -21,29 +21,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import cut_contacts, shift_of, sides_of
-from ..dynamics.crank_loads import sense_of, torque_without_crank_loads
-from ..dynamics.rubbing import Sides, always_drives, joint_forces
+from ..dynamics.contact import add_contact_cuts, cut_imaginary_shift, sides_of
+from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
+from ..dynamics.rubbing import Sides, always_drives, joint_forces_with_optional_friction
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
     angle_within,
     breakpoint_capacity,
-    crowded,
+    crank_angle_from_crowded,
+    crowded_from_crank_angle,
     cut_cycle,
-    enter,
+    enter_segment,
     load_on_slider,
-    uncrowded,
 )
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
-from ..kinematics.position import motion_of
-from ..machine.derived import derived
+from ..kinematics.position import motion_from_rod_vector
+from ..machine.derived import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import numbers_of
+from ..machine.numbers import raw_numbers_of_designs
 from ..machine.raw import Loads
 from ..quadrature import ANGLE_ROUNDING, DEEPEST, MOST_HALVINGS, NODES, TAIL, WEIGHTS
 from .signals import Signal, signal_of_forces, signal_of_motion
@@ -146,20 +146,20 @@ def _fill_signal_or_work(kind: Any, theta: Any, square: Any, d: Any, segment: Se
     sine, cosine = math.sin(theta), math.cos(theta)
     l_sin = d.e - d.r * sine
     plain = d.l * d.l - l_sin * l_sin
-    m = motion_of(sine, cosine, d.r, l_sin, d.branch * root(plain + (square - plain.real)))
+    m = motion_from_rod_vector(sine, cosine, d.r, l_sin, d.branch * root(plain + (square - plain.real)))
     if kind > _LINE:
         out[0] = signal_of_motion(kind, sine, cosine, m, d)
         return
     load = load_on_slider(m, d, theta, segment)
     if kind == _TORQUE:  # separate, so that the compiler leaves out everything that the torque alone does not need
-        torque = joint_forces(sine, cosine, m, d, load, sides).torque
-        out[0] = torque_without_crank_loads(torque, theta, sense_of(d), segment)
+        torque = joint_forces_with_optional_friction(sine, cosine, m, d, load, sides).torque
+        out[0] = torque_without_crank_loads(torque, theta, rotation_sense(d), segment)
         return
-    f = joint_forces(sine, cosine, m, d, load, sides)
+    f = joint_forces_with_optional_friction(sine, cosine, m, d, load, sides)
     if kind != WORK:
         out[0] = signal_of_forces(kind, f, m, d, theta, segment)
         return
-    out[0] = -sense_of(d) * d.branch * load * m.x_1
+    out[0] = -rotation_sense(d) * d.branch * load * m.x_1
     out[1] = magnitude(f.guide * m.x_1)
     out[2] = root(f.pivot_x * f.pivot_x + f.pivot_y * f.pivot_y)
     out[3] = root(f.crank_pin_x * f.crank_pin_x + f.crank_pin_y * f.crank_pin_y) * (1.0 - m.rod_1)
@@ -173,7 +173,7 @@ def _fill_panel(curve: _Curve, begin: float, width: float, points: int, workspac
     is_even = points == _SMOOTH
     for i in range(points):
         tau = begin + width * (i / points if is_even else workspace.nodes[i])
-        theta = uncrowded(tau, kappa)
+        theta = crank_angle_from_crowded(tau, kappa)
         c, y = math.cos(tau), math.sin(tau)
         share = 1.0 / points if is_even else workspace.weights[i]
         workspace.weight[i] = share * width / _TURN * kappa / (c * c + kappa * kappa * y * y)
@@ -243,7 +243,7 @@ def _add_segment(
 
     points: nodes of a panel. left: halvings that remain, -1 for none at all; return how many are left.
     """
-    low, high = crowded(a, curve.kappa), crowded(b, curve.kappa)
+    low, high = crowded_from_crank_angle(a, curve.kappa), crowded_from_crank_angle(b, curve.kappa)
     panels = math.ceil(max(1.0, _EVEN / curve.kappa))
     if points < _SMOOTH:
         panels = panels * (int(_PANELS * (high - low) / _TURN) + 1)
@@ -279,7 +279,7 @@ def _add_moving_segment_ends(
         sign = (1.0 if end else -1.0) / (STEP * _TURN)
         for v in range(curve.stepped.shape[0]):
             stepped = Segment(curve.stepped[v], own.loads, own.outward, own.piece, own.shift)
-            slip = shift_of(design_at(stepped.block, 0), stepped, curve.d, own, theta, cuts, i, curve.sides)
+            slip = cut_imaginary_shift(design_at(stepped.block, 0), stepped, curve.d, own, theta, cuts, i, curve.sides)
             for k in range(means.mean.shape[1]):
                 means.mean_slope[n, k, v] += sign * workspace.real[k] * slip
                 if means.square.shape[1] > 0:
@@ -318,9 +318,9 @@ def fill_means(
             continue
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if task.rubbing:
-            count = cut_contacts(d, block, loads, watch, cuts, count, piece, shift)
+            count = add_contact_cuts(d, block, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
-        # Same as `crowding`, but from the gap: no digits are lost, so no floor is needed.
+        # Same as `crowding_parameter`, but from the gap: no digits are lost, so no floor is needed.
         kappa = math.sqrt(math.sqrt(gap * (gap + 2.0 * d.r)) / (gap + d.r))
         halved = task.rubbing or task.kind == WORK
         points = _SMOOTH if count == 1 and not halved else rule[0].shape[0]
@@ -329,7 +329,7 @@ def fill_means(
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
             probe = angle_within(a, b)
-            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            _, outward = enter_segment(d, block, 0, probe, loads, watch, piece, shift)
             segment = Segment(block, loads, outward, piece, shift)
             sides = sides_of(probe, d, segment, task.rubbing)
             curve = _Curve(task.kind, d, gap, kappa, segment, sides, steps[n * nv : (n + 1) * nv])
@@ -345,7 +345,7 @@ def turn_means(
 
     raw: the machine's raw numbers. squares: whether mean squares are needed.
     """
-    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
     count, gaps, curves = len(designs), _distance_to_locking(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
     squared, rows, columns = curves if squares else 0, count if gradients else 0, len(numbers.columns)
     means = CurveMeans(
@@ -356,7 +356,7 @@ def turn_means(
     )
 
     def work(begin: int, end: int) -> None:
-        blocks, steps = derived(raw, task.loads, numbers.columns, numbers.values[begin:end], steps=gradients)
+        blocks, steps = derived_blocks(raw, task.loads, numbers.columns, numbers.values[begin:end], steps=gradients)
         part = CurveMeans(*(column[begin:end] if len(column) else column for column in means))
         fill_means(task, blocks, steps, gaps[begin:end], _RULE, part)
 

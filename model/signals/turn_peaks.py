@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.contact import cut_contacts, shift_of, sides_of
+from ..dynamics.contact import add_contact_cuts, cut_imaginary_shift, sides_of
 from ..dynamics.rubbing import Sides, always_drives
 from ..dynamics.segments import (
     Cuts,
@@ -22,17 +22,17 @@ from ..dynamics.segments import (
     Segment,
     angle_within,
     breakpoint_capacity,
-    crowded,
-    crowding,
+    crank_angle_from_crowded,
+    crowded_from_crank_angle,
+    crowding_parameter,
     cut_cycle,
-    enter,
-    uncrowded,
+    enter_segment,
 )
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, kernel
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
-from .signals import design_motion, signal_within
+from .signals import design_motion, signal_in_segment
 
 _FINER, _NEAR = 16, 0.95  # samples in that row, and how close to the highest a sample must be to get one
 _HOPELESS = 0.8
@@ -100,7 +100,7 @@ def _slope(theta: Any, curve: _Curve) -> Any:
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
     m = design_motion(s, c, curve.d)
-    z = signal_within(curve.kind, complex(theta, STEP), s, c, m, curve.d, curve.segment, curve.sides)
+    z = signal_in_segment(curve.kind, complex(theta, STEP), s, c, m, curve.d, curve.segment, curve.sides)
     return z.real, z.imag / STEP
 
 
@@ -141,7 +141,7 @@ def _highest_point_between(a: Any, b: Any, curve: _Curve) -> Any:
         theta = a + i * step
         sine, cosine = math.sin(theta), math.cos(theta)
         m = design_motion(sine, cosine, curve.d)
-        value = signal_within(curve.kind, theta, sine, cosine, m, curve.d, curve.segment, curve.sides)
+        value = signal_in_segment(curve.kind, theta, sine, cosine, m, curve.d, curve.segment, curve.sides)
         if value > best:
             best, at = value, theta
     return best, at, step
@@ -174,7 +174,7 @@ def _insert(tops: _Tops, count: int, value: float, theta: float, s: int, p: int)
 @analytic
 def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Workspace) -> float:
     """Sample all segments of a design for a single peak, else prepare the samples; return the highest value."""
-    cuts, theta, kappa = workspace.cuts, workspace.theta, crowding(d.r, d.l, d.e)
+    cuts, theta, kappa = workspace.cuts, workspace.theta, crowding_parameter(d.r, d.l, d.e)
     single = workspace.tops.value.shape[0] == 1
     highest, has_motion = -1.0, False
     sine, cosine = 0.0, 1.0
@@ -186,7 +186,7 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
         workspace.starts[s + 1] = start
         workspace.negligible[s] = b - a < _SHORTEST
         probe = angle_within(a, b)
-        workspace.counts[s], outward = enter(
+        workspace.counts[s], outward = enter_segment(
             d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift
         )
         if workspace.negligible[s] or not workspace.counts[s]:
@@ -199,19 +199,19 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
         low = high = 0.0
         points = 2
         if task.angles * (b - a) > 0.99 * kappa * _TURN:  # the spacing is nowhere less than kappa times that of tau
-            low, high = crowded(a, kappa), crowded(b, kappa)
+            low, high = crowded_from_crank_angle(a, kappa), crowded_from_crank_angle(b, kappa)
             spacings = int(task.angles * (high - low) / _TURN)
             points = min(task.angles + 8, max(5, spacings + 2)) if spacings > 0 else 2
         workspace.starts[s + 1] = start + points
         theta[start], theta[start + points - 1] = a, b
         for i in range(1, points - 1):
-            theta[start + i] = uncrowded(low + (high - low) * i / (points - 1), kappa)
+            theta[start + i] = crank_angle_from_crowded(low + (high - low) * i / (points - 1), kappa)
         for i in range(0 if single else 1, points if single else points - 1):
             angle = theta[start + i]
             if i > 0 or not has_motion:  # otherwise at the end of the previous segment
                 sine, cosine = math.sin(angle), math.cos(angle)
                 m = design_motion(sine, cosine, d)
-            value = signal_within(task.kind, angle, sine, cosine, m, d, segment, sides)
+            value = signal_in_segment(task.kind, angle, sine, cosine, m, d, segment, sides)
             workspace.value[start + i], highest = value, max(highest, value)
         has_motion = single
     return highest
@@ -284,7 +284,7 @@ def _inner_peaks(
             workspace.edge[s, :] = -1.0
             continue
         probe = angle_within(a, b)
-        _, outward = enter(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+        _, outward = enter_segment(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
         segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
         curve = _Curve(task.kind, d, segment, sides_of(probe, d, segment, task.rubbing))
         for side in range(2):
@@ -326,7 +326,7 @@ def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace:
     cuts, tops = workspace.cuts, workspace.tops
     s, pin = tops.segment[i], tops.pin[i]
     probe = angle_within(cuts.angle[s], cuts.angle[s + 1])
-    _, outward = enter(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+    _, outward = enter_segment(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
     segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
     sides = sides_of(probe, d, segment, task.rubbing)
     # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
@@ -337,10 +337,10 @@ def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace:
         z = design_at(stepped.block, 0)
         slip = 0.0
         if pin >= 0:
-            slip = shift_of(z, stepped, d, segment, angle, cuts, pin, sides)
+            slip = cut_imaginary_shift(z, stepped, d, segment, angle, cuts, pin, sides)
         zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
         m = design_motion(zs, zc, z)
-        out[v] = signal_within(task.kind, complex(angle, slip), zs, zc, m, z, stepped, sides).imag / STEP
+        out[v] = signal_in_segment(task.kind, complex(angle, slip), zs, zc, m, z, stepped, sides).imag / STEP
 
 
 @kernel
@@ -379,7 +379,7 @@ def find_in_turns(
             continue
         count = cut_cycle(d, block, 0, loads, task.watch, cuts)
         if task.rubbing:
-            count = cut_contacts(d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift)
+            count = add_contact_cuts(d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         highest = _sample(task, d, block, count, workspace)  # for a single peak, low segments need nothing further
         floor = _HOPELESS * highest if listed == 1 else -1.0

@@ -17,13 +17,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..arrays import Array
-from ..dynamics.contact import rubs
+from ..dynamics.contact import needs_friction_kernel
 from ..dynamics.segments import CycleWindow
-from ..kernel.batches import turning
+from ..kernel.batches import require_full_rotation
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_shaft
+from ..machine.members import is_treated_as_shaft
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, halves
+from ..machine.two_turns import cycle_turns, machines_of_both_turns
 from .shaft_statistics import shaft_turn_work
 from .signal_inputs import signal_inputs
 from .signals import Signal
@@ -51,16 +51,16 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
 
     For a two-turn cycle they cover both turns; for several cylinders they are sums.
     """
-    designs = turning(designs)
-    if is_shaft(mechanism):
+    designs = require_full_rotation(designs)
+    if is_treated_as_shaft(mechanism):
         return TurnWork(*shaft_turn_work(mechanism, designs, gradients=gradients))
     if cycle_turns(mechanism) > 1:
-        first, second = (turn_work(half, designs, gradients=gradients) for half in halves(mechanism))
+        first, second = (turn_work(half, designs, gradients=gradients) for half in machines_of_both_turns(mechanism))
         slopes = None
         if first.gradients is not None and second.gradients is not None:
             slopes = 0.5 * (first.gradients + second.gradients)
         return TurnWork(0.5 * (first.mean + second.mean), slopes)
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
-    task = MeansTask(WORK, loads, _WATCH, rubs(mechanism), gradients)
+    task = MeansTask(WORK, loads, _WATCH, needs_friction_kernel(mechanism), gradients)
     means = turn_means(task, raw, mechanism, designs, squares=False, gradients=gradients)
     return TurnWork(means.mean, means.mean_slope if gradients else None)

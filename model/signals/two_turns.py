@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..kinematics import geometry
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import in_cycle
+from ..machine.two_turns import shift_into_half
 
 
 class _Peaks(Protocol):
@@ -28,7 +28,9 @@ class _Averages(Protocol):
     def gradients(self) -> Array | None: ...
 
 
-def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks) -> tuple[Array, Array, Array | None]:
+def highest_peaks_of_both_turns(
+    mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks
+) -> tuple[Array, Array, Array | None]:
     """Return values, angles and gradients for the highest peaks of both turns, as many as each turn has."""
     limit = first.values.shape[1]
     values = np.concatenate([first.values, second.values], axis=1)
@@ -44,7 +46,7 @@ def highest(mechanism: Mechanism, designs: Array, first: _Peaks, second: _Peaks)
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(angles, order, axis=1), gradients
 
 
-def averaged(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
+def averages_of_both_turns(first: _Averages, second: _Averages) -> tuple[Array, Array | None]:
     """Return `Averages` (3, n) and their gradients over both turns, for a crank at constant speed."""
     mean, square = 0.5 * (first.values[:1] + second.values[:1]), 0.5 * (first.values[1:] ** 2 + second.values[1:] ** 2)
     rms = np.sqrt(square)
@@ -65,4 +67,4 @@ def _angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Arra
     if mechanism.branch == "crossed":
         inner, outer = np.pi - inner, np.pi - outer
     is_finite = np.isfinite(angles)
-    return np.where(is_finite, in_cycle(mechanism, inner, outer, np.where(is_finite, angles, 0.0), half), angles)
+    return np.where(is_finite, shift_into_half(mechanism, inner, outer, np.where(is_finite, angles, 0.0), half), angles)

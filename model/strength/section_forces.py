@@ -88,6 +88,6 @@ def stress_along(
 
 
 @analytic
-def at_share(c: Stress, side: Any, xi: Any) -> Any:
+def stress_at_length_fraction(c: Stress, side: Any, xi: Any) -> Any:
     """Return the stress at a fraction of the length. side: 1 or -1, or 0 for the axial stress alone."""
     return c.n0 + xi * (c.n1 + xi * c.n2) + side * (c.b0 + xi * (c.b1 + xi * (c.b2 + xi * c.b3)))

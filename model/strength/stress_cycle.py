@@ -29,13 +29,13 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
-from ..kernel.batches import in_chunks, turning
+from ..kernel.batches import in_chunks, require_full_rotation
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, halves
-from .section_forces import Stress, at_share
+from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from .section_forces import Stress, stress_at_length_fraction
 from .stress_locations import StressLocation, StressLocations, stress_at_locations
-from .stress_points import field_of
+from .stress_points import stress_field_of
 from .stress_search import (
     LISTED,
     STATIONS,
@@ -45,7 +45,7 @@ from .stress_search import (
     climb,
     empty_candidates,
     first_candidates,
-    propose,
+    list_maximum_candidates,
 )
 
 STORED_MAXIMA = 8
@@ -114,7 +114,7 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
     best = np.empty((len(sides), len(criteria), STATIONS))
     candidates = empty_candidates(candidate_count)
     samples = SampledStress(theta, first, stress, sides)
-    count = propose(start, samples, criteria, margin, *space, best, candidates)
+    count = list_maximum_candidates(start, samples, criteria, margin, *space, best, candidates)
     candidates = first_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
     climb(samples, criteria, candidates, values, angles)
@@ -181,7 +181,7 @@ def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima:
         np.repeat(column, is_counted.sum(axis=1))[:, None] for column in (maxima.share, all_sides[maxima.side])
     )
     weights = (criteria[maxima.pull] * np.array([1.0, -1.0]))[is_counted]
-    weighted = weights[:, None] * at_share(Stress(*np.moveaxis(slopes, 2, 0)), sides, shares)
+    weighted = weights[:, None] * stress_at_length_fraction(Stress(*np.moveaxis(slopes, 2, 0)), sides, shares)
     summed = np.zeros((len(is_counted), weighted.shape[1]))
     np.add.at(summed, np.nonzero(is_counted)[0], weighted)
     return summed
@@ -190,7 +190,7 @@ def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima:
 _SIDES = np.array([1.0, -1.0])
 
 
-_memoised_field = memoise_by_batch(field_of)
+_memoised_field = memoise_by_batch(stress_field_of)
 
 
 def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) -> StressPeaks:
@@ -274,13 +274,13 @@ def stress_peaks(
     criteria: (m, 2), p and q of each, none negative. limit: maxima returned per design; if 1, only the highest ones are
     followed. The links at the locations must be `Bar`.
     """
-    designs = turning(designs)
+    designs = require_full_rotation(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
     if cycle_turns(mechanism) > 1:
         _require_one_angle_per_criterion(criteria)
         turns = (
             stress_peaks(half, places, designs, criteria, gradients=gradients, limit=limit)
-            for half in halves(mechanism)
+            for half in machines_of_both_turns(mechanism)
         )
         return [_highest_of_both_turns(first, second, limit) for first, second in zip(*turns, strict=True)]
     location_count, n = len(places), len(designs)

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..kernel.kernel import Integers, IntegerTable, Table, seldom_kernel
+from ..kernel.kernel import Integers, IntegerTable, Table, rarely_used_kernel
 from ..machine.mechanism import Mechanism
 from ..machine.numbers import formula_of_numbers
 from .section_forces import CRANK
@@ -143,7 +143,7 @@ def _stress_by_location(
     return spread
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _fill_location_stress(
     stress: Table, row: Integers, place: Integers, codes: IntegerTable, factors: Table, out: Table
 ) -> None:
@@ -197,7 +197,7 @@ def stress_at_locations(
     return StressLocations(field, tuple(places), samples, factors, rates)
 
 
-def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
+def eye_stress_factor_formulas(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
     """Return the formulas for the factors of axial stress and bending in the whole section."""
     assert mechanism.strength is not None
     raised = mechanism.strength.eye_concentration
@@ -215,6 +215,6 @@ def eye_factors(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:
 def _eye_stress_factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple[Array, Array]:
     """Return the factors of axial stress and bending in the whole section, (n, 2), and their derivatives."""
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
-    for number, formula in enumerate(eye_factors(mechanism, eye)):
+    for number, formula in enumerate(eye_stress_factor_formulas(mechanism, eye)):
         factors[:, number], rates[:, :, number] = formula_of_numbers(mechanism, designs, formula, gradients=True)
     return factors, rates

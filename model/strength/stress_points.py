@@ -14,25 +14,25 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
-from ..dynamics.contact import rubs, shift_of, sides_of
-from ..dynamics.rubbing import joint_forces
+from ..dynamics.contact import cut_imaginary_shift, needs_friction_kernel, sides_of
+from ..dynamics.rubbing import joint_forces_with_optional_friction
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
     angle_within,
-    crowded,
-    crowding,
-    enter,
+    crank_angle_from_crowded,
+    crowded_from_crank_angle,
+    crowding_parameter,
+    enter_segment,
     load_on_slider,
-    uncrowded,
 )
 from ..kernel.arithmetic import STEP
-from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, seldom_kernel
-from ..machine.derived import derived
+from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, rarely_used_kernel
+from ..machine.derived import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import Numbers, numbers_of
+from ..machine.numbers import Numbers, raw_numbers_of_designs
 from ..machine.raw import Loads, Raw
 from ..signals.signal_inputs import cycle_window, signal_inputs
 from ..signals.signals import Signal, design_motion
@@ -84,7 +84,7 @@ class Bars(NamedTuple):
     rates: Table
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _stress(
     blocks: Cube,
     steps: ComplexCube,
@@ -110,7 +110,7 @@ def _stress(
                 block[i, 0] = blocks[n, i, 0]
             d = design_at(block, 0)
         if n != last or probe != last_probe:
-            _, outward = enter(d, block, 0, probe, loads, watch, piece, shift)
+            _, outward = enter_segment(d, block, 0, probe, loads, watch, piece, shift)
             segment = Segment(block, loads, outward, piece, shift)
             sides = sides_of(probe, d, segment, rubbing)
         if n != last or v != last_column:
@@ -121,12 +121,12 @@ def _stress(
         slip = STEP if v < 0 else 0.0
         if v >= 0 and points.cut[p] >= 0:
             mine = Cuts(cuts.angle[n], cuts.code[n], cuts.number[n], cuts.load[n])
-            slip = shift_of(z, stepped, d, segment, angle, mine, points.cut[p], sides)
+            slip = cut_imaginary_shift(z, stepped, d, segment, angle, mine, points.cut[p], sides)
         sine, cosine = math.sin(angle), math.cos(angle)
         zs, zc = complex(sine, cosine * slip), complex(cosine, -sine * slip)
         m = design_motion(zs, zc, z)
         load = load_on_slider(m, z, complex(angle, slip), stepped)
-        f = joint_forces(zs, zc, m, z, load, sides)
+        f = joint_forces_with_optional_friction(zs, zc, m, z, load, sides)
         for part in range(2):
             w, t, rho = sizes[n, 3 * part], sizes[n, 3 * part + 1], sizes[n, 3 * part + 2]
             if not w > 0.0:  # no bar
@@ -142,7 +142,7 @@ def _stress(
                 out[p, k + i], out[p, k + 7 + i] = c[i].real, c[i].imag / STEP
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _sample_segments(
     designs: Table,
     cuts: Breakpoints,
@@ -157,7 +157,7 @@ def _sample_segments(
     total = 0
     for n in range(designs.shape[0]):
         start[n] = total
-        kappa = crowding(designs[n, 0], designs[n, 1], designs[n, 2])
+        kappa = crowding_parameter(designs[n, 0], designs[n, 1], designs[n, 2])
         kappas[n] = kappa
         count = cuts.many[n]
         for s in range(count):
@@ -165,10 +165,10 @@ def _sample_segments(
             b = cuts.angle[n, s + 1] if s + 1 < count else cuts.angle[n, 0] + _TURN
             if b - a < _SHORTEST:
                 continue
-            low, high = crowded(a, kappa), crowded(b, kappa)
+            low, high = crowded_from_crank_angle(a, kappa), crowded_from_crank_angle(b, kappa)
             points = max(3, int(ANGLES * (high - low) / _TURN) + 2)
             for i in range(points):
-                angle = uncrowded(low + (high - low) * i / (points - 1), kappa)
+                angle = crank_angle_from_crowded(low + (high - low) * i / (points - 1), kappa)
                 theta[total] = a if i == 0 else b if i == points - 1 else angle
                 probe[total], first[total], segment[total] = angle_within(a, b), i == 0, s
                 total += 1
@@ -210,7 +210,14 @@ class Field:
         no_number = np.full(len(design), -1)
         points = Points(design, _angles_within(begin, end), angle, no_number, no_number)
         return _stress_at(
-            self.blocks, _NO_STEPS, self.sizes, _NO_TURN, points, self.cuts, self.loads, rubs(self.mechanism)
+            self.blocks,
+            _NO_STEPS,
+            self.sizes,
+            _NO_TURN,
+            points,
+            self.cuts,
+            self.loads,
+            needs_friction_kernel(self.mechanism),
         )
 
     def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
@@ -222,7 +229,7 @@ class Field:
         columns = self.numbers.columns
         number_count = len(columns)
         raw, _ = signal_inputs(self.mechanism, Signal.CRANK_PIN_FORCE)
-        _, steps = derived(raw, self.loads, columns, self.numbers.values, steps=True)
+        _, steps = derived_blocks(raw, self.loads, columns, self.numbers.values, steps=True)
         turned = np.ascontiguousarray((columns[:, None] == np.array(_SLOTS)) * 1.0)
         points = Points(
             np.repeat(design, number_count),
@@ -231,7 +238,9 @@ class Field:
             np.tile(np.arange(number_count), len(design)),
             np.repeat(cut, number_count),
         )
-        stress = _stress_at(self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, rubs(self.mechanism))
+        stress = _stress_at(
+            self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, needs_friction_kernel(self.mechanism)
+        )
         return stress.reshape(len(design), number_count, -1)
 
 
@@ -259,17 +268,19 @@ def _stress_at(
     return out
 
 
-def field_of(mechanism: Mechanism, designs: Array) -> Field:
+def stress_field_of(mechanism: Mechanism, designs: Array) -> Field:
     """Return the `Field` for designs (n, 3 + k), each rotating fully."""
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
-    numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=True)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=True)
     values, n = numbers.values, len(designs)
-    blocks, _ = derived(raw, loads, numbers.columns, values)
+    blocks, _ = derived_blocks(raw, loads, numbers.columns, values)
     sizes = np.empty((n, len(_SLOTS)))
     for index, slot in enumerate(_SLOTS):
         column = np.flatnonzero(numbers.columns == slot)
         sizes[:, index] = values[:, column[0]] if len(column) else raw[slot]
-    cuts = breakpoints_of(blocks, loads, cycle_window(mechanism, Signal.CRANK_PIN_FORCE), rubbing=rubs(mechanism))
+    cuts = breakpoints_of(
+        blocks, loads, cycle_window(mechanism, Signal.CRANK_PIN_FORCE), rubbing=needs_friction_kernel(mechanism)
+    )
     sample_limit = (ANGLES + 8) * n + 4 * int(cuts.many.sum())
     start, theta, probe = np.empty(n + 1, np.int64), np.empty(sample_limit), np.empty(sample_limit)
     first, segment, kappa = np.empty(sample_limit, np.bool_), np.empty(sample_limit, np.int64), np.empty(n)
@@ -278,6 +289,6 @@ def field_of(mechanism: Mechanism, designs: Array) -> Field:
     no_number = np.full(total, -1)
     design = np.repeat(np.arange(n), np.diff(start))
     points = Points(design, probe, theta, no_number, no_number)
-    stress = _stress_at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, rubs(mechanism))
+    stress = _stress_at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, needs_friction_kernel(mechanism))
     samples = Samples(start, theta, first, segment, stress)
     return Field(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..kernel.arithmetic import analytic
-from ..kernel.kernel import Cube, Flags, Integers, IntegerTable, Row, Table, seldom_kernel
+from ..kernel.kernel import Cube, Flags, Integers, IntegerTable, Row, Table, rarely_used_kernel
 
 STATIONS = 9
 """Locations along the bar at which samples are taken."""
@@ -120,8 +120,8 @@ def _fill_greatest_combinations(samples: SampledStress, begin: int, count: int, 
     return float(greatest)
 
 
-@seldom_kernel
-def propose(
+@rarely_used_kernel
+def list_maximum_candidates(
     start: Integers,
     samples: SampledStress,
     criteria: Table,
@@ -218,7 +218,7 @@ def _angle_of_nearby_maximum(samples: SampledStress, side: Any, sign: Any, xi: A
     return k, samples.theta[k] + h * t, value, slope
 
 
-@seldom_kernel
+@rarely_used_kernel
 def climb(samples: SampledStress, criteria: Table, candidates: Candidates, values: Row, angles: Table) -> None:
     """Move candidates to the maxima next to them; fill values (c,), locations and angles (c, 2) of these maxima.
 
@@ -269,7 +269,7 @@ def climb(samples: SampledStress, criteria: Table, candidates: Candidates, value
         values[c], candidates.share[c] = value, xi
 
 
-@seldom_kernel
+@rarely_used_kernel
 def choose(candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 

@@ -20,7 +20,7 @@ from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .ends import Ends, ends_of
-from .slider_pin_force import toggle_distance
+from .slider_pin_force import pin_distance_from_crank_line
 from .swing import Swing
 
 _FLAT = 1e-12
@@ -38,12 +38,12 @@ class DrivenAngles:
     slopes: Array
 
 
-def closes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+def closes_over_swing(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close over the whole swing."""
     return _closing(designs, ends_of(mechanism, swing, designs))
 
 
-def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+def swings_without_dead_point(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close and, if the slider drives, pass no dead point."""
     ends = ends_of(mechanism, swing, designs)
     passing = _closing(designs, ends)
@@ -58,21 +58,21 @@ def passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     return passing
 
 
-def driven_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
-    """Return the transmission angles for designs (n, 3 + k) that close, see `closes`."""
+def transmission_angle_candidates(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
+    """Return the transmission angles for designs (n, 3 + k) that close, see `closes_over_swing`."""
     return _transmission_angle_candidates(
         swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs
     )
 
 
-def travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
+def slider_travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
     """Return the slider travel (n,) between the ends, m, and its slopes (n, 3 + k)."""
     ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
 
-    def way(sizes: Any, first: Any, last: Any) -> Any:
+    def signed_travel(sizes: Any, first: Any, last: Any) -> Any:
         return _position(last, sign, sizes) - _position(first, sign, sizes)
 
-    values, slopes = _with_slopes(way, designs, ends, (ends.start, 0), (ends.end, 1))
+    values, slopes = _with_slopes(signed_travel, designs, ends, (ends.start, 0), (ends.end, 1))
     side = np.where(values < 0.0, -1.0, 1.0)
     return side * values, side[:, None] * slopes
 
@@ -94,7 +94,7 @@ def _sign(mechanism: Mechanism) -> float:
 def _closing(designs: Array, ends: Ends) -> Mask:
     r, l = designs[:, 0], designs[:, 1]
     with np.errstate(invalid="ignore"):
-        pin_distance, angle = ends.pin_distance(designs), ends.high - ends.low
+        pin_distance, angle = ends.largest_pin_distance_from_line(designs), ends.high - ends.low
         closing = (r > 0.0) & (pin_distance < l) & np.isfinite(designs).all(axis=1) & (angle > 0.0) & (angle < _TURN)
     return np.asarray(closing)
 
@@ -106,7 +106,7 @@ def _has_dead_point(ends: Ends, sign: float, designs: Array) -> Mask:
     for span, side in ((r + l, sign), (r - l, -sign)):
         with np.errstate(divide="ignore", invalid="ignore"):
             angle = np.arcsin(e / span)
-        dead |= np.isfinite(ends.turned_into(angle if side > 0.0 else np.pi - angle))
+        dead |= np.isfinite(ends.wrap_into_swing(angle if side > 0.0 else np.pi - angle))
     return dead
 
 
@@ -116,7 +116,7 @@ def _transmission_angle_candidates(
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
         normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.occurrences(angle)]
-        places += [(ends.turned_into(angle), None) for angle in normal_angles]
+        places += [(ends.wrap_into_swing(angle), None) for angle in normal_angles]
         side = None
     else:
         places += [(angle, None) for angle in _angles_with_slider_at_pivot(ends, sign, designs)]
@@ -170,7 +170,7 @@ def _with_slopes(
 
 def _transmission_sine(theta: Any, r: Any, l: Any, e: Any, sign: float) -> Any:
     sine, cosine = np.sin(theta), np.cos(theta)
-    return toggle_distance(sine, cosine, motion(sine, cosine, r, l, e, sign))
+    return pin_distance_from_crank_line(sine, cosine, motion(sine, cosine, r, l, e, sign))
 
 
 def _angles_with_slider_at_pivot(ends: Ends, sign: float, designs: Array) -> list[Array]:
@@ -181,7 +181,7 @@ def _angles_with_slider_at_pivot(ends: Ends, sign: float, designs: Array) -> lis
         half = np.arccos((r * r + size * size - l * l) / (2.0 * r * size))
         angles = []
         for side in (-1.0, 1.0):
-            theta = ends.turned_into(np.where(e < 0.0, -0.5, 0.5) * np.pi + side * half)
+            theta = ends.wrap_into_swing(np.where(e < 0.0, -0.5, 0.5) * np.pi + side * half)
             off = np.abs(motion(np.sin(theta), np.cos(theta), r, l, e, sign).x)
             angles.append(np.where(off < 1e-6 * r, theta, np.nan))
     return angles

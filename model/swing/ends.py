@@ -63,7 +63,7 @@ class Ends:
         """+1 if the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return np.where(self.end > self.start, 1.0, -1.0)
 
-    def turned_into(self, angle: Any) -> Array:
+    def wrap_into_swing(self, angle: Any) -> Array:
         """Return crank angles (n,), or one, shifted by whole turns into the swings; NaN where impossible."""
         with np.errstate(invalid="ignore"):
             turned = angle + _TURN * np.ceil((self.low - angle) / _TURN)
@@ -71,9 +71,9 @@ class Ends:
 
     def extreme_angles(self) -> list[Array]:
         """Return the ends, and the crank angles normal to the slider line; NaN where a swing has none."""
-        return [self.start, self.end, self.turned_into(0.5 * np.pi), self.turned_into(1.5 * np.pi)]
+        return [self.start, self.end, self.wrap_into_swing(0.5 * np.pi), self.wrap_into_swing(1.5 * np.pi)]
 
-    def pin_distance(self, designs: Array) -> Array:
+    def largest_pin_distance_from_line(self, designs: Array) -> Array:
         """Return the maximum distance (n,) between crank pin and slider line over the swings, m."""
         return greatest_pin_distance(designs, self.extreme_angles())
 
@@ -86,7 +86,7 @@ class Ends:
         return moved.reshape(-1, 2)
 
 
-def with_start(
+def append_start_number(
     numbers: Numbers, plain: Complexes, steps: Complexes, designs: Array, column: int
 ) -> tuple[Numbers, Complexes]:
     """Return numbers and stepped blocks followed by the start of the swing, a number that no kernel uses.
@@ -113,7 +113,7 @@ def greatest_pin_distance(designs: Array, angles: Iterable[Array]) -> Array:
     return np.asarray(np.fmax.reduce(distances))
 
 
-def start_column(mechanism: Mechanism) -> int | None:
+def swing_start_column(mechanism: Mechanism) -> int | None:
     """Return the column in which designs have the start of their swing; None if all have the same start."""
     for place, item in enumerate(mechanism.varying):
         if item.paths[0] in STARTS.values():
@@ -124,7 +124,7 @@ def start_column(mechanism: Mechanism) -> int | None:
 def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
     """Return both ends of the swings for designs (n, 3 + k). slopes: whether derivatives are needed."""
     sign = mechanism.sign
-    column = start_column(mechanism)
+    column = swing_start_column(mechanism)
     plain = _ends(swing, sign, designs, column)
     if not slopes:
         return Ends(*plain)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import one_linkage, require_slider
+from ..linkage.single_linkage import require_slider, single_linkage
 from ..machine.mechanism import Mechanism
-from ..tolerance.sources import SOURCES, limits
+from ..tolerance.sources import SOURCES, limits_of_sources
 from .swing import Swing
 
 
@@ -27,8 +27,8 @@ def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_ang
     crank angle, with the actuator among the sources. Sources without tolerance are left out.
     """
     require_slider(mechanism)
-    checked = one_linkage(mechanism, linkage)
-    i, source_limits = checked.error_influences(crank_angle), limits(mechanism, checked)
+    checked = single_linkage(mechanism, linkage)
+    i, source_limits = checked.error_influences(crank_angle), limits_of_sources(mechanism, checked)
     crank, rod, offset, turn = (abs(float(share)) for share in (i.crank, i.rod, i.offset, i.crank_angle))
     rates = (crank, rod, offset, turn, rod, rod, rod, offset)
     shares = [

@@ -8,7 +8,7 @@ along the slider line and the crank torque is zero:
   = 0;
 - slider: P = pull + mu |N| sgn(x' w) - B_x, N = -(B_y + m_s G_y);
 
-with `balance` and the names of `dynamics.torque`, M of `dynamics.crank_loads`,
+with `balance_before_pin_force` and the names of `dynamics.torque`, M of `dynamics.crank_loads`,
 and s_A, s_B, s_O the senses of (1 - phi') w, phi' w and w. Without friction the first two are linear in B, with the
 determinant r l sin(theta - phi), which is zero at a dead point. Friction in the pins makes them nonlinear. It rotates
 the rows of the Jacobian, whose lengths are l and r, by at most asin((rho_A + rho_B) / l) and asin((rho_A + rho_O) / r).
@@ -27,15 +27,22 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.cycle import curves_of, design_of
-from ..dynamics.torque import Balance, balance, with_couple
+from ..cycle.cycle import cycle_at_speeds, derived_design
+from ..dynamics.torque import Balance, add_crank_couple, balance_before_pin_force
 from ..kinematics.position import Motion, motion
 from ..linkage.linkage import Linkage
 from ..machine.design import Design
 from ..machine.mechanism import Mechanism
 from ..signals.position_error import influences
-from .law import way as way_of
-from .slider_pin_force import PinRows, PinSides, free_pin, newton_step, pin_rows, toggle_distance
+from .law import travel_speed_acceleration as way_of
+from .slider_pin_force import (
+    PinRows,
+    PinSides,
+    frictionless_pin_force,
+    newton_step,
+    pin_distance_from_crank_line,
+    rod_and_crank_residuals,
+)
 from .swing import Swing
 
 _STILL = 1e-200
@@ -103,7 +110,7 @@ def swing_curves(
     s, s_1, s_2 = way_of(swing.law, share, swing.table)
     s_1 = np.maximum(s_1, 0.0)  # at rest, rounding may give a speed of the opposite sign, which would reverse friction
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
-    first, last = driver_ends(linkage, swing)
+    first, last = driver_start_and_end(linkage, swing)
     # Exact at the ends, where a rounded angle might lie beyond a dead point or the reach of the rod.
     place = np.where(s == 1.0, last, first + (last - first) * s)
     rate = (last - first) * s_1
@@ -119,8 +126,8 @@ def swing_curves(
         rise = (acceleration - m.x_2 * speed**2) / m.x_1
     turning = swing.way * (-1.0 if back else 1.0)
     slowly = np.where(speed == 0.0, turning * _STILL, speed)
-    cycle_curves = curves_of(mechanism, linkage, theta, slowly, rise)
-    d = design_of(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
+    cycle_curves = cycle_at_speeds(mechanism, linkage, theta, slowly, rise)
+    d = derived_design(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
     if swing.driver == "crank":
         drive, power, angle, error = (
             cycle_curves.torque,
@@ -132,7 +139,9 @@ def swing_curves(
     else:
         drive, joints = _free_crank_forces(theta, m, d, cycle_curves.load, cycle_curves.crank_load)
         power = drive * m.x_1 * speed
-        angle = np.arcsin(np.clip(np.abs(toggle_distance(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0))
+        angle = np.arcsin(
+            np.clip(np.abs(pin_distance_from_crank_line(np.sin(theta), np.cos(theta), m)) / linkage.rod, 0.0, 1.0)
+        )
         error = _worst_case_crank_error(theta, m, d, swing.actuator_tolerance)
     # Remove values that only come from the negligible crank speed.
     load, drive, power = (np.where(np.abs(curve) < _NOTHING, 0.0, curve) for curve in (cycle_curves.load, drive, power))
@@ -158,7 +167,7 @@ def swing_curves(
 JOINTS = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y", "guide")
 
 
-def driver_ends(linkage: Linkage, swing: Swing) -> tuple[float, float]:
+def driver_start_and_end(linkage: Linkage, swing: Swing) -> tuple[float, float]:
     """Return the driver position at start and end: crank angle, rad, or slider position, m."""
     if swing.driver == "crank":
         return swing.start, swing.end
@@ -182,7 +191,7 @@ def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
     half = np.arccos(np.clip((r * r + d * d - l * l) / (2.0 * r * d), -1.0, 1.0))
     # sin(theta - phi) distinguishes the two solutions: between dead points it keeps the sign that it has mid-swing.
     middle = np.array([0.5 * (swing.start + swing.end)])
-    side = float(toggle_distance(np.sin(middle), np.cos(middle), _motion_at(linkage, middle))[0])
+    side = float(pin_distance_from_crank_line(np.sin(middle), np.cos(middle), _motion_at(linkage, middle))[0])
     theta = np.arctan2(e, x) + (half if side > 0.0 else -half)
     low, high = sorted((swing.start, swing.end))
     theta = theta + 2.0 * np.pi * np.round((0.5 * (low + high) - theta) / (2.0 * np.pi))
@@ -197,19 +206,19 @@ def _free_crank_forces(
 ) -> tuple[Array, dict[str, Array]]:
     """Return the force on the slider that turns a free crank, along +x, and the joint forces."""
     sine, cosine = np.sin(theta), np.cos(theta)
-    b: Balance = with_couple(balance(sine, cosine, m, d, load), -on_crank)
+    b: Balance = add_crank_couple(balance_before_pin_force(sine, cosine, m, d, load), -on_crank)
     sides = PinSides(
         d.crank_pin_circle * np.sign((1.0 - m.rod_1) * d.speed),
         d.slider_pin_circle * np.sign(m.rod_1 * d.speed),
         d.crank_pivot_circle * np.sign(d.speed),
     )
     with np.errstate(divide="ignore", invalid="ignore"):
-        bx, by = free_pin(sine, cosine, m, d, b)
+        bx, by = frictionless_pin_force(sine, cosine, m, d, b)
         if any(np.any(side) for side in sides):
             bx, by = _pin_force_with_friction(
-                bx, by, partial(pin_rows, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides)
+                bx, by, partial(rod_and_crank_residuals, sine=sine, cosine=cosine, m=m, d=d, b=b, sides=sides)
             )
-            sure = np.abs(toggle_distance(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
+            sure = np.abs(pin_distance_from_crank_line(sine, cosine, m)) > d.l * np.sin(locking_angle(d))
             bx, by = np.where(sure, bx, np.nan), np.where(sure, by, np.nan)
     guide = -by - d.slider_mass * d.gravity_y
     slide = np.sign(m.x_1 * d.speed)

@@ -26,10 +26,10 @@ def code_of(law: Law) -> int:
 
 
 @analytic
-def way_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, Any]:
+def travel_and_derivatives_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, Any]:
     """Return s, ds/dt, d2s/dt2 and d3s/dt3 for a law at fractions t of the time, from 0 to 1.
 
-    table: pieces from `spline`, for a tabulated law. probe: a fraction on the same side of a corner as t.
+    table: pieces from `law_spline_pieces`, for a tabulated law. probe: a fraction on the same side of a corner as t.
 
     Harmonic: s = (1 - cos(pi t)) / 2. Cycloidal: s = t - sin(2 pi t) / (2 pi). Polynomial: s = 10 t^3 - 15 t^4 + 6 t^5.
     Source: R. L. Norton, Design of Machinery, chapter 8, Cam design (double-dwell functions).
@@ -74,7 +74,7 @@ def way_at(code: int, table: Any, t: Any, probe: Any) -> tuple[Any, Any, Any, An
 NO_TABLE = np.zeros((0, 7))
 
 
-def spline(points: tuple[tuple[float, float], ...]) -> Array:
+def law_spline_pieces(points: tuple[tuple[float, float], ...]) -> Array:
     """Return the cubic pieces (k, 7) through points (fractions of time and travel), at rest at both ends.
 
     Speed and acceleration are continuous. Each piece has the fractions from and up to which it counts, its origin, and
@@ -106,9 +106,9 @@ def spline(points: tuple[tuple[float, float], ...]) -> Array:
     return pieces
 
 
-def mirrored(points: tuple[tuple[float, float], ...]) -> Array:
+def reversed_law_pieces(points: tuple[tuple[float, float], ...]) -> Array:
     """Return the pieces of the reversed motion, from its end to its start."""
-    return spline(tuple((1.0 - t, 1.0 - s) for t, s in reversed(points))) if points else NO_TABLE
+    return law_spline_pieces(tuple((1.0 - t, 1.0 - s) for t, s in reversed(points))) if points else NO_TABLE
 
 
 def _require_points(t: Array, s: Array) -> None:
@@ -122,19 +122,19 @@ def _require_points(t: Array, s: Array) -> None:
         )
 
 
-def way(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, Array]:
-    """Return s, ds/dt and d2s/dt2 at fractions of the time, from 0 to 1; see `way_at`."""
-    return way_at(code_of(law), table, share, share)[:3]
+def travel_speed_acceleration(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, Array]:
+    """Return s, ds/dt and d2s/dt2 at fractions of the time, from 0 to 1; see `travel_and_derivatives_at`."""
+    return travel_and_derivatives_at(code_of(law), table, share, share)[:3]
 
 
-def shares_of(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
+def time_fractions_at_travel(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
     """Return the fractions of the time at which fractions of the travel are reached; by bisection, as s rises."""
     if law in ("slow", "constant"):
         return np.asarray(s, dtype=np.float64)
     low, high = np.zeros(np.shape(s)), np.ones(np.shape(s))
     for _ in range(60):
         middle = 0.5 * (low + high)
-        is_below = way(law, middle, table)[0] < s
+        is_below = travel_speed_acceleration(law, middle, table)[0] < s
         low, high = np.where(is_below, middle, low), np.where(is_below, high, middle)
     return np.asarray(0.5 * (low + high))
 

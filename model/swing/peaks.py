@@ -18,7 +18,7 @@ from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
 from ..signals.cycle_segments import Segments
 from ..signals.peak_search import Maxima, find_maxima
-from .closure import passes
+from .closure import swings_without_dead_point
 from .swing import Swing
 from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, ERROR
@@ -60,7 +60,7 @@ class _Curve:
         """Return the pieces of the strokes, each return stroke after its forward stroke."""
         parts = []
         for way, pieces in enumerate(self.ways):
-            design, piece = np.nonzero(pieces.live)
+            design, piece = np.nonzero(pieces.has_length)
             low, high = pieces.cuts[design, piece], pieces.cuts[design, piece + 1]
             number = (design * pieces.cuts.shape[1] + piece) * len(self.ways) + way
             parts.append((design, low + pieces.back, high + pieces.back, number))
@@ -94,7 +94,7 @@ class _Curve:
         for way, pieces in enumerate(self.ways):
             rows = np.flatnonzero(cuts % len(self.ways) == way)
             design, cut = np.divmod(cuts[rows] // len(self.ways), pieces.cuts.shape[1])
-            cut_rates[rows] = self.many.moved(pieces, design, cut, probe[rows] - pieces.back)
+            cut_rates[rows] = self.many.cut_slopes(pieces, design, cut, probe[rows] - pieces.back)
         return cut_rates
 
 
@@ -116,7 +116,7 @@ def swing_peaks(
     return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
-def least_drives(
+def negated_least_drive_peaks(
     mechanism: Mechanism,
     swing: Swing,
     designs: Array,
@@ -133,7 +133,7 @@ def least_drives(
     """
 
     def find(many: SwingBatch) -> Maxima:
-        first, last = (many.driver_at(end) for end in (many.ends.start, many.ends.end))
+        first, last = (many.driver_position_at(end) for end in (many.ends.start, many.ends.end))
         toward = np.where(last > first, -1.0, 1.0) * (-1.0 if back else 1.0)
         return _maxima_of_state(many, (many.pieces(back=back),), DRIVE, limit, gradients, toward)
 
@@ -141,7 +141,7 @@ def least_drives(
     return _peaks_of_swinging_designs(mechanism, swing, designs, limit, gradients, find, batch_of)
 
 
-def holding_peaks(
+def holding_drive_peaks(
     mechanism: Mechanism, swing: Swing, designs: Array, *, free: bool = False, gradients: bool = False
 ) -> SwingPeaks:
     """Return the magnitudes of the drive effort at the ends, for designs (n, 3 + k), without inertia.
@@ -170,7 +170,7 @@ def _peaks_of_swinging_designs(
     values, places = np.full((n, limit), -np.inf), np.full((n, limit), np.nan)
     slopes = np.zeros((n if gradients else 0, limit, designs.shape[1]))
     values[:, 0] = np.nan
-    rows = np.flatnonzero(passes(mechanism, swing, designs))
+    rows = np.flatnonzero(swings_without_dead_point(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
         designs_here = rows[begin:end]
@@ -194,7 +194,7 @@ def _peaks_of_state(batch: SwingBatch, state: int, limit: int, gradients: bool) 
     # The magnitude of the guide's friction contributes to a force on the slider: without slopes, its kink needs no cut.
     contacts = gradients or batch.swing.driver == "crank"
     forces = state != ERROR
-    ways = batch.ways() if forces else (False,)
+    ways = batch.strokes_that_differ() if forces else (False,)
     cut = tuple(batch.pieces(back=back, forces=forces, contacts=contacts) for back in ways)
     return _maxima_of_state(batch, cut, state, limit, gradients)
 
@@ -208,7 +208,7 @@ def _maxima_of_state(
 
 def _drive_at_ends(batch: SwingBatch, gradients: bool) -> Maxima:
     values, places, slopes = [], [], []
-    for back in batch.ways():
+    for back in batch.strokes_that_differ():
         for share in (0.0, 1.0):
             rows = np.arange(batch.count)
             near = np.full(batch.count, 1e-9 if share == 0.0 else 1.0 - 1e-9)

@@ -35,21 +35,23 @@ class PinSides(NamedTuple):
 
 
 @analytic
-def toggle_distance(sine: Any, cosine: Any, m: Motion) -> Any:
+def pin_distance_from_crank_line(sine: Any, cosine: Any, m: Motion) -> Any:
     """Distance of the slider pin from the crank line, l sin(theta - phi), m."""
     return sine * m.l_cos - cosine * m.l_sin
 
 
 @analytic
-def free_pin(sine: Any, cosine: Any, m: Motion, d: Design, b: Balance) -> tuple[Any, Any]:
+def frictionless_pin_force(sine: Any, cosine: Any, m: Motion, d: Design, b: Balance) -> tuple[Any, Any]:
     """Return B without friction in the pins, N."""
     crank = b.couple + d.r * (cosine * b.rod_y - sine * b.rod_x)
-    per = inverse(d.r * toggle_distance(sine, cosine, m))
+    per = inverse(d.r * pin_distance_from_crank_line(sine, cosine, m))
     return (m.l_cos * crank - d.r * cosine * b.moment) * per, (m.l_sin * crank - d.r * sine * b.moment) * per
 
 
 @analytic
-def pin_rows(bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: Balance, sides: PinSides) -> PinRows:
+def rod_and_crank_residuals(
+    bx: Any, by: Any, sine: Any, cosine: Any, m: Motion, d: Design, b: Balance, sides: PinSides
+) -> PinRows:
     """Return the moments on rod and crank for a force in the slider pin, with friction in the pins."""
     ax, ay = bx + b.rod_x, by + b.rod_y
     px, py = ax + b.crank_x, ay + b.crank_y

@@ -9,7 +9,7 @@ import numpy as np
 from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from .swing import Swing, placed, require_swing, slowly
+from .swing import Swing, require_swing, swing_between_crank_angles, without_inertia
 from .swing_cycle import SwingCycle, SwingPoint
 
 
@@ -63,10 +63,10 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
     Raises the errors of `require_swing`.
     """
     checked = require_swing(mechanism, linkage, swing)
-    swing = placed(mechanism, checked, swing)
+    swing = swing_between_crank_angles(mechanism, checked, swing)
     cycle = SwingCycle(mechanism, checked, swing)
     ends = np.array([0.0, 1.0])
-    slow = SwingCycle(mechanism, checked, slowly(swing))
+    slow = SwingCycle(mechanism, checked, without_inertia(swing))
     still = slow.curves(ends), slow.curves(ends, back=True)
     free = SwingCycle(replace(mechanism, friction=Friction()), checked, slow.swing)
     locked = cycle.first_locked()

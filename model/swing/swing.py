@@ -13,14 +13,14 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..checks import keep_tuples, require_all_finite, require_numbers
+from ..checks import require_all_finite, require_numbers, store_as_tuples
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import one_linkage, require_slider
+from ..linkage.single_linkage import require_slider, single_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .angles_from_position import crank_angles_at
-from .law import NO_TABLE, spline, way
+from .law import NO_TABLE, law_spline_pieces, travel_speed_acceleration
 from .swing_types import Law, Side, Stated, SwingDriver
 
 STARTS = {"crank": "start.angle", "slider": "start.place"}
@@ -35,12 +35,12 @@ class Swing:
 
     The crank turns from start towards end: clockwise if end is smaller. stated_for: "crank" if start and end are crank
     angles, "slider" if they are slider positions; then `side` says on which side of the line from crank pivot to slider
-    pin the crank pin is, and `placed` gives the crank angles. follows: whether the end moves along with a start that
-    designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force on the slider
-    along its line, or the cylinder of a lever, whose angles start and end then are. law: law of the driver's motion
-    over time, in each stroke. duration: time of one stroke, s; none for slow motion. actuator_tolerance: tolerance of
-    the slider position if the slider drives, m. points: points of a tabulated law: fractions of time and travel, see
-    `law.spline`.
+    pin the crank pin is, and `swing_between_crank_angles` gives the crank angles. follows: whether the end moves along
+    with a start that designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force
+    on the slider along its line, or the cylinder of a lever, whose angles start and end then are. law: law of the
+    driver's motion over time, in each stroke. duration: time of one stroke, s; none for slow motion.
+    actuator_tolerance: tolerance of the slider position if the slider drives, m. points: points of a tabulated law:
+    fractions of time and travel, see `law.law_spline_pieces`.
     """
 
     start: float
@@ -55,7 +55,7 @@ class Swing:
     points: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "points")
+        store_as_tuples(self, "points")
         require_all_finite("start and end of a swing", (self.start, self.end))
         require_numbers(self, "duration", phrase="the duration of a swing", above=0.0, unit="s")
         require_numbers(self, "actuator_tolerance", phrase="the tolerance of the actuator", least=0.0, unit="m")
@@ -120,13 +120,13 @@ class Swing:
 
     @cached_property
     def table(self) -> Array:
-        """Pieces (k, 7) of a tabulated law, see `law.spline`; empty for other laws."""
-        return spline(self.points) if self.points else NO_TABLE
+        """Pieces (k, 7) of a tabulated law, see `law.law_spline_pieces`; empty for other laws."""
+        return law_spline_pieces(self.points) if self.points else NO_TABLE
 
     @property
     def fastest(self) -> float:
         """Greatest ds/dt of a law with a name, half-way: all are symmetric and slow down towards their ends."""
-        return float(way(self.law, np.array([0.5]))[1][0])
+        return float(travel_speed_acceleration(self.law, np.array([0.5]))[1][0])
 
     @property
     def way(self) -> float:
@@ -140,7 +140,7 @@ class Swing:
         return [occurrence] if occurrence <= high else []
 
 
-def slowly(swing: Swing) -> Swing:
+def without_inertia(swing: Swing) -> Swing:
     """Return a swing without inertia."""
     return replace(swing, law="slow", duration=None, points=())
 
@@ -159,7 +159,7 @@ def dead_points(linkage: Linkage) -> tuple[float, ...]:
     return tuple(angles)
 
 
-def started(mechanism: Mechanism, swing: Swing) -> Swing:
+def with_start_of_machine(mechanism: Mechanism, swing: Swing) -> Swing:
     """Return the swing from the start that a machine for one design sets, if any."""
     start = getattr(mechanism.start, "angle" if swing.stated_for == "crank" else "place")
     if start is None:
@@ -167,9 +167,9 @@ def started(mechanism: Mechanism, swing: Swing) -> Swing:
     return replace(swing, start=start, end=start + (swing.end - swing.start) if swing.follows else swing.end)
 
 
-def placed(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
+def swing_between_crank_angles(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Swing:
     """Return the swing of one linkage between two crank angles. Raises `AssemblyError` if it cannot reach an end."""
-    swing = started(mechanism, swing)
+    swing = with_start_of_machine(mechanism, swing)
     if swing.stated_for == "crank":
         return swing
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
@@ -205,13 +205,13 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
     require_slider(mechanism)
-    checked = one_linkage(mechanism, linkage)
+    checked = single_linkage(mechanism, linkage)
     if swing.driver == "cylinder":
         raise InputError(
             "a cylinder drives a lever; got one as the driver of a slider-crank; drive the crank or the slider, or set "
             '[mechanism] inversion = "turning cylinder"'
         )
-    _require_swing_without_dead_point(mechanism, checked, placed(mechanism, checked, swing))
+    _require_swing_without_dead_point(mechanism, checked, swing_between_crank_angles(mechanism, checked, swing))
     return checked
 
 

@@ -13,22 +13,22 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..dynamics.rubbing import drives
+from ..dynamics.rubbing import determinacy_margin
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..kinematics.position import motion
-from ..machine.derived import derived
+from ..machine.derived import derived_blocks
 from ..machine.design import design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import numbers_of
-from ..machine.raw import fullest_inputs
-from .closure import driven_angles, passes
-from .ends import Ends, ends_of, greatest_pin_distance, start_column, with_start
+from ..machine.numbers import raw_numbers_of_designs
+from ..machine.raw import raw_inputs_with_all_features
+from .closure import swings_without_dead_point, transmission_angle_candidates
+from .ends import Ends, append_start_number, ends_of, greatest_pin_distance, swing_start_column
 from .forces import locking_angle
-from .law import corners, mirrored, shares_of
-from .swing import Swing, slowly
-from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, Path, Points, path_of, states
+from .law import corners, reversed_law_pieces, time_fractions_at_travel
+from .swing import Swing, without_inertia
+from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, KernelSwing, Points, kernel_swing, swing_states
 
 _SHORTEST = 1e-12
 _SCAN = 33
@@ -49,7 +49,7 @@ class Pieces:
     state: IntArray
 
     @property
-    def live(self) -> Mask:
+    def has_length(self) -> Mask:
         """Pieces (n, c - 1) of nonzero length."""
         return np.asarray(np.diff(self.cuts, axis=1) > _SHORTEST)
 
@@ -74,19 +74,19 @@ class SwingBatch:
         forces: bool = True,
     ) -> None:
         """Take designs (n, 3 + k). slow: without inertia. free: without friction. forces: whether states need them."""
-        raw, self.loads = fullest_inputs(mechanism)
-        self.mechanism, self.swing = mechanism, slowly(swing) if slow else swing
-        self.rubs = mechanism.fullest.friction.acts and not free
-        self.path: Path = path_of(self.swing, rubbing=self.rubs, forces=forces)
+        raw, self.loads = raw_inputs_with_all_features(mechanism)
+        self.mechanism, self.swing = mechanism, without_inertia(swing) if slow else swing
+        self.rubs = mechanism.with_largest_variables.friction.acts and not free
+        self.path: KernelSwing = kernel_swing(self.swing, rubbing=self.rubs, forces=forces)
         self.designs, self.count = designs, len(designs)
         self.sign = mechanism.sign
         self.ends: Ends = ends_of(mechanism, self.swing, designs, slopes=slopes)
-        numbers = numbers_of(mechanism, designs, limit=len(raw), gradients=slopes)
-        self.blocks, self.steps = derived(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
+        numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=slopes)
+        self.blocks, self.steps = derived_blocks(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
         self.complex_blocks: Complexes = self.blocks.astype(np.complex128)
-        column = start_column(mechanism)
+        column = swing_start_column(mechanism)
         if column is not None:
-            numbers, self.steps = with_start(numbers, self.complex_blocks, self.steps, designs, column)
+            numbers, self.steps = append_start_number(numbers, self.complex_blocks, self.steps, designs, column)
         self.numbers, self.columns = numbers, len(numbers.columns)
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
         self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
@@ -106,7 +106,9 @@ class SwingBatch:
         rows = np.ascontiguousarray(np.broadcast_to(designs, shape), dtype=np.int64).ravel()
         stepped = rows if step is None else rows * self.columns + step
         blocks, ends = (self.complex_blocks, self.plain_ends) if step is None else (self.steps, self.stepped_ends)
-        flat = states(self.blocks, blocks, self.loads, self.path, Points(rows, stepped, share, slip, probe, back), ends)
+        flat = swing_states(
+            self.blocks, blocks, self.loads, self.path, Points(rows, stepped, share, slip, probe, back), ends
+        )
         return flat.reshape(*shape, flat.shape[1])
 
     def locked(self) -> Mask:
@@ -115,13 +117,13 @@ class SwingBatch:
             return np.zeros(self.count, np.bool_)
         d = design_at(self.blocks.transpose(1, 2, 0).reshape(self.blocks.shape[1], -1), slice(None))
         if self.swing.driver == "slider":
-            least = driven_angles(self.mechanism, self.swing, self.designs).values.min(axis=1)
+            least = transmission_angle_candidates(self.mechanism, self.swing, self.designs).values.min(axis=1)
             pins = d.crank_pin_circle + d.slider_pin_circle + d.crank_pivot_circle > 0.0
             return np.asarray(pins & (least <= locking_angle(d)))
         pin_distance = greatest_pin_distance(self.designs, self.ends.extreme_angles())
-        return np.asarray(drives(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
+        return np.asarray(determinacy_margin(np.sqrt(d.l * d.l - pin_distance * pin_distance), pin_distance, d) <= 0.0)
 
-    def ways(self) -> tuple[bool, ...]:
+    def strokes_that_differ(self) -> tuple[bool, ...]:
         """Return the strokes that differ: the forward stroke, and the return stroke unless it is alike."""
         return (False, True) if self.ways_differ else (False,)
 
@@ -131,26 +133,26 @@ class SwingBatch:
         forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the guide
         force.
         """
-        self.table = mirrored(self.swing.points) if back else self.swing.table
-        kinks = list(self._kinks()) if forces else []
-        kink_shares, codes = self._shares([way for way, _ in kinks]), [code for _, code in kinks]
-        inner_cuts = [*self._corners(), *zip(kink_shares, codes, strict=True)]
+        self.table = reversed_law_pieces(self.swing.points) if back else self.swing.table
+        kinks = list(self._cuts_in_forces()) if forces else []
+        kink_shares, codes = self._time_fractions_at_travel([way for way, _ in kinks]), [code for _, code in kinks]
+        inner_cuts = [*self._cuts_at_law_corners(), *zip(kink_shares, codes, strict=True)]
         shares = [np.zeros(self.count), np.ones(self.count), *(share for share, _ in inner_cuts)]
         state = np.tile(np.array([-1, -1, *(code for _, code in inner_cuts)], dtype=np.int64), (self.count, 1))
         cuts = np.stack(shares, axis=1)
         cuts = np.where((cuts > _SHORTEST) & (cuts < 1.0 - _SHORTEST), cuts, np.where(cuts < 0.5, 0.0, 1.0))
         cuts = np.where(np.isnan(np.stack(shares, axis=1)), 1.0, cuts)
         uncut = _sorted(Pieces(back, 1.0 - cuts if back else cuts, state))
-        touching = forces and contacts and self.rubs and self.mechanism.fullest.friction.guide > 0.0
+        touching = forces and contacts and self.rubs and self.mechanism.with_largest_variables.friction.guide > 0.0
         return self._with_contacts(uncut) if touching else uncut
 
-    def _corners(self) -> Any:
+    def _cuts_at_law_corners(self) -> Any:
         for share in corners(self.swing.law, self.table):
             yield np.full(self.count, share), -1
 
-    def _kinks(self) -> Any:
+    def _cuts_in_forces(self) -> Any:
         """Yield every cut in the forces: fraction (n,) of the forward stroke, and the state with a fixed value."""
-        friction, slider = self.mechanism.fullest.friction, self.swing.driver == "slider"
+        friction, slider = self.mechanism.with_largest_variables.friction, self.swing.driver == "slider"
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
                 yield from self._cuts_at_angle(np.full(self.count, angle), ANGLE)
@@ -182,7 +184,7 @@ class SwingBatch:
             yield from self._cuts_at_angle(np.arctan2(e, x) + way * half, PLACE)
 
     def _cuts_at_angle(self, angle: Array, state: int) -> Any:
-        theta = self.ends.turned_into(angle)
+        theta = self.ends.wrap_into_swing(angle)
         if np.isnan(theta).all():
             return
         first, last = self.ends.start, self.ends.end
@@ -196,7 +198,7 @@ class SwingBatch:
         with np.errstate(invalid="ignore"):
             return np.asarray(motion(np.sin(theta), np.cos(theta), r, l, e, self.sign).x)
 
-    def driver_at(self, theta: Array) -> Array:
+    def driver_position_at(self, theta: Array) -> Array:
         """Return the driver position at crank angles (n,): these angles, or slider positions, m."""
         return theta if self.swing.driver == "crank" else self._slider_position(theta)
 
@@ -206,13 +208,13 @@ class SwingBatch:
             s = (x - first) / (last - first)
         return np.where((s >= 0.0) & (s <= 1.0), s, np.nan)
 
-    def _shares(self, ways: list[Array]) -> list[Array]:
+    def _time_fractions_at_travel(self, ways: list[Array]) -> list[Array]:
         """Return the fractions of the time (n,) at fractions of the travel; NaN stays NaN. A single call is fastest."""
         if not ways:
             return []
         s = np.stack(ways)
         off = np.isnan(s)
-        return list(np.where(off, np.nan, shares_of(self.swing.law, np.where(off, 0.0, s), self.table)))
+        return list(np.where(off, np.nan, time_fractions_at_travel(self.swing.law, np.where(off, 0.0, s), self.table)))
 
     def _with_contacts(self, pieces: Pieces) -> Pieces:
         """Return pieces with further cuts where the guide force changes sides between neighbouring samples."""
@@ -222,7 +224,7 @@ class SwingBatch:
         probe = np.broadcast_to(pieces.probe[:, :, None], share.shape)
         designs = np.broadcast_to(np.arange(self.count)[:, None, None], share.shape)
         guide = self.states(designs, share, probe, float(pieces.back))[..., GUIDE].real
-        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & pieces.live[:, :, None]
+        change = (guide[..., :-1] * guide[..., 1:] < 0.0) & pieces.has_length[:, :, None]
         design, piece, left = np.nonzero(change)
         if not len(design):
             return pieces
@@ -259,7 +261,7 @@ class SwingBatch:
                 break
         return roots
 
-    def moved(self, pieces: Pieces, design: IntArray, cut: IntArray, probe: Array) -> Array:
+    def cut_slopes(self, pieces: Pieces, design: IntArray, cut: IntArray, probe: Array) -> Array:
         """Return the derivatives (p, c) of the cuts (p,), as fractions of the time, by each raw number."""
         state = pieces.state[design, cut]
         slips = np.zeros((len(design), self.columns))
@@ -283,10 +285,10 @@ def _sorted(pieces: Pieces) -> Pieces:
     return Pieces(pieces.back, cuts, np.where(ends, -1, state))
 
 
-def driven(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+def can_swing_despite_friction(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) can make the swing without being locked by friction."""
-    passing = passes(mechanism, swing, designs)
-    if mechanism.fullest.friction.acts:
+    passing = swings_without_dead_point(mechanism, swing, designs)
+    if mechanism.with_largest_variables.friction.acts:
         rows = np.flatnonzero(passing)
 
         def work(begin: int, end: int) -> None:

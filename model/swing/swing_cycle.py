@@ -17,8 +17,8 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw import load_structure
 from ..quadrature import graded_gauss
-from .forces import SwingCurves, driver_ends, swing_curves
-from .law import corners, mirrored, shares_of
+from .forces import SwingCurves, driver_start_and_end, swing_curves
+from .law import corners, reversed_law_pieces, time_fractions_at_travel
 from .swing import Swing, dead_points
 
 _SAMPLES = 721
@@ -128,7 +128,7 @@ class SwingCycle:
         forward, back = self._sampled_ways
         # The forward stroke is along the driver's direction: resistance needs a drive in that direction, and the
         # opposite on return.
-        first, last = driver_ends(self.linkage, self.swing)
+        first, last = driver_start_and_end(self.linkage, self.swing)
         way = np.sign(last - first)
         return bool(np.all((way * forward.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
 
@@ -148,7 +148,7 @@ class SwingCycle:
         return 0.0 if abs(total) <= _EQUAL * gross else total
 
     def _cuts(self, back: bool) -> Array:
-        table = mirrored(self.swing.points) if back else self.swing.table
+        table = reversed_law_pieces(self.swing.points) if back else self.swing.table
         shares = [0.0, 1.0, *corners(self.swing.law, table), *self._shares_at_angles(self._kink_angles(), table)]
         if back:
             shares = [1.0 - share for share in shares]
@@ -178,12 +178,12 @@ class SwingCycle:
         return angles
 
     def _shares_at_angles(self, angles: list[float], table: Array) -> list[float]:
-        first, last = driver_ends(self.linkage, self.swing)
+        first, last = driver_start_and_end(self.linkage, self.swing)
         places = np.array(angles)
         if self.swing.driver == "slider":
             places = self.linkage.at(places).slider_position
         ways = np.clip((places - first) / (last - first), 0.0, 1.0)
-        shares: list[float] = shares_of(self.swing.law, ways, table).tolist()
+        shares: list[float] = time_fractions_at_travel(self.swing.law, ways, table).tolist()
         return shares
 
     def _friction_changes(self, back: bool) -> list[float]:

@@ -9,7 +9,7 @@ from typing import Any
 from ..errors import InputError
 from ..machine.mechanism import Mechanism
 from ..machine.swing_start import Start
-from .swing import Swing, started
+from .swing import Swing, with_start_of_machine
 from .swing_types import Driver, Law, Side
 
 _ANGLES, _POSITIONS = ("start", "end"), ("slider_start", "slider_end")
@@ -47,7 +47,7 @@ def resolve_swing(
     Raises `InputError` for ends of two kinds, missing ends, and a tabulated motion if the job has no table.
     """
     names = {name: (field_names or {}).get(name, name) for name in SwingRequest.__dataclass_fields__}
-    motion = None if motion is None else started(mechanism, motion)
+    motion = None if motion is None else with_start_of_machine(mechanism, motion)
     fields: dict[str, Any] = {
         **_requested_ends(request, motion, names),
         **{

@@ -11,17 +11,23 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces
-from ..dynamics.segments import CycleWindow, Segment, enter, load_on_slider
-from ..dynamics.torque import balance, with_couple
+from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
+from ..dynamics.torque import add_crank_couple, balance_before_pin_force
 from ..kernel.arithmetic import analytic, inverse, magnitude
-from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, seldom_kernel
+from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import motion
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
 from ..signals.position_error import influences, worst_case
-from .law import code_of, way_at
-from .slider_pin_force import PinSides, free_pin, newton_step, pin_rows, toggle_distance
+from .law import code_of, travel_and_derivatives_at
+from .slider_pin_force import (
+    PinSides,
+    frictionless_pin_force,
+    newton_step,
+    pin_distance_from_crank_line,
+    rod_and_crank_residuals,
+)
 from .swing import Swing
 
 Complexes = NDArray[np.complex128]
@@ -36,7 +42,7 @@ _CONVERGED = 1e-15
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
 
 
-class Path(NamedTuple):
+class KernelSwing(NamedTuple):
     """A swing in the kernel's form. slider: whether the slider drives. law: code. per_time: 1 / s, 0 if slow."""
 
     slider: bool
@@ -48,11 +54,11 @@ class Path(NamedTuple):
     table: Table
 
 
-def path_of(swing: Swing, *, rubbing: bool, forces: bool) -> Path:
+def kernel_swing(swing: Swing, *, rubbing: bool, forces: bool) -> KernelSwing:
     """Return a swing for the kernel. rubbing: whether friction counts. forces: whether forces are needed."""
     per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
     law = code_of(swing.law)
-    return Path(swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.table)
+    return KernelSwing(swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.table)
 
 
 @analytic
@@ -70,7 +76,7 @@ def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end:
     half = math.acos(min(1.0, max(-1.0, ratio)))
     middle = 0.5 * (start + end)
     sine, cosine = math.sin(middle), math.cos(middle)
-    side = toggle_distance(sine, cosine, motion(sine, cosine, r, l, e, branch))
+    side = pin_distance_from_crank_line(sine, cosine, motion(sine, cosine, r, l, e, branch))
     theta = math.atan2(e, x) + (half if side > 0.0 else -half)
     theta = theta + 2.0 * math.pi * math.floor((middle - theta) / (2.0 * math.pi) + 0.5)
     low, high = min(start, end), max(start, end)
@@ -88,8 +94,8 @@ def _slider_drive_and_guide_force(
 
     on_crank: negative torque of the loads on the crank, N m. rod_1: phi' within the piece, whose sign counts at a cut.
     """
-    b = with_couple(balance(sine, cosine, m, d, load), on_crank)
-    bx, by = free_pin(sine, cosine, m, d, b)
+    b = add_crank_couple(balance_before_pin_force(sine, cosine, m, d, load), on_crank)
+    bx, by = frictionless_pin_force(sine, cosine, m, d, b)
     turn = 1.0 if d.speed.real > 0.0 else -1.0
     if rubbing:
         crank_pin_side, slider_pin_side = (1.0 if rod_1 < 1.0 else -1.0), (1.0 if rod_1 > 0.0 else -1.0)
@@ -100,7 +106,7 @@ def _slider_drive_and_guide_force(
         )
         size = math.inf
         for _ in range(_NEWTON):
-            step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
+            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, sine, cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
             size = abs(step_x.real) + abs(step_y.real)
             if size <= _CONVERGED * (abs(bx.real) + abs(by.real)):
@@ -108,7 +114,7 @@ def _slider_drive_and_guide_force(
         if not size <= 1e-9 * (abs(bx.real) + abs(by.real)):
             bx = bx * math.nan
         else:  # the imaginary part lags one step behind
-            step_x, step_y = newton_step(pin_rows(bx, by, sine, cosine, m, d, b, sides))
+            step_x, step_y = newton_step(rod_and_crank_residuals(bx, by, sine, cosine, m, d, b, sides))
             bx, by = bx + step_x, by + step_y
     guide = -by - d.slider_mass * d.gravity_y
     slide = turn if m.x_1.real > 0.0 else -turn
@@ -141,9 +147,9 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _forward_travel_and_derivatives(path: Path, share: Any, probe: Any, back: Any) -> Any:
+def _forward_travel_and_derivatives(path: KernelSwing, share: Any, probe: Any, back: Any) -> Any:
     """Return the fraction of the travel and its first three derivatives, counted forward."""
-    w, w_1, w_2, w_3 = way_at(path.law, path.table, share, probe)
+    w, w_1, w_2, w_3 = travel_and_derivatives_at(path.law, path.table, share, probe)
     if back > 0.5:
         w, w_1, w_2, w_3 = 1.0 - w, -w_1, -w_2, -w_3
     return w, w_1, w_2, w_3
@@ -158,7 +164,7 @@ def _stepped_motion(theta: Any, step: Any, z: Any) -> Any:
 
 
 @analytic
-def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
+def _probe_angle(path: KernelSwing, d: Any, s: Any, start: Any, end: Any) -> Any:
     """Return the crank angle at a fraction s of the travel."""
     if path.slider:
         first, final = slider_at(start, d), slider_at(end, d)
@@ -168,7 +174,7 @@ def _probe_angle(path: Path, d: Any, s: Any, start: Any, end: Any) -> Any:
 
 @analytic
 def _drive_power_error_guide(
-    path: Path, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, space: _Workspace
+    path: KernelSwing, z: Any, place: Any, probe_angle: float, turning: float, loads: Loads, space: _Workspace
 ) -> tuple[Any, Any, Any, Any]:
     """Return drive, power, error at the driven side and guide force.
 
@@ -179,7 +185,7 @@ def _drive_power_error_guide(
     d, angle, outward = design_at(space.block, 0), complex(theta, moved), False
     if path.forces:
         watch = CycleWindow(0, 0.0, 1.0, False, False)
-        _, outward = enter(d, space.block, 0, probe_angle, loads, watch, space.piece, space.shift)
+        _, outward = enter_segment(d, space.block, 0, probe_angle, loads, watch, space.piece, space.shift)
     segment = Segment(space.stepped, loads, outward, space.piece, space.shift)
     load = load_on_slider(m, z, angle, segment) if path.forces else 0j
     j = influences(zs, zc, m, z.l)
@@ -197,7 +203,7 @@ def _drive_power_error_guide(
             sides = sides_of(
                 probe_angle, d, Segment(space.block, loads, outward, space.piece, space.shift), path.rubbing
             )
-            f = joint_forces(zs, zc, m, z, load, sides)
+            f = joint_forces_with_optional_friction(zs, zc, m, z, load, sides)
             drive = torque_without_crank_loads(f.torque, angle, turning, segment)
             guide, power = f.guide, drive * speed
         error = worst_case(j, z)
@@ -205,7 +211,9 @@ def _drive_power_error_guide(
 
 
 @analytic
-def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, space: _Workspace, out: Any) -> None:
+def _fill_state(
+    path: KernelSwing, points: Points, p: int, ends: Any, loads: Loads, space: _Workspace, out: Any
+) -> None:
     """Fill row p of `out` with the state at point p."""
     begin, ending = ends[points.stepped[p], 0], ends[points.stepped[p], 1]
     start, end = begin.real, ending.real
@@ -251,9 +259,15 @@ def _fill_state(path: Path, points: Points, p: int, ends: Any, loads: Loads, spa
     out[p, PLACE], out[p, PACE], out[p, ANGLE], out[p, RATE] = m.x, m.x_1, complex(theta, moved), rate
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _states(
-    blocks: Cube, steps: ComplexCube, points: Points, ends: ComplexTable, loads: Loads, path: Path, out: ComplexTable
+    blocks: Cube,
+    steps: ComplexCube,
+    points: Points,
+    ends: ComplexTable,
+    loads: Loads,
+    path: KernelSwing,
+    out: ComplexTable,
 ) -> None:
     rows, count = blocks.shape[1], loads.kind.shape[0]
     block, stepped = np.empty((rows, 1)), np.empty((rows, 1), np.complex128)
@@ -269,7 +283,9 @@ def _states(
         _fill_state(path, points, p, ends, loads, space, out)
 
 
-def states(blocks: Array, steps: Complexes, loads: Loads, path: Path, points: Points, ends: Complexes) -> Complexes:
+def swing_states(
+    blocks: Array, steps: Complexes, loads: Loads, path: KernelSwing, points: Points, ends: Complexes
+) -> Complexes:
     """Return states (p, 8) at points.
 
     blocks: (n, rows, 1), for designs that close over the swing. steps: (k, rows, 1), the same designs with imaginary

@@ -17,7 +17,7 @@ from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
 from ..quadrature import graded_gauss
-from .closure import passes
+from .closure import swings_without_dead_point
 from .swing import Swing
 from .swing_batch import Pieces, SwingBatch
 from .swing_states import DRIVE, RATE
@@ -47,7 +47,7 @@ def swing_work(mechanism: Mechanism, swing: Swing, designs: Array, *, gradients:
     )
 
 
-def work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
+def net_work_of_loads(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
     """Return the net work (n,), J, of the loads over a swing and back.
 
     A drive without friction absorbs it. NaN if a design cannot swing.
@@ -78,7 +78,7 @@ def _evaluate_swinging_designs(
     designs = np.ascontiguousarray(designs, dtype=np.float64)
     values = np.full(len(designs), np.nan)
     slopes = np.zeros((len(designs) if gradients else 0, designs.shape[1]))
-    rows = np.flatnonzero(passes(mechanism, swing, designs))
+    rows = np.flatnonzero(swings_without_dead_point(mechanism, swing, designs))
 
     def work(begin: int, end: int) -> None:
         rows_here = rows[begin:end]
@@ -120,7 +120,7 @@ def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, g
 def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one stroke (n,) and its derivatives with respect to raw numbers (n, c)."""
     u, w = graded_gauss(_PANELS, _GRADED)
-    design, piece = np.nonzero(pieces.live)
+    design, piece = np.nonzero(pieces.has_length)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]
     share = a[:, None] * (1.0 - u) + b[:, None] * u
     rows = np.broadcast_to(design[:, None], share.shape)
@@ -132,7 +132,10 @@ def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[A
     np.add.at(gross, design, np.abs(parts).sum(axis=1))
     slopes = np.zeros((batch.count, batch.columns if gradients else 0))
     if gradients:
-        starts, ends = batch.moved(pieces, design, piece, probe), batch.moved(pieces, design, piece + 1, probe)
+        starts, ends = (
+            batch.cut_slopes(pieces, design, piece, probe),
+            batch.cut_slopes(pieces, design, piece + 1, probe),
+        )
         for v in range(batch.columns):
             slip = starts[:, v : v + 1] * (1.0 - u) + ends[:, v : v + 1] * u
             states = batch.states(rows, share, side, back, STEP * slip, v)

@@ -34,10 +34,10 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..signals.first_greatest import angle_in_cycle
-from .sources import counted_angles, limit_box
+from .sources import angles_where_error_counts, limit_box
 
 _CELLS = 4  # highest samples around which the maximum deviation is refined
 _TURN = 2.0 * np.pi
@@ -65,13 +65,13 @@ class Worst:
     crank_angle: float
 
 
-def extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Extremes:
+def position_deviation_extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Extremes:
     """Return the exact extremes of the slider's deviation at crank angles (m,), rad, for one linkage.
 
     Along +x, from the position of the nominal linkage at the nominal angle. Raises `AssemblyError` unless every linkage
     within the tolerances rotates fully.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     if angles.ndim != 1:
         raise InputError(f"crank angles must be one number or a list of them; got an array of shape {angles.shape}")
@@ -88,7 +88,7 @@ def extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> 
     return Extremes(angles, least - ideal, greatest - ideal)
 
 
-def worst(mechanism: Mechanism, linkage: Linkage) -> Worst:
+def worst_position_error(mechanism: Mechanism, linkage: Linkage) -> Worst:
     """Return the exact worst case over the part of the cycle in which the position error counts.
 
     Continuous crank angle: the highest samples are refined until the value is exact to rounding.
@@ -98,10 +98,10 @@ def worst(mechanism: Mechanism, linkage: Linkage) -> Worst:
     best = Worst(0.0, 0.0)
 
     def negative_size(angle: float) -> float:
-        return -float(extremes(mechanism, linkage, angle).size[0])
+        return -float(position_deviation_extremes(mechanism, linkage, angle).size[0])
 
-    for angles in counted_angles(mechanism, linkage):
-        sizes = extremes(mechanism, linkage, angles).size
+    for angles in angles_where_error_counts(mechanism, linkage):
+        sizes = position_deviation_extremes(mechanism, linkage, angles).size
         padded = np.concatenate([[-1.0], sizes, [-1.0]])
         tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
         for i in tops[np.argsort(sizes[tops])[-_CELLS:]]:

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from .sources import limit_box, limits, source_influences
+from .sources import limit_box, limits_of_sources, source_influences
 
 
 @dataclass(frozen=True)
@@ -33,35 +33,35 @@ class FirstOrder:
     remainder: Array
 
 
-def first_order(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> FirstOrder:
+def first_order_position_errors(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> FirstOrder:
     """Return the first-order position errors of one linkage at crank angles (m,), rad.
 
     The fractions of the variance assume that all limits are the same number of standard deviations. They are squares of
     the contributions divided by the square of the root-sum-square.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     curves = cycle(mechanism, linkage, angles)
-    parts = np.abs(source_influences(mechanism, linkage, angles)) * limits(mechanism, linkage)[:, None]
+    parts = np.abs(source_influences(mechanism, linkage, angles)) * limits_of_sources(mechanism, linkage)[:, None]
     return FirstOrder(
         angles,
         curves.position_error,
         curves.position_error_rss,
         parts,
-        shares(parts),
-        shares(parts * parts),
-        remainder(mechanism, linkage, angles),
+        fractions_of_sum(parts),
+        fractions_of_sum(parts * parts),
+        higher_order_bound(mechanism, linkage, angles),
     )
 
 
-def shares(parts: Array) -> Array:
+def fractions_of_sum(parts: Array) -> Array:
     """Return parts (n, m) divided by their sum (m,); NaN if all are zero."""
     total = parts.sum(axis=0)
     fractions: Array = np.divide(parts, total, out=np.full(parts.shape, np.nan), where=total > 0.0)
     return fractions
 
 
-def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
+def higher_order_bound(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
     """Return a bound (m,), m, on |x - x_0 - first order| within the limits, at crank angles (m,).
 
     Taylor's theorem: half the sum over pairs of |second derivative| T_i T_j, with bounds on the second derivatives over
@@ -69,7 +69,7 @@ def remainder(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) ->
     h^3, h_ll = -q^2 / h^3, h_lq = l q / h^3; |q| is bounded by |q_0| + T_e + T_r + r T_theta, l and r by their limits,
     |sin| and |cos| by 1.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     box = limit_box(mechanism, linkage)
     t = 0.5 * (box[:, 1] - box[:, 0])

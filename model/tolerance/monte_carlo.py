@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .sources import counted_angles, limits, source_influences
+from .sources import angles_where_error_counts, limits_of_sources, source_influences
 from .spreads import Draw, Spreads
 
 CHUNK = 1024
@@ -83,7 +83,7 @@ def simulate(
     of finished and of all machines. cancelled: function called between chunks; if it returns true, the machines so far
     are returned. The same seed gives the same machines. Raises `InputError` for arguments that are out of range.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     spreads = Spreads() if spreads is None else spreads
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     _require_integer("samples", samples, least=1)
@@ -95,9 +95,9 @@ def simulate(
             f"the number of samples times crank angles must be at most {_MOST:,}; got {samples:,} times "
             f"{len(theta):,}; reduce one"
         )
-    limits_of_sources, counted = (
-        limits(mechanism, linkage),
-        np.concatenate(counted_angles(mechanism, linkage, count=angles)),
+    limits, counted = (
+        limits_of_sources(mechanism, linkage),
+        np.concatenate(angles_where_error_counts(mechanism, linkage, count=angles)),
     )
     everywhere = np.concatenate([theta, counted])
     ideal = linkage.at(everywhere).slider_position
@@ -108,7 +108,7 @@ def simulate(
             break
         random = np.random.default_rng([seed, chunk])
         rows = slice(count, min(count + CHUNK, samples))
-        drawn = spreads.draw(limits_of_sources, CHUNK, random)
+        drawn = spreads.draw(limits, CHUNK, random)
         off = _positions(linkage, drawn, everywhere)[: rows.stop - rows.start] - ideal
         errors[rows] = off[:, : len(theta)]
         greatest[rows] = np.abs(off[:, len(theta) :]).max(axis=1)
@@ -176,14 +176,14 @@ def yield_within(
     return Yield(count / len(sizes), float(interval.low), float(interval.high), count, len(sizes), confidence)
 
 
-def variances(
+def variance_contributions(
     mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike, *, spreads: Spreads | None = None
 ) -> Array:
     """Return the first-order variance that each source adds to the position error, (8, m), m^2, at angles (m,), rad."""
-    linkage = single(mechanism, linkage)
-    limits_of_sources = limits(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
+    limits = limits_of_sources(mechanism, linkage)
     per_source: Array = (
         source_influences(mechanism, linkage, crank_angle) ** 2
-        * ((Spreads() if spreads is None else spreads).variances * limits_of_sources * limits_of_sources)[:, None]
+        * ((Spreads() if spreads is None else spreads).variances * limits * limits)[:, None]
     )
     return per_source

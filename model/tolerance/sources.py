@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..dynamics.segments import crank_angle_at, crowded, crowding, uncrowded
+from ..dynamics.segments import crank_angle_at, crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import one_linkage, single
+from ..linkage.single_linkage import single_linkage, single_rotating_linkage
 from ..machine.mechanism import Mechanism
 
 SOURCES = (
@@ -26,9 +26,9 @@ ANGLES = 256
 _TURN = 2.0 * math.pi
 
 
-def limits(mechanism: Mechanism, linkage: Linkage) -> Array:
+def limits_of_sources(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the limit of each source, (8,), m; that of the crank angle in rad."""
-    linkage, t = one_linkage(mechanism, linkage), mechanism.tolerances
+    linkage, t = single_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
         tolerance.limit(float(length))
         for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
@@ -43,7 +43,7 @@ def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: Array
     A pin's clearance acts as an error in the rod, that of the guide as an error in the offset: see `position_error`.
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    i = single(mechanism, linkage).error_influences(angles)
+    i = single_rotating_linkage(mechanism, linkage).error_influences(angles)
     return np.stack([i.crank, i.rod, i.offset, i.crank_angle, i.rod, i.rod, i.rod, i.offset])
 
 
@@ -53,8 +53,8 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     Clearances widen the range of the rod (pins) and of the offset (guide). Raises `AssemblyError` unless every linkage
     in the box rotates fully, `InputError` if the crank angle may be off by half a turn.
     """
-    linkage, limits_of_sources = single(mechanism, linkage), limits(mechanism, linkage)
-    half = np.add(limits_of_sources[:4], [0.0, limits_of_sources[PINS].sum(), limits_of_sources[GUIDE], 0.0])
+    linkage, limits = single_rotating_linkage(mechanism, linkage), limits_of_sources(mechanism, linkage)
+    half = np.add(limits[:4], [0.0, limits[PINS].sum(), limits[GUIDE], 0.0])
     if half[3] >= math.pi:
         raise InputError(
             f"the tolerance of the crank angle must be below 180 deg; got {math.degrees(half[3]):g} deg; reduce it"
@@ -71,20 +71,20 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     return box
 
 
-def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
+def angles_where_error_counts(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
     """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
 
     count: angles per turn, concentrated where the linkage is close to locking. The ends of a part are among its angles;
     the whole cycle is one part that ends one turn after its start.
     """
-    linkage, window = single(mechanism, linkage), mechanism.tolerances.window
+    linkage, window = single_rotating_linkage(mechanism, linkage), mechanism.tolerances.window
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
-    kappa = crowding(r, l, e)
+    kappa = crowding_parameter(r, l, e)
 
     def part(first: float, last: float) -> Array:
-        low, high = crowded(first, kappa), crowded(last, kappa)
+        low, high = crowded_from_crank_angle(first, kappa), crowded_from_crank_angle(last, kappa)
         points = max(5, math.ceil(count * (high - low) / _TURN) + 1)
-        inner_angles = [uncrowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
+        inner_angles = [crank_angle_from_crowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
         return np.array([first, *inner_angles, last])
 
     if window.during == "cycle" and window.start == 0.0 and window.end == 1.0:
@@ -92,7 +92,7 @@ def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLE
     inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
     near, far = (float(x) for x in linkage.dead_centres)
 
-    def angle_at_fraction(fraction: float, first: float, span: float) -> float:
+    def angle_at_stroke_fraction(fraction: float, first: float, span: float) -> float:
         """Crank angle, from `first` on, at which the slider has covered a fraction of one stroke."""
         if fraction in (0.0, 1.0):
             return first + (span if (fraction == 1.0) == (first == inner) else 0.0)
@@ -105,7 +105,8 @@ def counted_angles(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLE
         outward = (first == inner) == (mechanism.speed >= 0.0)
         if window.during == "cycle" or (window.during == "outward stroke") == outward:
             ends = sorted(
-                angle_at_fraction(fraction, first, (last - first) % _TURN) for fraction in (window.start, window.end)
+                angle_at_stroke_fraction(fraction, first, (last - first) % _TURN)
+                for fraction in (window.start, window.end)
             )
             parts.append(part(*ends))
     return parts

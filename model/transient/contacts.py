@@ -18,19 +18,20 @@ _CLOSE = 1e-12
 """rad; accuracy of the angles."""
 
 
-def contacts(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:
+def guide_side_changes(span: Span, motion: Motion, angles: Array, speeds: Array, accelerations: Array) -> list[float]:
     """Return the crank angles within a span, rad, in the order of its points.
 
     angles: (n,), rad. speeds, accelerations: motion at these angles.
     """
     from scipy.optimize import brentq
 
-    def guide(angle: float, cylinder: int) -> float:
-        state = span.with_friction(*(np.array([number]) for number in (angle, *motion(angle))))
+    def guide_force(angle: float, cylinder: int) -> float:
+        state = span.friction_state(*(np.array([number]) for number in (angle, *motion(angle))))
         return float(state.guides[cylinder, 0])
 
-    values = span.with_friction(angles, speeds, accelerations).guides
+    values = span.friction_state(angles, speeds, accelerations).guides
     changes = np.nonzero(values[:, :-1] * values[:, 1:] < 0.0)
     return [
-        float(brentq(guide, angles[i], angles[i + 1], args=(c,), xtol=_CLOSE)) for c, i in zip(*changes, strict=True)
+        float(brentq(guide_force, angles[i], angles[i + 1], args=(c,), xtol=_CLOSE))
+        for c, i in zip(*changes, strict=True)
     ]

@@ -31,7 +31,7 @@ def moving_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
 
 
 @analytic
-def height_energy(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
+def gravity_potential_energy(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     """Return the potential energy of gravity, J: minus gravity times the first moments of all bodies."""
     x = (
         (d.crank_along + d.rod_mass * d.r) * cosine

@@ -51,7 +51,7 @@ class Coasting:
     stops: bool
 
 
-def coasting(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
+def turn_by_energy_integral(turn: PeriodicTurn, inertia: float, speed: float) -> Coasting:
     """Return the periodic turn found by the energy integral.
 
     inertia: that of the drive, kg m^2. speed: magnitude of the mean, rad/s.

@@ -7,7 +7,7 @@ The drive torque is affine in the crank's acceleration, and quadratic in its spe
 where J is the moving inertia, C gravity and all speed-independent loads, D the viscous loads, and E the loads that grow
 with the square of the speed. Each term is the torque from `dynamics.forces` for a motion and a load that leave only
 this term. Nothing is derived a second time, and no term is a difference of large numbers. With friction, these terms
-are those of the frictionless machine; `Span.with_friction` then gives the torque that the motion requires.
+are those of the frictionless machine; `Span.friction_state` then gives the torque that the motion requires.
 
 C depends on the slider's direction, and hence on the direction of rotation. It is smooth only between *breakpoints*:
 dead centres and knots of load tables. In a `Stretch` the crank turns in one direction between two breakpoints.
@@ -28,27 +28,27 @@ from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
+    add_formula_loads,
     angle_within,
     breakpoint_capacity,
     cut_cycle,
-    enter,
+    enter_segment,
     load_on_slider,
-    with_formulas,
 )
-from ..dynamics.torque import forces, smooth_load
+from ..dynamics.torque import forces, load_without_pieces
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
-from ..machine.derived import derived
+from ..machine.derived import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw import LOAD_SLOTS, Loads, Raw, load_structure, raw_vector
 from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
-from .energy import height_energy, moving_inertia
-from .friction_torque import CylinderFriction, FrictionState, Senses, jamming_error, least_inertia
+from .energy import gravity_potential_energy, moving_inertia
+from .friction_torque import CylinderFriction, FrictionState, Senses, jamming_error, least_inertia_with_friction
 
 TURN = 2.0 * math.pi
 NEAREST = 1e-12
@@ -91,7 +91,7 @@ def _cut_cycle(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> in
 def _enter_segment_at(
     block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row
 ) -> bool:
-    _, outward = enter(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
+    _, outward = enter_segment(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
     return outward
 
 
@@ -111,11 +111,11 @@ def _fill_equation_terms(
         out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
         static = forces(sine, cosine, m, still, load).torque
         out[2, i] = torque_without_crank_loads(static, theta, way, segment)
-        dragged = with_formulas(smooth_load(m, spin, 0.0), m, spin, block, 1, outward, loads)
+        dragged = add_formula_loads(load_without_pieces(m, spin, 0.0), m, spin, block, 1, outward, loads)
         out[3, i] = forces(sine, cosine, m, bare, dragged).torque
         load_torque = still.branch * load * m.x_1
         out[4, i] = load_torque - torque_without_crank_loads(0.0, theta, way, segment)
-        squared = with_formulas(0.0, m, square, block, 4, outward, loads)
+        squared = add_formula_loads(0.0, m, square, block, 4, outward, loads)
         out[5, i] = forces(sine, cosine, m, bare, squared).torque
 
 
@@ -132,11 +132,11 @@ class Span:
         """Return the terms at crank angles (n,), rad."""
         raise NotImplementedError
 
-    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def friction_state(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction at crank angles, rad, speeds, rad/s, and accelerations (n,), rad/s^2."""
         raise NotImplementedError
 
-    def accelerated(
+    def solve_acceleration(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations (n,), rad/s^2, with friction, and the torque and heat of that motion.
@@ -153,7 +153,7 @@ class Equation:
     direction: +1 or -1, direction in which the motor turns the crank. period: crank angle of the cycle, rad.
     dead_centres: (k,), rad. breakpoints: (n,), ascending, within a cycle from 0, rad. lead: lead of the first
     cylinder's crank over the angle, rad. crowds: whether its curves are steep at the same angles as those of one
-    linkage (`segments.crowding`). rubs: whether there is friction.
+    linkage (`segments.crowding_parameter`). rubs: whether there is friction.
     """
 
     direction: float
@@ -168,7 +168,7 @@ class Equation:
         """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         raise NotImplementedError
 
-    def turn(self, way: float) -> list[Span]:
+    def spans_of_cycle(self, way: float) -> list[Span]:
         """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or clockwise."""
         order = range(len(self.breakpoints))
         return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
@@ -182,7 +182,7 @@ class Equation:
         raise NotImplementedError
 
     def least_inertia(self, crank_angle: Array) -> Array:
-        """Return the minimum inertia that friction leaves, kg m^2 (`with_friction`); same shape as the crank angle."""
+        """Return the minimum inertia that friction leaves, kg m^2 (`friction_state`); same shape as the crank angle."""
         raise NotImplementedError
 
     def require_inertia(self, added: float) -> None:
@@ -231,11 +231,11 @@ class Stretch(Span):
         )
         return Terms(*out)
 
-    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def friction_state(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction, (n,)."""
         return self._rubbing.state_at(crank_angle, speed, acceleration)
 
-    def accelerated(
+    def solve_acceleration(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and the resulting torque and heat, (n,)."""
@@ -251,7 +251,7 @@ class CrankEquation(Equation):
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
-        linkage = single(mechanism, linkage)
+        linkage = single_rotating_linkage(mechanism, linkage)
         self.rubs = mechanism.friction.acts
         if self.rubs:
             require_driving(mechanism.friction, linkage)
@@ -267,7 +267,7 @@ class CrankEquation(Equation):
             for column, power in _SPEED_POWERS.items():
                 if not load.inertial and load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
-        self.block = np.hstack([derived(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
+        self.block = np.hstack([derived_blocks(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
         self.dead_centres = np.asarray(linkage.dead_centre_angles)
         self.breakpoints = self._breakpoints(marks)
         self._stretches: dict[tuple[int, float], Stretch] = {}
@@ -305,11 +305,11 @@ class CrankEquation(Equation):
         d = design_at(self.block, _PUSH)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         m, mu = design_motion(sine, cosine, d), d.guide_friction
-        inertia: Array = np.minimum(*(least_inertia(sine, cosine, m, d, side) for side in (mu, -mu)))
+        inertia: Array = np.minimum(*(least_inertia_with_friction(sine, cosine, m, d, side) for side in (mu, -mu)))
         return inertia
 
     def height_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity, J, counted from the crank pivot; same shape as the crank angle."""
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
-        return np.asarray(height_energy(sine, cosine, design_motion(sine, cosine, d), d))
+        return np.asarray(gravity_potential_energy(sine, cosine, design_motion(sine, cosine, d), d))

@@ -71,7 +71,11 @@ def design_flywheel(
     speed = runner.speed if drive is None else runner.balanced_speed(drive)
 
     def run(flywheel: float) -> SteadyRunning:
-        return runner.constant(flywheel) if drive is None else runner.running_under(replace(drive, flywheel=flywheel))
+        return (
+            runner.under_constant_torque(flywheel)
+            if drive is None
+            else runner.running_under(replace(drive, flywheel=flywheel))
+        )
 
     @cache
     def surplus(flywheel: float) -> float:
@@ -82,7 +86,7 @@ def design_flywheel(
             delta = math.inf
         return (1.0 / delta if delta > 0.0 else math.inf) - 1.0 / fluctuation
 
-    estimate = runner.energy_change(speed) / (fluctuation * speed**2) if speed else 0.0
+    estimate = runner.energy_range_at_constant_speed(speed) / (fluctuation * speed**2) if speed else 0.0
     inertia = 0.0
     if not surplus(0.0) >= 0.0:
         if speed and not estimate:

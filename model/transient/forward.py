@@ -2,12 +2,12 @@
 
     J(theta) theta'' + J'(theta) theta'^2 / 2 + C(theta) + D(theta) theta' = T_motor(theta'),
 
-J includes the drive's inertia; with friction in the joints, `accelerated` gives the acceleration. The equation is
-integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving Ordinary
-Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch. No step crosses a dead centre at which a load
-changes, a knot of a table, or a standstill. The work of motor and loads, and the friction heat, are integrated with it.
-Where a guide force changes sides, the acceleration has a kink rather than a jump: the step-size control resolves it, as
-the energy balance confirms.
+J includes the drive's inertia; with friction in the joints, `solve_acceleration` gives the acceleration. The equation
+is integrated over time by an explicit Runge-Kutta method of order 8 (DOP853; Hairer, Norsett and Wanner, Solving
+Ordinary Differential Equations I, 2nd ed. 1993, II.5), stretch by stretch. No step crosses a dead centre at which a
+load changes, a knot of a table, or a standstill. The work of motor and loads, and the friction heat, are integrated
+with it. Where a guide force changes sides, the acceleration has a kink rather than a jump: the step-size control
+resolves it, as the energy balance confirms.
 
 At standstill the loads for both directions of rotation are evaluated. The crank starts in the direction in which motor
 and loads leave an accelerating torque. Otherwise it stands still for good, because motor and loads depend only on angle
@@ -100,7 +100,7 @@ def simulate(
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
     before, passed = math.nan, 0
     while True:
-        verdict = run.advance()
+        verdict = run.integrate_stretch()
         if progress is not None:
             progress(Progress(run.time, duration, (run.angle - start.angle) / TURN, run.speed))
         if verdict is None and run.at_mark:
@@ -176,12 +176,12 @@ class _Run:
             )
         if self.way < 0.0:
             self.index = (self.index - 1) % len(breakpoints)
-            self._lift(self.index == len(breakpoints) - 1)
+            self._count_from_previous_cycle(self.index == len(breakpoints) - 1)
 
     def result(self, verdict: Verdict) -> Transient:
         """Return the motion found so far, with a verdict."""
         self.recorder.add_single_state(
-            self._stretch(self.way or self.equation.direction), self.turn, self.time, self._y()
+            self._stretch(self.way or self.equation.direction), self.turn, self.time, self._state_vector()
         )
         return self.recorder.result(verdict, tuple(self.turned_back))
 
@@ -190,7 +190,7 @@ class _Run:
         """The crank angle, rad, including full turns."""
         return self.local + self.period * self.turn
 
-    def advance(self) -> Verdict | None:
+    def integrate_stretch(self) -> Verdict | None:
         """Integrate to the end of the stretch, to standstill or to the time limit, whichever comes first.
 
         Return why the motion ends, if it does.
@@ -205,7 +205,7 @@ class _Run:
         self.works = np.array(works)
         self.at_mark = False
         if stop == "edge":
-            self._pass_edge(stretch)
+            self._enter_next_stretch(stretch)
         elif stop == "standstill":
             self.speed, self.way, self.arrived = 0.0, 0.0, stretch.way
         else:
@@ -215,28 +215,28 @@ class _Run:
     def _stretch(self, way: float) -> Span:
         return self.equation.stretch(self.index, way)
 
-    def _y(self) -> Array:
+    def _state_vector(self) -> Array:
         return np.array([self.local, self.speed, *self.works])
 
-    def _lift(self, wrapped: bool) -> None:
+    def _count_from_previous_cycle(self, wrapped: bool) -> None:
         """Count the local angle from the previous cycle if the crank went back over the first breakpoint."""
         if wrapped:
             self.turn, self.local = self.turn - 1, self.local + self.period
 
-    def _pass_edge(self, stretch: Span) -> None:
+    def _enter_next_stretch(self, stretch: Span) -> None:
         count, forward = len(self.equation.breakpoints), self.way > 0.0
         edge = (self.index + forward) % count
         self.at_mark, self.at_cycle = edge in self.marks, edge == self.mark
         self.local, self.index = (stretch.high, edge) if forward else (stretch.low, (edge - 1) % count)
         if not forward:
-            self._lift(self.index == count - 1)
+            self._count_from_previous_cycle(self.index == count - 1)
         elif edge == 0:
             self.turn, self.local = self.turn + 1, float(self.equation.breakpoints[0])
 
     def _speed_scale(self, speed: float) -> float:
         """Return the reference speed for errors while the crank is slow, rad/s."""
         pull, resist = abs(float(self.drive.torque(0.0, self.equation.direction))), 0.0
-        for stretch in self.equation.turn(self.equation.direction):
+        for stretch in self.equation.spans_of_cycle(self.equation.direction):
             terms = stretch.terms_at(np.linspace(stretch.low, stretch.high, 9))
             pull = max(pull, float(np.abs(terms.static).max()))
             resist = max(resist, float(terms.inertia.max()) + self.drive.inertia)
@@ -262,7 +262,7 @@ class _Run:
             if not rubs:
                 return np.array([speed, acceleration, *works])
             pushed = np.array([torque]), added, np.array([acceleration])
-            rubbing, state = stretch.accelerated(angle, y[1:2].copy(), *pushed)
+            rubbing, state = stretch.solve_acceleration(angle, y[1:2].copy(), *pushed)
             return np.array([speed, rubbing[0], *works, state.heat[0]])
 
         events: list[Any] = [lambda _time, y: way * (y[0] - edge), lambda _time, y: way * y[1]]
@@ -274,7 +274,7 @@ class _Run:
         solution = solve_ivp(
             rate,
             (self.time, self.duration),
-            self._y(),
+            self._state_vector(),
             method="DOP853",
             rtol=self.tolerance,
             atol=self.tolerance * np.array([1e-2, 1e-2 * self.scale, *(1e-2 * energy for _ in self.works)]),
@@ -295,7 +295,7 @@ class _Run:
         """Return the torque that resists a start from standstill in the span's direction, N m."""
         at = np.array([local])
         if self.equation.rubs:
-            return float(stretch.with_friction(at, np.zeros(1), np.zeros(1)).torque[0])
+            return float(stretch.friction_state(at, np.zeros(1), np.zeros(1)).torque[0])
         return float(stretch.terms_at(at).static[0])
 
     def _leave_rest(self) -> Verdict | None:
@@ -320,5 +320,5 @@ class _Run:
             self.turned_back.append(self.time)
         if self.way < 0.0 and at_edge:
             self.index = before
-            self._lift(self.index == count - 1)
+            self._count_from_previous_cycle(self.index == count - 1)
         return None

@@ -27,12 +27,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.rubbing import Sides, joint_forces, touch
+from ..dynamics.rubbing import Sides, guide_side_function, joint_forces_with_optional_friction
 from ..dynamics.segments import Segment, load_on_slider
-from ..dynamics.torque import balance
+from ..dynamics.torque import balance_before_pin_force
 from ..errors import InputError
 from ..kernel.arithmetic import analytic, root
-from ..kernel.kernel import ComplexTable, Integers, Row, Table, seldom_kernel
+from ..kernel.kernel import ComplexTable, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import Motion
 from ..machine.design import Design, design_at
 from ..machine.raw import Loads
@@ -73,13 +73,13 @@ class FrictionState(NamedTuple):
 
 
 @analytic
-def least_inertia(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> Any:
+def least_inertia_with_friction(sine: Any, cosine: Any, m: Motion, push: Design, mu: Any) -> Any:
     """Return the minimum of dT/da, kg m^2, on one side of the guide, if friction does not lock the linkage.
 
     push: the design at speed 0 and acceleration 1, without gravity. mu: the guide's friction coefficient, or its
     negative.
     """
-    b = balance(sine, cosine, m, push, 0.0)
+    b = balance_before_pin_force(sine, cosine, m, push, 0.0)
     ax, ay = b.pull + b.rod_x, b.rod_y
     px, py = ax + b.crank_x, ay + b.crank_y
     pin, pivot = root(ax * ax + ay * ay), root(px * px + py * py)
@@ -157,7 +157,7 @@ def _friction_heat_per_angle(f: Any, m: Motion, d: Any) -> float:
     return float(pins + d.guide_friction.real * abs(f.guide.real * m.x_1.real))
 
 
-@seldom_kernel
+@rarely_used_kernel
 def _fill_friction_states(
     case: _SpanCase, angles: Row, speeds: Row, accelerations: Row, motor: _Motor, by_speed: bool, out: Table
 ) -> None:
@@ -173,8 +173,8 @@ def _fill_friction_states(
         theta, w, a = angles[i], speeds[i], accelerations[i]
         sine, cosine = math.sin(theta), math.cos(theta)
         still = design_motion(sine, cosine, unit)
-        least = least_inertia(sine, cosine, still, unit, mu)
-        least = min(least, least_inertia(sine, cosine, still, unit, -mu))
+        least = least_inertia_with_friction(sine, cosine, still, unit, mu)
+        least = min(least, least_inertia_with_friction(sine, cosine, still, unit, -mu))
         low, high, last, steps, derivative = -math.inf, math.inf, math.inf, 0, 0
         while True:
             stepped[_SPEED, 0] = complex(w, _STEP if derivative == 1 else 0.0)
@@ -182,10 +182,10 @@ def _fill_friction_states(
             d = design_at(stepped, 0)
             m = design_motion(sine, cosine, d)
             load = load_on_slider(m, d, theta, segment)
-            guide = touch(sine, cosine, m, d, load, senses.turn, senses.swing)
+            guide = guide_side_function(sine, cosine, m, d, load, senses.turn, senses.swing)
             press = -1.0 if guide.real > 0.0 else 1.0
             sides = Sides(senses.turn, senses.slide, senses.swing, press, senses.turn)
-            f = joint_forces(sine, cosine, m, d, load, sides)
+            f = joint_forces_with_optional_friction(sine, cosine, m, d, load, sides)
             torque = torque_without_crank_loads(f.torque, theta, senses.turn, segment)
             rate = torque.imag / _STEP
             out[1 + derivative, i] = rate

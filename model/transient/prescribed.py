@@ -91,7 +91,7 @@ class SpeedOverTime:
         return cls(_bounded_spline(spline, at), _bounded_spline(spline.derivative(), at), lambda t: start + turned(t))
 
 
-def over_angle(
+def prescribed_over_angle(
     mechanism: Mechanism,
     linkage: Linkage,
     motion: SpeedOverAngle,
@@ -125,7 +125,9 @@ def over_angle(
     return _prescribed_motion(mechanism, linkage, time, angle, speed, speed * slope)
 
 
-def over_time(mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike) -> PrescribedMotion:
+def prescribed_over_time(
+    mechanism: Mechanism, linkage: Linkage, motion: SpeedOverTime, times: ArrayLike
+) -> PrescribedMotion:
     """Return the motion at increasing times (n,), s.
 
     The loads follow the sign of the speed. If the speed is exactly zero, they follow the direction in which the crank

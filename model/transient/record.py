@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .equation import TURN, Equation, Span
@@ -67,7 +67,7 @@ class Transient:
         return float(self.angle[-1] - self.angle[0]) / TURN
 
     @property
-    def imbalance(self) -> float:
+    def energy_balance_error(self) -> float:
         """Maximum energy balance error, as a fraction of the maximum energy or work; 0 if all are 0.
 
         Kinetic energy gained + potential energy gained - (work of the motor - work done on the loads - friction heat).
@@ -105,7 +105,7 @@ class Recorder:
 
     def __init__(self, equation: Equation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int) -> None:
         self._equation, self._drive, self._samples = equation, drive, samples
-        self._linkage = single(mechanism, linkage)
+        self._linkage = single_rotating_linkage(mechanism, linkage)
         self._parts: list[Array] = []
 
     def add(self, stretch: Span, turn: int, solution: Any) -> None:
@@ -116,14 +116,14 @@ class Recorder:
             for start, end, inner in zip(solution.t[:-1], solution.t[1:], count, strict=True)
         ]
         time = np.append(np.concatenate(times), solution.t[-1])[1 if self._parts else 0 :]
-        self._take(stretch, turn, time, solution.sol(time))
+        self._append_points(stretch, turn, time, solution.sol(time))
 
     def add_single_state(self, stretch: Span, turn: int, time: float, y: Array) -> None:
         """Add a single state if there is no other."""
         if not self._parts:
-            self._take(stretch, turn, np.array([time]), y[:, None], moving=0.0)
+            self._append_points(stretch, turn, np.array([time]), y[:, None], moving=0.0)
 
-    def _take(self, stretch: Span, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
+    def _append_points(self, stretch: Span, turn: int, time: Array, y: Array, *, moving: float = 1.0) -> None:
         local, speed, motor_work, load_work, *heat = y
         terms, added = stretch.terms_at(np.ascontiguousarray(local)), self._drive.inertia
         direction = self._equation.direction
@@ -134,7 +134,7 @@ class Recorder:
         if self._equation.rubs:
             if moving:
                 motion = np.ascontiguousarray(local), np.ascontiguousarray(speed), motor, added
-                acceleration, _ = stretch.accelerated(*motion, acceleration)
+                acceleration, _ = stretch.solve_acceleration(*motion, acceleration)
             torque = motor - added * acceleration
         slider = self._linkage.at(local + self._equation.lead, speed=speed, acceleration=acceleration)
         self._parts.append(

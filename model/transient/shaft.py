@@ -12,10 +12,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from ..machine.members import Member, members
-from ..machine.two_turns import cycle_turns, half_at, halves
+from ..machine.members import Member, member_machines
+from ..machine.two_turns import cycle_turns, half_at, machines_of_both_turns
 from .equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 from .friction_torque import (
     ITERATIONS,
@@ -42,20 +42,20 @@ class ShaftStretch(Span):
         columns = zip(*((t.inertia, t.spin, t.static, t.drag, t.load, t.square) for t in terms), strict=True)
         return Terms(*(np.sum(column, axis=0) for column in columns))
 
-    def with_friction(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
+    def friction_state(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat with friction for all cylinders, (n,)."""
         return sum_cylinders(
-            [stretch.with_friction(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts]
+            [stretch.friction_state(crank_angle + lead, speed, acceleration) for stretch, lead in self._parts]
         )
 
-    def accelerated(
+    def solve_acceleration(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and the resulting torque and heat for all cylinders, (n,)."""
         accelerations, last = np.array(guess), math.inf
         low, high = np.full(accelerations.shape, -np.inf), np.full(accelerations.shape, np.inf)
         for _ in range(ITERATIONS):
-            state = self.with_friction(crank_angle, speed, accelerations)
+            state = self.friction_state(crank_angle, speed, accelerations)
             least = state.least + inertia
             require_inertia_left(crank_angle, least)
             excess = torque - inertia * accelerations - state.torque
@@ -77,17 +77,17 @@ class ShaftEquation(Equation):
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
-        self._linkage = single(mechanism, linkage)
+        self._linkage = single_rotating_linkage(mechanism, linkage)
         turns = cycle_turns(mechanism)
         self.period = turns * TURN
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.rubs = mechanism.friction.acts
         only_member = Member(mechanism, 0.0, 0.0, 0.0)
-        self._members = (only_member,) if mechanism.arrangement is None else members(mechanism)
+        self._members = (only_member,) if mechanism.arrangement is None else member_machines(mechanism)
         self._equations = [
             [
                 CrankEquation(half, self._linkage)
-                for half in (halves(member.mechanism) if turns > 1 else (member.mechanism,))
+                for half in (machines_of_both_turns(member.mechanism) if turns > 1 else (member.mechanism,))
             ]
             for member in self._members
         ]

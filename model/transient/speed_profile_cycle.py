@@ -18,12 +18,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.crank_speed import crank_speed, speed_knots
+from ..cycle.crank_speed import crank_speed_and_acceleration, speed_knots
 from ..cycle.cycle import Cycle, breakpoints, cycle
 from ..cycle.shaking import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single
+from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turns import TURN, cycle_turns
 from ..signals.first_greatest import angle_in_cycle
@@ -90,7 +90,9 @@ def speed_profile_curves(
     mechanism: Mechanism, linkage: Linkage, crank_angle: Array, motion: CrankMotion | None = None
 ) -> SpeedProfileCurves:
     """Return the curves of one fully rotating linkage at crank angles (n,), rad. motion: replaces the machine's."""
-    speed, acceleration = crank_speed(mechanism, crank_angle) if motion is None else motion.speed_at(crank_angle)
+    speed, acceleration = (
+        crank_speed_and_acceleration(mechanism, crank_angle) if motion is None else motion.speed_at(crank_angle)
+    )
     curves = cycle(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     shaken = shaking_curves(mechanism, linkage, crank_angle, speed=speed, acceleration=acceleration)
     named = {
@@ -114,7 +116,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     motion: crank motion that replaces the machine's own, in its direction. Raises `InputError` for a machine at rest or
     under a constant acceleration, and if friction locks the linkage.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     if not mechanism.speed or (mechanism.acceleration and mechanism.speed_profile is None):
         raise InputError(
             f"a repeating turn must have a speed and no constant acceleration; got {mechanism.speed:g} rad/s and "

@@ -9,12 +9,12 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..machine.dissipation import works_over_a_turn
+from ..machine.dissipation import may_do_work_over_a_turn
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from ..quadrature import WEIGHTS
 from .balanced import balanced_speed
-from .energy_integral import coasting, cut_at_energy_minima, refine_at_energy_minima
+from .energy_integral import cut_at_energy_minima, refine_at_energy_minima, turn_by_energy_integral
 from .equation import TURN
 from .forward import drive_of
 from .shaft import equation_of
@@ -66,13 +66,13 @@ class Runner:
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
         self.viscous = self.turn.speed_dependent
-        self.works = works_over_a_turn(replace(mechanism, acceleration=0.0))
+        self.works = may_do_work_over_a_turn(replace(mechanism, acceleration=0.0))
 
     def running_under(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
         self.equation.require_inertia(drive.inertia)
         motor, guess = self._motor(drive), self.balanced_speed(drive)
-        solved = self.turn.resolved(motor, drive.inertia, lambda turn: turn.even(guess))
+        solved = self.turn.solve_on_fine_panels(motor, drive.inertia, lambda turn: turn.constant_speed_guess(guess))
         if solved is None or not solved[1].memory < 1.0:
             raise InputError(
                 f"steady running needs a crank that completes every turn; got none near {guess:.6g} rad/s, where "
@@ -87,26 +87,26 @@ class Runner:
             )
         return running
 
-    def constant(self, inertia: float) -> SteadyRunning:
+    def under_constant_torque(self, inertia: float) -> SteadyRunning:
         """Return the steady running under the constant torque that maintains the mechanism's speed as the mean.
 
         inertia: inertia of flywheel and motor at the crank, kg m^2. The torque is `motor_torque[0]` of the result.
-        Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `speeds`).
+        Raises `InputError` if the mechanism has no speed, or the crank nearly stops (see `least_and_greatest_speed`).
         """
         if not self.speed:
             raise InputError("finding a constant torque needs the mean speed; got none; add it")
         self.equation.require_inertia(inertia)
 
         def guess(turn: PeriodicTurn) -> Guess | None:
-            coast = coasting(turn, inertia, self.speed)
+            coast = turn_by_energy_integral(turn, inertia, self.speed)
             if coast.guess is None or coast.stops:
-                return turn.even(self.speed) if self.viscous else None
+                return turn.constant_speed_guess(self.speed) if self.viscous else None
             return coast.guess
 
         turn, solved = self.turn, None
         for finer in (cut_at_energy_minima, refine_at_energy_minima):
-            turn = finer(turn, coasting(turn, inertia, self.speed).load)
-            solved = turn.resolved(_no_motor, inertia, guess, mean_speed=self.speed)
+            turn = finer(turn, turn_by_energy_integral(turn, inertia, self.speed).load)
+            solved = turn.solve_on_fine_panels(_no_motor, inertia, guess, mean_speed=self.speed)
             if solved is not None:
                 break
         else:
@@ -119,23 +119,25 @@ class Runner:
             profile = replace(profile, added=0.0)
         return _steady_result(turn, profile, _no_motor, inertia)
 
-    def speeds(self, inertia: float) -> tuple[float, float]:
+    def least_and_greatest_speed(self, inertia: float) -> tuple[float, float]:
         """Return the minimum and maximum speed, rad/s, under the constant torque that maintains the mean speed.
 
-        The minimum speed is 0 if the crank nearly stops: below a millionth of the maximum. inertia: see `constant`.
-        Raises `InputError` if the inertia is zero at some crank angle, so that speeds are undefined, or if no steady
-        running is found with viscous loads or friction.
+        The minimum speed is 0 if the crank nearly stops: below a millionth of the maximum. inertia: see
+        `under_constant_torque`. Raises `InputError` if the inertia is zero at some crank angle, so that speeds are
+        undefined, or if no steady running is found with viscous loads or friction.
         """
         self.equation.require_inertia(inertia)
         try:
-            running = self.constant(inertia)
+            running = self.under_constant_torque(inertia)
         except InputError:
-            turn = cut_at_energy_minima(self.turn, coasting(self.turn, inertia, self.speed).load)
-            coast = coasting(turn, inertia, self.speed)
+            turn = cut_at_energy_minima(self.turn, turn_by_energy_integral(self.turn, inertia, self.speed).load)
+            coast = turn_by_energy_integral(turn, inertia, self.speed)
             if self.viscous or coast.guess is None or not coast.stops:
                 raise
             energy, start, added = coast.guess
-            rate = turn.rate(energy, _no_motor, inertia)[0] + added / (turn.terms.inertia + inertia)
+            rate = turn.energy_slope_and_derivative(energy, _no_motor, inertia)[0] + added / (
+                turn.terms.inertia + inertia
+            )
             stopping = _steady_result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
             return 0.0, float(np.abs(stopping.speed).max())
         return float(np.abs(running.speed).min()), float(np.abs(running.speed).max())
@@ -148,9 +150,9 @@ class Runner:
         """
         return balanced_speed(self.turn, drive, self._motor(drive), self.speed)
 
-    def energy_change(self, speed: float) -> float:
+    def energy_range_at_constant_speed(self, speed: float) -> float:
         """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: magnitude, rad/s."""
-        turn, pace = self.turn.rubbing_at(speed), np.array(self.turn.way * speed)
+        turn, pace = self.turn.with_panels_at_contact_changes(speed), np.array(self.turn.way * speed)
         torque = turn.terms.torque(pace, 0.0) + turn.friction(pace, 0.0)
         starts, nodes = turn.integral(turn.mean(torque) - torque)
         change = float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))

@@ -27,10 +27,10 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array, Mask
-from ..dynamics.segments import crowded, crowding, uncrowded
+from ..dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ..errors import InputError
-from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, NODES, WEIGHTS, resolved_tail
-from .contacts import contacts
+from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, NODES, WEIGHTS, last_coefficients_magnitude
+from .contacts import guide_side_changes
 from .equation import TURN, Equation, Span, Terms
 
 _PANELS = 40
@@ -91,14 +91,14 @@ class PeriodicTurn:
     ) -> None:
         self.equation, self.dimensions, self.cuts, self.contacts = equation, dimensions, cuts, contacts
         self.way = equation.direction
-        kappa = crowding(*dimensions) if equation.crowds else 1.0
+        kappa = crowding_parameter(*dimensions) if equation.crowds else 1.0
         low, width, angle, terms = [], [], [], []
         self.spans: list[tuple[Span, slice]] = []
         passed = 0
-        for stretch in equation.turn(self.way):
-            first, last = crowded(stretch.low, kappa), crowded(stretch.high, kappa)
+        for stretch in equation.spans_of_cycle(self.way):
+            first, last = crowded_from_crank_angle(stretch.low, kappa), crowded_from_crank_angle(stretch.high, kappa)
             count = max(2, math.ceil(_PANELS * (last - first) / TURN))
-            ends = np.array([uncrowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
+            ends = np.array([crank_angle_from_crowded(tau, kappa) for tau in np.linspace(first, last, count + 1)])
             ends[0], ends[-1] = stretch.low, stretch.high
             ends = np.union1d(ends, [cut for cut in cuts if stretch.low < cut < stretch.high])
             for contact in contacts:
@@ -149,16 +149,18 @@ class PeriodicTurn:
         integral = float(self.width[panel]) * _legendre_sum(INTEGRATED @ series, x)
         return _legendre_sum(series, x), integral
 
-    def rate(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
+    def energy_slope_and_derivative(self, energy: Array, motor: Torque, inertia: float) -> tuple[Array, Array]:
         """Return dE / d(theta) and its derivative with respect to E."""
         t, speed = self.terms, self.way * np.sqrt(2.0 * energy)
         torque, slope = motor(speed)
         total = t.inertia + inertia
         return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
 
-    def rates(self, energy: Array, motor: Torque, inertia: float, added: float) -> tuple[Array, Array, Array]:
+    def energy_slope_and_derivatives(
+        self, energy: Array, motor: Torque, inertia: float, added: float
+    ) -> tuple[Array, Array, Array]:
         """Return dE / d(theta) with the torque `added`, N m, and its derivatives with respect to both."""
-        rate, by_energy = self.rate(energy, motor, inertia)
+        rate, by_energy = self.energy_slope_and_derivative(energy, motor, inertia)
         by_torque = 1.0 / (self.terms.inertia + inertia)
         rate = rate + added * by_torque
         if self.equation.rubs:
@@ -168,7 +170,7 @@ class PeriodicTurn:
                 angles, speeds, torques, guess = (
                     values[panels].ravel() for values in (self.angle, speed, torque + added, rate)
                 )
-                accelerations, state = span.accelerated(angles, speeds, torques, inertia, guess, by_speed=True)
+                accelerations, state = span.solve_acceleration(angles, speeds, torques, inertia, guess, by_speed=True)
                 share = 1.0 / (state.by_acceleration + inertia)
                 by_speed = (slope[panels].ravel() - state.by_speed) * share
                 for column, values in ((rate, accelerations), (by_torque, share), (by_energy, by_speed / speeds)):
@@ -187,24 +189,28 @@ class PeriodicTurn:
             return torque
         speed, rate = np.broadcast_to(speed, torque.shape), np.broadcast_to(rate, torque.shape)
         for span, panels in self.spans:
-            state = span.with_friction(*(values[panels].ravel() for values in (self.angle, speed, rate)))
+            state = span.friction_state(*(values[panels].ravel() for values in (self.angle, speed, rate)))
             torque[panels] = state.torque.reshape(torque[panels].shape)
         frictionless: Array = self.terms.torque(speed, rate)
         return torque - frictionless
 
-    def rubbing_at(self, speed: float) -> PeriodicTurn:
+    def with_panels_at_contact_changes(self, speed: float) -> PeriodicTurn:
         """Return the turn with panels that end where guides change sides at a constant speed.
 
         speed: its magnitude, rad/s.
         """
-        energy, start, rate = self.even(speed)
-        return (self.moved(energy, start, np.full(energy.shape, rate)) if self.equation.rubs else None) or self
+        energy, start, rate = self.constant_speed_guess(speed)
+        return (
+            self.panels_moved_to_contact_changes(energy, start, np.full(energy.shape, rate))
+            if self.equation.rubs
+            else None
+        ) or self
 
-    def even(self, speed: float) -> Guess:
+    def constant_speed_guess(self, speed: float) -> Guess:
         """Return the first guess: a constant speed of this magnitude, rad/s."""
         return np.full(self.angle.shape, 0.5 * speed**2), np.full(len(self.width), 0.5 * speed**2), 0.0
 
-    def resolved(
+    def solve_on_fine_panels(
         self,
         motor: Torque,
         inertia: float,
@@ -223,7 +229,11 @@ class PeriodicTurn:
             profile = None if first is None else turn.solve(motor, inertia, first, mean_speed=mean_speed)
             if profile is None:
                 return None
-            if moves and (moved := turn.moved(profile.energy, profile.start, profile.rate)) is not None:
+            if (
+                moves
+                and (moved := turn.panels_moved_to_contact_changes(profile.energy, profile.start, profile.rate))
+                is not None
+            ):
                 turn, moves = moved, moves - 1
                 continue
             rough = turn._rough(1.0 / np.sqrt(profile.energy)) | turn._rough(profile.rate)
@@ -244,7 +254,7 @@ class PeriodicTurn:
         cuts = (*self.cuts, *(float(angle) for angle in angles))
         return PeriodicTurn(self.equation, self.dimensions, cuts, self.contacts)
 
-    def moved(self, energy: Array, start: Array, rate: Array) -> PeriodicTurn | None:
+    def panels_moved_to_contact_changes(self, energy: Array, start: Array, rate: Array) -> PeriodicTurn | None:
         """Return the turn with panels that end where guides change sides during a motion; None if they already do.
 
         energy, rate: E and its derivative at the nodes. start: E at the panels' starts.
@@ -263,7 +273,7 @@ class PeriodicTurn:
             speeds = np.concatenate([[first], self.way * np.sqrt(2.0 * energy[panels].ravel()), [last]])
             rates = np.concatenate([[first_rate], rate[panels].ravel(), [last_rate]])
             angles = np.concatenate([edges[:1], self.angle[panels].ravel(), edges[1:]])
-            contacts_found += contacts(span, motion, angles, speeds, rates)
+            contacts_found += guide_side_changes(span, motion, angles, speeds, rates)
         contacts_found.sort()
         contacts_before = self.contacts
         if (
@@ -275,7 +285,7 @@ class PeriodicTurn:
 
     def _rough(self, values: Array) -> Mask:
         """Return the panels (panels,) on which neither the values nor their integral are resolved."""
-        tail, size, width = resolved_tail(values), np.abs(values), np.abs(self.width)
+        tail, size, width = last_coefficients_magnitude(values), np.abs(values), np.abs(self.width)
         negligible = tail * width <= _NEGLIGIBLE * float(width @ (size @ WEIGHTS))
         return np.asarray(~((tail <= _RESOLVED * size.max()) | negligible))
 
@@ -288,7 +298,7 @@ class PeriodicTurn:
         energy, start, added = guess
         last = math.inf
         for _ in range(_STEPS):
-            rate, by_energy, by_torque = self.rates(energy, motor, inertia, added)
+            rate, by_energy, by_torque = self.energy_slope_and_derivatives(energy, motor, inertia, added)
             system = np.eye(DEGREE + 1) - self.width[:, None, None] * INTEGRALS * by_energy[:, None, :]
             integrals = self.width[:, None] * (np.stack([rate, by_torque]) @ INTEGRALS.T)
             sides = np.stack([start[:, None] + integrals[0] - energy, np.ones(energy.shape), integrals[1]], axis=-1)
@@ -318,7 +328,7 @@ class PeriodicTurn:
             energy, start, added = energy + share * step, start + share * starts, added + share * torque_change
             size = float(np.abs(step).max() / energy.max())
             if share == 1.0 and size < 1e-8 and (size < _EXACT or size >= 0.5 * last):
-                rate = self.rates(energy, motor, inertia, added)[0]
+                rate = self.energy_slope_and_derivatives(energy, motor, inertia, added)[0]
                 return Profile(energy, start, rate, added, float(memory))
             last = size
         return None

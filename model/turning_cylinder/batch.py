@@ -9,13 +9,13 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
-from ..machine.derived import derived
+from ..machine.derived import derived_blocks
 from ..machine.design import Design
 from ..machine.lever_cylinder import buckling_number, piston_areas
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.numbers import LEVER, START, Numbers, numbers_of
-from ..machine.raw import fullest_inputs
+from ..machine.numbers import LEVER, START, Numbers, raw_numbers_of_designs
+from ..machine.raw import raw_inputs_with_all_features
 from ..machine.varying import number_at
 from ..swing.swing import Swing
 from .peaks import LeverBatch
@@ -31,11 +31,11 @@ def lever_batch(
     mechanism: Mechanism, designs: Array, /, swing: Swing, *, gradients: bool
 ) -> tuple[LeverBatch, Numbers]:
     """Return levers of designs (n, 3 + k), and the raw numbers that these set. gradients: whether to step each."""
-    raw, loads = fullest_inputs(mechanism)
-    numbers = numbers_of(mechanism, designs, limit=10**9, gradients=gradients)
+    raw, loads = raw_inputs_with_all_features(mechanism)
+    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=gradients)
     inside = np.flatnonzero(numbers.columns < len(raw))
     values = np.ascontiguousarray(numbers.values[:, inside])
-    blocks, steps = derived(raw, loads, numbers.columns[inside], values, steps=gradients)
+    blocks, steps = derived_blocks(raw, loads, numbers.columns[inside], values, steps=gradients)
     own = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
     plain = _lever_numbers(mechanism, swing, blocks[:, :, 0], own)
     stepped = []

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ..cycle.cycle import design_of
+from ..cycle.cycle import derived_design
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from ..swing.swing import Swing, started
+from ..swing.swing import Swing, with_start_of_machine
 from .forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from .lever import DimensionErrors, TurningCylinder
 
@@ -26,7 +26,7 @@ def lever_sizes(mechanism: Mechanism, linkage: Linkage) -> TurningCylinder:
 
 def lever_swing(mechanism: Mechanism, swing: Swing) -> LeverSwing:
     """Return the swing of the lever of a design."""
-    placed = started(mechanism, swing)
+    placed = with_start_of_machine(mechanism, swing)
     if placed.law == "table":
         raise InputError("the law of a lever's swing has a name; got a table; name a law such as cycloidal")
     return LeverSwing(placed.start, placed.end, placed.law, placed.duration)
@@ -46,7 +46,7 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     """Return the lever of one design with its masses, and its tolerances."""
     assert mechanism.lever is not None
     design, sizes, placed = (
-        design_of(mechanism, linkage),
+        derived_design(mechanism, linkage),
         lever_sizes(mechanism, linkage),
         lever_swing(mechanism, swing),
     )

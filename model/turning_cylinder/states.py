@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..swing.law import NO_TABLE, code_of, way_at
+from ..swing.law import NO_TABLE, code_of, travel_and_derivatives_at
 from ..swing.swing_types import LeverLaw
 from .lever import Motion, angle_error_at, cylinder_length, lever_angle_at, motion_at
 
@@ -104,7 +104,7 @@ def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> Lever
     """
     first, last = c.ends
     travel = last - first
-    s, s_1, s_2, _ = way_at(code_of(law), NO_TABLE, share, probe)
+    s, s_1, s_2, _ = travel_and_derivatives_at(code_of(law), NO_TABLE, share, probe)
     angle = lever_angle_at(c, first + travel * s, c.middle)
     motion = motion_at(c, angle)
     speed, acceleration = travel * s_1 * c.rate, travel * s_2 * c.rate * c.rate

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from ...model.errors import InputError
 from ..kinds import ANGLE, Kind
-from ..units import Dimension, base_unit, dimension_of, dimension_of_kind, kind_with
+from ..units import Dimension, dimension_of, dimension_of_kind, kind_with, unit_of_base_dimension
 from .expression import ANGLES, INVERSES, Node, Number, Text, fold
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
@@ -43,7 +43,7 @@ def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
             f"the unit of a formula's value must have whole powers, at most {_LARGEST}; got {part.text} in "
-            f"{_unit(part.powers)}; raise it to a power that leaves such a unit"
+            f"{_unit_symbol(part.powers)}; raise it to a power that leaves such a unit"
         )
     return _kind_of_powers(part.powers)
 
@@ -69,7 +69,8 @@ class _Dimensions:
             for item in arguments[1:]:
                 if not _may_be_added(first.powers, item.powers):
                     raise InputError(
-                        f"{text} {_SAID[function]} {_unit(first.powers)} and {_unit(item.powers)}; only values of "
+                        f"{text} {_SAID[function]} {_unit_symbol(first.powers)} and {_unit_symbol(item.powers)}; "
+                        "only values of "
                         "one kind can be combined; correct the names, or give numbers their units"
                     )
             return _Part(first.powers, written, _constant_exponent(function, arguments))
@@ -90,14 +91,16 @@ class _Dimensions:
         if function in ANGLES:
             if not _may_be_added(first.powers, _powers_of(dimension_of(ANGLE.unit))):
                 raise InputError(
-                    f"{function} needs an angle; got {text} of {_unit(first.powers)}; give a number its unit, 30 "
+                    f"{function} needs an angle; got {text} of {_unit_symbol(first.powers)}; "
+                    "give a number its unit, 30 "
                     "deg, or multiply a ratio by 1 rad"
                 )
             return _Part({}, written)
         if function in INVERSES:
             if not first.plain:
                 raise InputError(
-                    f"{function} needs a ratio; got {text} of {_unit(first.powers)}; divide by a value of the same kind"
+                    f"{function} needs a ratio; got {text} of {_unit_symbol(first.powers)}; "
+                    "divide by a value of the same kind"
                 )
             return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
         return _Part(first.powers, written, _constant_exponent(function, arguments))  # neg, abs
@@ -106,14 +109,15 @@ class _Dimensions:
 def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     if not exponent.plain:
         raise InputError(
-            f"an exponent must be a ratio; got {text} with one in {_unit(exponent.powers)}; divide it by a "
+            f"an exponent must be a ratio; got {text} with one in {_unit_symbol(exponent.powers)}; divide it by a "
             "value of the same kind"
         )
     if base.plain:
         return {}
     if exponent.value is None:
         raise InputError(
-            f"a value with a unit may only be raised to a plain number; got {text} of {_unit(base.powers)}; write "
+            f"a value with a unit may only be raised to a plain number; got {text} of {_unit_symbol(base.powers)}; "
+            "write "
             "the exponent as a number, or divide the base by a value of the same kind"
         )
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
@@ -150,9 +154,9 @@ def _kind_of_powers(powers: Powers) -> Kind:
     return kind_with(frozenset((base, int(power)) for base, power in _without_angle_of_arc(powers).items()))
 
 
-def _unit(powers: Powers) -> str:
+def _unit_symbol(powers: Powers) -> str:
     """Return the display unit for values with a dimension."""
     significant = _without_angle_of_arc(powers)
     if all(power.denominator == 1 and abs(power) <= _LARGEST for power in significant.values()):
         return _kind_of_powers(significant).metric.symbol or "no unit"
-    return " ".join(f"{base_unit(base)}^{power}" for base, power in sorted(significant.items()))
+    return " ".join(f"{unit_of_base_dimension(base)}^{power}" for base, power in sorted(significant.items()))

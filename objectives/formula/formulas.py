@@ -17,12 +17,22 @@ from ..bounds import LengthRanges as Box
 from ..kinds import LENGTH, Kind, kind_in
 from ..quantity import Quantity
 from ..registry import FACTS, QUANTITIES, listed
-from ..units import closest, dimension_of, is_value, kind_for, kind_of, number_in_si, per_si, quote, to_si
+from ..units import (
+    closest,
+    dimension_of,
+    is_value,
+    kind_of_any_unit,
+    kind_of_symbol,
+    number_in_si,
+    quote,
+    to_si,
+    value_of_one_si_unit_in,
+)
 from .dimensions import kind_of_formula
 from .expression import ARGUMENTS, Name, Node, names_in, text_of
 from .linear import Linear, linear_of, unknown
 from .parser import parse
-from .quantity import FormulaQuantity, key_of, leaves_of
+from .quantity import FormulaQuantity, column_key_of_formula, leaves_of
 from .ranges import FormulaBounds, Interval
 
 ROOTS = ("mechanism", "cylinder", "load", "friction", "drive", "tolerances", "sections", "motion")
@@ -73,11 +83,12 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
         return False
     known_names = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
     return any(
-        word in known_names or "." in word or (len(word) > 3 and closest(word, known_names)) for word in words_of(text)
+        word in known_names or "." in word or (len(word) > 3 and closest(word, known_names))
+        for word in identifiers_in(text)
     )
 
 
-def words_of(text: object) -> list[str]:
+def identifiers_in(text: object) -> list[str]:
     """Return the words in a formula, names and units; empty for anything but a text."""
     return _WORD.findall(text) if isinstance(text, str) else []
 
@@ -139,7 +150,7 @@ class Formulas:
         self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in custom}
         self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
         self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
-        self._kinds |= {item.name: kind_of(unit_of(item.paths[0])) for item in machine.varying}
+        self._kinds |= {item.name: kind_of_symbol(unit_of(item.paths[0])) for item in machine.varying}
         self._has_ranges = ranges is not None
         self._intervals = {name: Interval(ends.lower, ends.upper) for name, ends in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
@@ -184,7 +195,7 @@ class Formulas:
             return self._resolve_name(node.name, node.name)
         name = text_of(node)
         if name not in self.formula_quantities:
-            self.formula_quantities[name] = self._quantity(node, name, title=name, key=key_of(name))
+            self.formula_quantities[name] = self._quantity(node, name, title=name, key=column_key_of_formula(name))
         return self.formula_quantities[name]
 
     def _resolve_named(self, name: str) -> FormulaQuantity:
@@ -217,7 +228,7 @@ class Formulas:
                 f"quantity.{name}.unit: a formula must be shown in a unit of its kind; got {quote(unit)} for "
                 f'{formula.kind.name}; write it like "{formula.kind.metric.symbol}", or leave it out'
             )
-        kind = kind_in(unit, per_si(unit), kind_for(unit))
+        kind = kind_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit))
         return self._quantity(node, formula.name, title=formula.title, key=formula.key, kind=kind)
 
     def _quantity(self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None) -> FormulaQuantity:
@@ -250,7 +261,7 @@ class Formulas:
             parts=parts,
             dimensions=tuple(item for item in names if item in DIMENSIONS),
             varying=tuple(item for item in self._machine.varying if item.name in names),
-            signs=tuple((item, sign) for item in names if item in self._places and (sign := self._sign(item))),
+            signs=tuple((item, sign) for item in names if item in self._places and (sign := self._known_sign_of(item))),
         )
 
     def _bounds_of_formula(self, node: Node, parts: tuple[Quantity, ...]) -> Interval:
@@ -261,10 +272,10 @@ class Formulas:
                 self._intervals[part.name] = self._interval(part)
                 self._linears.setdefault(part.name, None)
         linears = self._linears if self._turning else dict.fromkeys(self._linears)
-        off_zero = {name: self._zero_remedy(name) for name in names_in(node)}
+        off_zero = {name: self._remedy_for_zero(name) for name in names_in(node)}
         return FormulaBounds(self._intervals, linears, off_zero).bounds(node)
 
-    def _sign(self, name: str) -> int:
+    def _known_sign_of(self, name: str) -> int:
         interval = self._intervals.get(name, Interval(-1.0, 1.0))
         return 1 if interval.lower >= 0.0 else -1 if interval.upper <= 0.0 else 0
 
@@ -292,7 +303,7 @@ class Formulas:
         lower, upper = length_bounds.compute(Box(crank.lower, crank.upper, rod.lower, rod.upper, least, sizes[1]))
         return Interval(lower, upper, sign_interval.excludes_zero)
 
-    def _zero_remedy(self, name: str) -> str:
+    def _remedy_for_zero(self, name: str) -> str:
         """Return advice on how to keep a number away from zero."""
         if name in self._places:
             interval = self._intervals[name]

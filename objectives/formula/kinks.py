@@ -83,7 +83,7 @@ class TwoSided:
     from_below: Side
     sign: int = 0
 
-    def side_for(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
+    def side_seen_by_function(self, slope: Array, known_sign: int, *, from_above: bool) -> Side:
         """Return the side that a function uses, from above or below.
 
         slope: (n,), derivative of the function with respect to this part. known_sign: sign of the slope if known, else
@@ -97,7 +97,7 @@ class TwoSided:
         return same if width == 1 else _choose_side(slope >= 0.0, same.padded(width), swapped.padded(width))
 
 
-def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
+def two_sided_pieces(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     """Return a quantity's pieces from both sides. factor: label factor, which makes the labels of sums distinct."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
@@ -105,7 +105,7 @@ def two_sided(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     side = Side(ordered.values, ordered.gradients, factor * ordered.labels, np.isfinite(ordered.values))
     if pieces.opposite is None:
         return TwoSided(side.active, side, sign) if least else TwoSided(side, side.active, sign)
-    opposite = two_sided(pieces.opposite, factor, sign)
+    opposite = two_sided_pieces(pieces.opposite, factor, sign)
     return TwoSided(opposite.from_above, side, sign) if least else TwoSided(side, opposite.from_below, sign)
 
 
@@ -138,7 +138,7 @@ class Kinks:
         sides = []
         for from_above in (True, False):
             argument_sides = [
-                item.side_for(slope, up, from_above=from_above)
+                item.side_seen_by_function(slope, up, from_above=from_above)
                 for item, slope, up in zip(arguments, slopes, signs, strict=True)
             ]
             sides.append(_combine_pieces(function, argument_sides).ordered(from_above=from_above))

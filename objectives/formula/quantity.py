@@ -17,7 +17,7 @@ from ...model.machine.varying import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, fold
-from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided
+from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided_pieces
 from .linear import Linear, linear_of, unknown
 from .slopes import Slopes
 
@@ -100,7 +100,7 @@ class FormulaQuantity(Quantity):
         """
         n, d = dimensions.shape
         leaves = dict(part_values)
-        for name, values, place in self._numbers(mechanism, dimensions):
+        for name, values, place in self._values_of_numbers(mechanism, dimensions):
             leaves[name] = Values(values, _unit_gradient(n, d, place) if gradients else None)
         with np.errstate(all="ignore"):
             return fold(self.expression, Slopes(leaves, n, d, gradients))
@@ -129,16 +129,16 @@ class FormulaQuantity(Quantity):
         n, d = dimensions.shape
         leaves: dict[str, TwoSided] = {}
         for place, part in enumerate(self.parts):
-            leaves[part.name] = two_sided(
+            leaves[part.name] = two_sided_pieces(
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
-        for name, values, column in self._numbers(mechanism, dimensions):
+        for name, values, column in self._values_of_numbers(mechanism, dimensions):
             piece = smooth(values, _unit_gradient(n, d, column))
             leaves[name] = TwoSided(piece, piece, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
             return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
 
-    def _numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
+    def _values_of_numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
         """Yield the name, values (n,) and column of each dimension and variable; a fixed number has no column."""
         for name in self.dimensions:
             place = DIMENSIONS.index(name)
@@ -204,7 +204,7 @@ def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
     return tuple(dict(leaf_items(quantities)).values())
 
 
-def with_formulas(
+def values_with_formulas(
     quantities: Sequence[Quantity],
     leaf_values: Mapping[str, Values],
     mechanism: Mechanism,
@@ -227,7 +227,7 @@ def with_formulas(
     return [value(item) for item in quantities]
 
 
-def key_of(text: str) -> str:
+def column_key_of_formula(text: str) -> str:
     """Return the first part of a formula's column name: "offset_minus_crank"."""
     spaced = re.sub(r"\*\*|(?<=[\w)]) [-+*/] (?=.)", lambda sign: f" {_WORDS[sign[0].strip()]} ", text)
     key = re.sub("[^a-z0-9]+", "_", spaced.lower().replace("-", " minus ")).strip("_")

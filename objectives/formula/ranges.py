@@ -91,7 +91,7 @@ class FormulaBounds:
             if name not in _TURNING:
                 ends = [factor * end for end in (self.intervals[name].lower, self.intervals[name].upper)]
                 least, greatest = least + min(ends), greatest + max(ends)
-        values = [(_sum_of(factors, corner), corner.edge) for corner in self._corners()]
+        values = [(_sum_of(factors, corner), corner.edge) for corner in self._range_corners()]
         if not values:
             return ANY
         low, high = min(value for value, _ in values), max(value for value, _ in values)
@@ -111,7 +111,7 @@ class FormulaBounds:
         tops, bottoms = (
             {name: float(factor) for name, factor in linear.factors} for linear in (numerator, denominator)
         )
-        corners = self._corners()
+        corners = self._range_corners()
         divisors = [_sum_of(bottoms, corner) + float(denominator.constant) for corner in corners]
         if not divisors or not (min(divisors) > 0.0 or max(divisors) < 0.0):
             return ANY
@@ -127,7 +127,7 @@ class FormulaBounds:
             high = math.nextafter(high, -math.inf)
         return Interval(low, high) if low <= high else ANY
 
-    def _corners(self) -> list[_Corner]:
+    def _range_corners(self) -> list[_Corner]:
         """Return the corners of the fully rotating part of the ranges, for both signs of the offset."""
         crank, rod, offset = (self.intervals[name] for name in ("crank", "rod", "offset"))
         corners = []

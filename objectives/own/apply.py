@@ -45,7 +45,7 @@ class FunctionResult:
     angles: Array | None
 
 
-def apply(
+def call_function(
     function: Function,
     mechanism: Mechanism,
     dimensions: Array,
@@ -67,12 +67,12 @@ def apply(
         with np.errstate(all="ignore"):
             returned = np.asanyarray(function(make(mechanism, designs)))
     except InputError as error:  # for an attribute that this machine's designs do not have
-        raise Refused(f"is not available for this machine: {error}{place(error, function)}") from None
+        raise Refused(f"is not available for this machine: {error}{error_location(error, function)}") from None
     except BaseException as error:  # noqa: BLE001 - whatever it raises is what it did wrong
         kind = f"in complex numbers, for the gradient, {type(error).__name__}" if column is not None else ""
         remedy = _NOT_COMPLEX if column is not None and isinstance(error, TypeError) else "correct the function"
         error_text = f"{kind or type(error).__name__}: {error}".rstrip(": ")
-        raise Refused(f"must not raise; got {error_text}{place(error, function)}; {remedy}") from None
+        raise Refused(f"must not raise; got {error_text}{error_location(error, function)}; {remedy}") from None
     return _checked_result(returned, dimensions, column)
 
 
@@ -82,7 +82,7 @@ _NOT_COMPLEX = (
 )
 
 
-def place(error: BaseException, function: Callable[..., Any]) -> str:
+def error_location(error: BaseException, function: Callable[..., Any]) -> str:
     """Return where an error was raised: the last line in the function's own file, else in the traceback."""
     frames = traceback.extract_tb(error.__traceback__)
     source_file = getattr(getattr(function, "__code__", None), "co_filename", "")

@@ -22,7 +22,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.complex_forces import complex_joint_forces
-from .apply import Function, FunctionResult, Refused, apply, place
+from .apply import Function, FunctionResult, Refused, call_function, error_location
 from .designs import Designs, Numbers, Reactions
 
 HEAD = struct.Struct("<cQ")
@@ -47,7 +47,7 @@ def load(function: str, folders: list[str]) -> Function:
         error_text = f"{type(error).__name__}: {error}".rstrip(": ")
         raise Refused(
             f"must be a function in a module in the folder of the job file or installed; got "
-            f"{error_text}{place(error, load)}; correct module:function"
+            f"{error_text}{error_location(error, load)}; correct module:function"
         ) from None
     finally:
         sys.path[:] = [*before, *folders]
@@ -140,7 +140,7 @@ def main() -> None:
             dimensions: Array = np.frombuffer(data).reshape(-1, 3)
             try:
                 with watch:
-                    result = apply(function, mechanism, dimensions, column, make=Timed)
+                    result = call_function(function, mechanism, dimensions, column, make=Timed)
             except Refused as error:
                 send(b"E", str(error).encode())
             else:

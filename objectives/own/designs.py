@@ -14,7 +14,7 @@ from ...model.cycle.stroke_times import scaled_stroke_times
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude as _magnitude
 from ...model.kinematics import geometry
-from ...model.kinematics.position import Motion, motion, third_derivative
+from ...model.kinematics.position import Motion, motion, third_slider_derivative
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.complex_forces import complex_joint_forces
 from ..machine_needs import ONE_TIMING
@@ -84,7 +84,7 @@ class Designs:
         """Take designs (n, 3)."""
         self.mechanism = mechanism
         self._branch = mechanism.sign
-        self._take(dimensions)
+        self._set_dimensions(dimensions)
 
     def __len__(self) -> int:
         return len(self._dimensions)
@@ -92,7 +92,7 @@ class Designs:
     @property
     def angles(self) -> Array:
         """Crank angles (n, 128) around the cycle, denser where the linkage is close to locking."""
-        return self._uncrowded(np.linspace(-np.pi, np.pi, _GRID, endpoint=False))[0]
+        return self._crank_angles_from_crowded(np.linspace(-np.pi, np.pi, _GRID, endpoint=False))[0]
 
     # ---- closed forms ---------------------------------------------------------------------------------------------
 
@@ -132,17 +132,17 @@ class Designs:
 
     def velocity(self, angle: Numbers) -> Numbers:
         """Return the slider velocity along x, m/s."""
-        return cast(Numbers, self._motion(angle).x_1 * self._pace(angle)[0])
+        return cast(Numbers, self._motion(angle).x_1 * self._speed_and_acceleration(angle)[0])
 
     def acceleration(self, angle: Numbers) -> Numbers:
         """Return the slider acceleration along x, m/s^2."""
-        m, (speed, acceleration, _) = self._motion(angle), self._pace(angle)
+        m, (speed, acceleration, _) = self._motion(angle), self._speed_and_acceleration(angle)
         return cast(Numbers, m.x_2 * speed**2 + m.x_1 * acceleration)
 
     def jerk(self, angle: Numbers) -> Numbers:
         """Return the slider jerk along x, m/s^3."""
-        m, (speed, acceleration, bend) = self._motion(angle), self._pace(angle)
-        third = third_derivative(np.sin(angle), np.cos(angle), m, self.crank)
+        m, (speed, acceleration, bend) = self._motion(angle), self._speed_and_acceleration(angle)
+        third = third_slider_derivative(np.sin(angle), np.cos(angle), m, self.crank)
         return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * acceleration + m.x_1 * speed * bend)
 
     def rod_angle(self, angle: Numbers) -> Numbers:
@@ -183,7 +183,7 @@ class Designs:
 
     def mean(self, curve: Curve) -> Numbers:
         """Return the mean of a curve over the crank angle, (n, 1); exact to rounding for smooth curves."""
-        angle, share = self._uncrowded(np.linspace(-np.pi, np.pi, _MEAN, endpoint=False))
+        angle, share = self._crank_angles_from_crowded(np.linspace(-np.pi, np.pi, _MEAN, endpoint=False))
         return cast(Numbers, np.mean(curve(angle) * share, axis=1, keepdims=True))
 
     def peaks(self, curve: Curve) -> Peaks:
@@ -207,28 +207,28 @@ class Designs:
             centre = centre + steps[np.argmax(self._sample_near(curve, centre, steps), axis=2)]
             half *= 2.0 / (_WITHIN - 1)
         centre = self._vertex(curve, centre, half)
-        angle = self._uncrowded(centre)[0]
+        angle = self._crank_angles_from_crowded(centre)[0]
         values = np.array(curve(angle))
-        values, angle = self._dead_centres(curve, values, angle)
+        values, angle = self._move_peaks_onto_jumps(curve, values, angle)
         order = np.argsort(-values.real, axis=1, kind="stable")
         result = np.take_along_axis(values, order, axis=1).view(Peaks)
         result.angles = np.take_along_axis(angle, order, axis=1)
         return result
 
-    def _take(self, dimensions: Numbers) -> None:
+    def _set_dimensions(self, dimensions: Numbers) -> None:
         self.crank, self.rod, self.offset = (dimensions[:, v, None] for v in range(3))
         self._dimensions = dimensions
         self._known: tuple[Numbers, Motion] | None = None
 
     @contextmanager
-    def _real(self) -> Iterator[None]:
+    def _with_real_designs(self) -> Iterator[None]:
         """Use real numbers in the meantime: they are faster, and locating a peak needs no derivative."""
         designs = self._dimensions
-        self._take(designs.real)
+        self._set_dimensions(designs.real)
         try:
             yield
         finally:
-            self._take(designs)
+            self._set_dimensions(designs)
 
     def _motion(self, angle: Numbers) -> Motion:
         """Return the motion, reused from the previous call for the same angles: a curve needs it several times."""
@@ -238,7 +238,7 @@ class Designs:
             self._known = np.array(angle), found
         return self._known[1]
 
-    def _pace(self, angle: Numbers) -> tuple[Any, Any, Any]:
+    def _speed_and_acceleration(self, angle: Numbers) -> tuple[Any, Any, Any]:
         """Return crank speed, crank acceleration, and the derivative of the acceleration with respect to the angle."""
         profile, mean = self.mechanism.speed_profile, self.mechanism.speed
         if profile is None:
@@ -252,8 +252,8 @@ class Designs:
             ratio, slope = ratio + step * slope, slope + step * curvature
         return mean * ratio, mean**2 * ratio * slope, mean**2 * (slope**2 + ratio * curvature)
 
-    def _uncrowded(self, tau: Numbers) -> tuple[Array, Array]:
-        """Return crank angles (n, k) for crowded angles, with their derivative; see `segments.crowding`."""
+    def _crank_angles_from_crowded(self, tau: Numbers) -> tuple[Array, Array]:
+        """Return crank angles (n, k) for crowded angles, with their derivative; see `segments.crowding_parameter`."""
         q = (self.crank / (self.rod - magnitude(self.offset))).real
         kappa = np.sqrt(np.sqrt(np.maximum(1.0 - q * q, 1e-12)))
         sine, cosine = np.sin(tau), np.cos(tau)
@@ -262,8 +262,8 @@ class Designs:
         return angle, kappa / (cosine**2 + (kappa * sine) ** 2)
 
     def _sampled(self, curve: Curve, tau: Numbers) -> Array:
-        with self._real():
-            values = np.asarray(curve(self._uncrowded(tau)[0]))
+        with self._with_real_designs():
+            values = np.asarray(curve(self._crank_angles_from_crowded(tau)[0]))
         if values.shape != tau.shape:
             raise ValueError(
                 f"a curve must return one value for each crank angle, {tau.shape}; got {values.shape}; use the "
@@ -284,7 +284,7 @@ class Designs:
         step = np.where(smooth, -first / np.where(smooth, second, 1.0), 0.0)
         return centre + np.where(np.abs(step) <= 2.0, step * half, 0.0)
 
-    def _dead_centres(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, Array]:
+    def _move_peaks_onto_jumps(self, curve: Curve, values: Numbers, angle: Numbers) -> tuple[Numbers, Array]:
         """Return peaks and angles; a peak near a jump moves onto it, because dead centres move with the design."""
         dimensions = (self.crank, self.rod, self.offset)
         outer, inner = geometry.outer_crank_angle(*dimensions), geometry.inner_crank_angle(*dimensions)

@@ -68,7 +68,7 @@ def _fork_function_process(asking: int, log: str) -> None:
     relay.start()
     family = _Family(function)
     while family.code is None and signal.sigwait(signals) == signal.SIGCHLD:
-        family.reap()
+        family.reap_ended_children()
     if family.code is None:
         Path(log).unlink(missing_ok=True)
     family.end()
@@ -87,7 +87,7 @@ class _Family:
         self.function = function
         self.code: int | None = None
 
-    def reap(self) -> bool:
+    def reap_ended_children(self) -> bool:
         """Record children that have ended; return whether any are left."""
         with contextlib.suppress(ChildProcessError):
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:
@@ -102,7 +102,7 @@ class _Family:
         with contextlib.suppress(OSError):
             os.killpg(self.function, signal.SIGKILL)  # a whole group at once, including forks in progress
         pause = _PAUSE
-        while self.reap():
+        while self.reap_ended_children():
             for process in _descendants(os.getpid()):
                 with contextlib.suppress(OSError):
                     os.kill(process, signal.SIGKILL)

@@ -15,10 +15,10 @@ import numpy as np
 from ...model.arrays import IntArray
 from ...model.cycle.self_locking import locking_margin
 from ...model.errors import InputError
-from ...model.kernel.batches import turning
+from ...model.kernel.batches import require_full_rotation
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Pieces, Quantity, Values
-from .apply import Function, FunctionResult, Refused, apply
+from .apply import Function, FunctionResult, Refused, call_function
 from .worker import Worker
 
 Gradient = Literal["complex step", "finite differences", "none"]
@@ -111,8 +111,8 @@ class OwnQuantity(Quantity):
         if gradients:
             pieces = self.pieces(mechanism, dimensions)
             return Values(pieces.values[:, 0], pieces.gradients[:, 0])
-        dimensions = self._turning(dimensions)
-        self._check(mechanism, dimensions)
+        dimensions = self._rows_without_locking(dimensions)
+        self._check_complex_step(mechanism, dimensions)
         values = np.full(len(dimensions), np.inf)
         for rows in self._batches(mechanism, dimensions):
             values[rows] = self._ask(mechanism, dimensions[rows], None).values.max(axis=1)
@@ -123,11 +123,11 @@ class OwnQuantity(Quantity):
 
         With finite differences there is a single piece. Gradients are zero if the quantity has none.
         """
-        dimensions = self._turning(dimensions)
-        self._check(mechanism, dimensions)
+        dimensions = self._rows_without_locking(dimensions)
+        self._check_complex_step(mechanism, dimensions)
         parts = []
         for rows in self._batches(mechanism, dimensions):
-            piece = self._complex if self.gradient == "complex step" else self._plain
+            piece = self._pieces_by_complex_step if self.gradient == "complex step" else self._single_piece
             parts.append((rows, piece(mechanism, dimensions[rows])))
         n, k = len(dimensions), max((part.values.shape[1] for _, part in parts), default=1)
         values, labels = np.full((n, k), -np.inf), np.zeros((n, k))
@@ -159,7 +159,7 @@ class OwnQuantity(Quantity):
         if isinstance(self.function, str):
             return Worker(self.function, list(self.folders), self.limit, self.longest)
         function = self.function
-        return lambda mechanism, dimensions, column: apply(function, mechanism, dimensions, column)
+        return lambda mechanism, dimensions, column: call_function(function, mechanism, dimensions, column)
 
     def require_function(self) -> None:
         """Raise `InputError` if the module in "module:function" is not found or lacks the function; runs nothing."""
@@ -188,12 +188,12 @@ class OwnQuantity(Quantity):
         )
         raise InputError(f"the quantity {self.name} ({function_name}) {reason}") from None
 
-    def _turning(self, dimensions: Array) -> Array:
+    def _rows_without_locking(self, dimensions: Array) -> Array:
         if dimensions.shape[1] != 3:
             self._refuse(
                 "may only depend on crank, rod and offset; got more variables; fix them, or use other quantities"
             )
-        return turning(dimensions)
+        return require_full_rotation(dimensions)
 
     def _batches(self, mechanism: Mechanism, dimensions: Array) -> Iterator[IntArray]:
         """Yield the rows of designs that friction does not lock; forces in the others are undetermined."""
@@ -205,7 +205,7 @@ class OwnQuantity(Quantity):
 
     # ---- gradients ------------------------------------------------------------------------------------------------
 
-    def _complex(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+    def _pieces_by_complex_step(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         answers = [self._ask(mechanism, dimensions, column) for column in range(3)]
         values = answers[0].values
         gradients = np.stack([np.asarray(answer.slopes) for answer in answers], axis=2)
@@ -219,14 +219,14 @@ class OwnQuantity(Quantity):
         gradients = np.where(again[:, :, None], 0.0, gradients)
         return Pieces(values, gradients, labels).take(np.argsort(-values, axis=1, kind="stable"))
 
-    def _plain(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
+    def _single_piece(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         values = self._ask(mechanism, dimensions, None).values.max(axis=1)[:, None]
         slopes = np.zeros((len(dimensions), 3))
         if self.gradient == "finite differences":
-            slopes = self._differences(mechanism, dimensions, _STEP)
+            slopes = self._central_differences(mechanism, dimensions, _STEP)
         return Pieces(values, slopes[:, None], np.zeros_like(values))
 
-    def _differences(self, mechanism: Mechanism, dimensions: Array, share: float) -> Array:
+    def _central_differences(self, mechanism: Mechanism, dimensions: Array, share: float) -> Array:
         """Return central differences (n, 3).
 
         Steps are a fraction of the crank or, if smaller, of the distance to locking.
@@ -244,7 +244,7 @@ class OwnQuantity(Quantity):
             slopes[:, column] = (high - low) / (upper - lower)
         return slopes
 
-    def _check(self, mechanism: Mechanism, dimensions: Array) -> None:
+    def _check_complex_step(self, mechanism: Mechanism, dimensions: Array) -> None:
         """Raise an error before a search uses a complex step that does not give the derivative.
 
         Compares three designs with finite differences. One of them may lie at a kink; two hardly ever do.
@@ -255,8 +255,8 @@ class OwnQuantity(Quantity):
         if not len(rows):
             return
         witnesses = dimensions[np.unique(rows[np.linspace(0, len(rows) - 1, _WITNESSES).astype(int)])]
-        pieces = self._complex(mechanism, witnesses)
-        coarse, fine = (self._differences(mechanism, witnesses, share) for share in (2.0 * _STEP, _STEP))
+        pieces = self._pieces_by_complex_step(mechanism, witnesses)
+        coarse, fine = (self._central_differences(mechanism, witnesses, share) for share in (2.0 * _STEP, _STEP))
         size = np.abs(fine).max(axis=1)
         doubt = np.abs(fine - coarse).max(axis=1) + 1e-9 * np.abs(pieces.values[:, 0]) / witnesses[:, 0]
         differences = np.abs(pieces.gradients[:, 0] - fine)
@@ -284,11 +284,11 @@ def require_name(name: str) -> None:
         )
 
 
-def bounded(quantity: Quantity, longest: float) -> Quantity:
+def with_time_limit(quantity: Quantity, longest: float) -> Quantity:
     """Return a quantity whose custom functions, even nested ones, take at most `longest` s per call."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
-    return quantity.with_parts(tuple(bounded(part, longest) for part in quantity.made_of))
+    return quantity.with_parts(tuple(with_time_limit(part, longest) for part in quantity.made_of))
 
 
 def close_custom_functions(quantity: Quantity) -> None:
@@ -311,7 +311,7 @@ def quantity_entry_points() -> dict[str, Any]:
     return {entry.name: entry for entry in entry_points(group=GROUP)}
 
 
-def installed(name: str) -> OwnQuantity:
+def installed_quantity(name: str) -> OwnQuantity:
     """Return the quantity with a name that an installed package provides.
 
     Raises `InputError` if the entry point is not a quantity.

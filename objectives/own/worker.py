@@ -26,7 +26,7 @@ from typing import IO, Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.kernel.interruption import ask, farewell, killed
+from ...model.kernel.interruption import interruption_grace_time, poll_interruption, record_killed_call
 from ...model.machine.mechanism import Mechanism
 from .apply import FunctionResult, Refused
 from .child import HEAD, unpacked
@@ -55,7 +55,7 @@ _running: weakref.WeakSet[Worker] = weakref.WeakSet()
 def _leave_workers_to_parent() -> None:
     """Leave all function processes, in a fork, to the process that started them."""
     for worker in list(_running):
-        worker.forget()
+        worker.leave_to_starter()
     _running.clear()
 
 
@@ -70,7 +70,7 @@ class _Suspended(Exception):
 class Worker:
     """A process that runs one function. Raises `Refused` for any fault in the function, and is then closed.
 
-    An exception from `interruption.ask` also ends the call and the process.
+    An exception from `interruption.poll_interruption` also ends the call and the process.
     """
 
     def __init__(self, function: str, folders: list[str], limit: float, longest: float = float("inf")) -> None:
@@ -86,7 +86,7 @@ class Worker:
         self._lock = threading.Lock()
 
     def __call__(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
-        """Return the function's result for designs (n, 3); see `apply`."""
+        """Return the function's result for designs (n, 3); see `call_function`."""
         with self._lock:
             while True:
                 with contextlib.suppress(_Suspended):
@@ -95,7 +95,7 @@ class Worker:
     def _call_process(self, mechanism: Mechanism, dimensions: Array, column: int | None) -> FunctionResult:
         self._paused = False
         if self._process is None:
-            ask()
+            poll_interruption()
             self._start()
         machine = None if mechanism is self._mechanism else mechanism
         self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
@@ -131,7 +131,7 @@ class Worker:
         self._send((self._log, self.limit, self.function, self.folders))
         self._await_message(_START + self.limit)
 
-    def forget(self) -> None:
+    def leave_to_starter(self) -> None:
         """Leave the process to its starter; this process is a fork of that one."""
         self._end.detach()  # also when this process ends
         if self._process is not None:
@@ -178,16 +178,16 @@ class Worker:
                 before = now
                 if message is not None:
                     return message
-                ask()
+                poll_interruption()
             self._late = True
             self._end()
             return b"", b""
         except BaseException:
             try:
-                kind, _ = self._messages.get(timeout=farewell())
+                kind, _ = self._messages.get(timeout=interruption_grace_time())
             except queue.Empty:
                 kind = b""
-                killed()
+                record_killed_call()
             if kind not in (b"A", b"R"):
                 self.close()
             raise

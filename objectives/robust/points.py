@@ -38,7 +38,7 @@ class PointValues:
         return values, np.take_along_axis(slopes, first[:, :, :, None], axis=2)[:, :, 0]
 
 
-def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
+def tolerance_limits(mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the tolerances of crank, rod and offset for designs (n, 3 + k), (n, 3), m.
 
     The tolerance of the crank angle is excluded: no quantity over a whole cycle depends on where the cycle starts.
@@ -55,7 +55,7 @@ def limits_of(mechanism: Mechanism, dimensions: Array) -> Array:
     return limits
 
 
-def uncertain(mechanism: Mechanism) -> list[int]:
+def toleranced_columns(mechanism: Mechanism) -> list[int]:
     """Return the indices among crank, rod and offset (0, 1, 2) that have a tolerance."""
     absolute, fraction = _nominal_and_tolerances(mechanism)
     return np.flatnonzero((absolute > 0.0) | (fraction > 0.0)).tolist()
@@ -68,7 +68,7 @@ def corners(columns: list[int]) -> Array:
     return points
 
 
-def in_line(columns: list[int], dimensions: Array, limits: Array) -> tuple[IntArray, Array]:
+def points_at_zero_offset(columns: list[int], dimensions: Array, limits: Array) -> tuple[IntArray, Array]:
     """Return the designs (m,) whose offset may be zero within the limits, and their points (m, q, 3) there.
 
     The points are the corners of the box in the other dimensions, in units of the limits.

@@ -83,14 +83,14 @@ class Sample:
     def _fit(self) -> Array:
         return np.asarray(np.linalg.pinv(_monomials(star(list(self.columns)), self.columns)), dtype=np.float64)
 
-    def of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
+    def quantile_of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
         order, rank = self._ranked(machines)
         quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
         slope = _einsum_by_design("s,nsd->nd", rank, np.take_along_axis(slopes, order[:, :, None], axis=1))
         return quantile, np.where(np.isfinite(quantile)[:, None], slope, 0.0)
 
-    def of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
+    def quantile_of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
         absent = ~np.isfinite(values[:, 0])[:, :, None]
         drawn = _einsum_by_design("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation)

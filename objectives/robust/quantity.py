@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.spreads import Shape, error_distribution
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
-from .points import PointValues, corners, evaluate_points, limits_of, match_pieces, star, uncertain
+from .points import PointValues, corners, evaluate_points, match_pieces, star, tolerance_limits, toleranced_columns
 from .quantile import sample
 from .worst_points import worst_inner_points
 
@@ -30,7 +30,7 @@ _LEAST = 64
 _MOST = 65536
 _MOST_PIECES = 8  # pieces of a worst case that may tie
 _LABEL_STEP = 100.0  # rad, between the labels of different corners
-_STEP = 0.05  # in units of the limits, see `_linear`
+_STEP = 0.05  # in units of the limits, see `_linear_worst_case`
 _BLOCK = 1 << 22  # numbers of a sample held in memory together
 
 
@@ -67,7 +67,7 @@ class RobustQuantity(Quantity):
 
     def __post_init__(self) -> None:
         require_word("side", self.side, Side)
-        require_options(self.case, self.order, self.share, self.samples, self.shape)
+        require_robust_options_in_range(self.case, self.order, self.share, self.samples, self.shape)
         whose = "all within tolerances" if self.case == "worst case" else f"{100.0 * self.share:.6g} % of machines"
         facts = {
             "name": f"{self.inner.name if self.inner.name.isidentifier() else self.inner.stem}_{self.suffix}",
@@ -98,7 +98,7 @@ class RobustQuantity(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if not uncertain(mechanism):
+        if not toleranced_columns(mechanism):
             return self.inner.evaluate(mechanism, dimensions, gradients=gradients)
         pieces = self.pieces(mechanism, dimensions)
         values = pieces.values.min(axis=1) if pieces.least else pieces.values.max(axis=1)
@@ -110,8 +110,8 @@ class RobustQuantity(Quantity):
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the maximum of smooth pieces, or their minimum on the low side."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
-        limits = limits_of(mechanism, dimensions)  # raises for unusable tolerances
-        columns = uncertain(mechanism)
+        limits = tolerance_limits(mechanism, dimensions)  # raises for unusable tolerances
+        columns = toleranced_columns(mechanism)
         if not columns:
             pieces = self.inner.pieces(mechanism, dimensions)
             if self.side == "high":
@@ -123,8 +123,8 @@ class RobustQuantity(Quantity):
         spans = (np.abs(dimensions[:, 2]) < limits[:, 2]) | (self.order == 2)
         parts = [
             (np.flatnonzero(rows), exact(mechanism, dimensions[rows], columns))
-            for rows, exact in ((spans, self._exact), (~spans, self._linear))
-            if rows.any() or (len(rows) == 0 and exact == self._exact)
+            for rows, exact in ((spans, self._exact_worst_case), (~spans, self._linear_worst_case))
+            if rows.any() or (len(rows) == 0 and exact == self._exact_worst_case)
         ]
         merged = _merge_parts(len(dimensions), parts, absent=np.inf if low else -np.inf)
         pieces = Pieces(*merged, least=low)
@@ -138,7 +138,7 @@ class RobustQuantity(Quantity):
         A percentile is estimated from a normal distribution with the same variance. Used to rank many designs.
         """
         assert inner.gradients is not None
-        limits = limits_of(mechanism, dimensions)
+        limits = tolerance_limits(mechanism, dimensions)
         steps = inner.gradients[:, :3] * limits
         sign = 1.0 if self.side == "high" else -1.0
         if self.case == "percentile":
@@ -153,10 +153,12 @@ class RobustQuantity(Quantity):
 
     # ---- worst case -----------------------------------------------------------------------------------------------
 
-    def _exact(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
+    def _exact_worst_case(
+        self, mechanism: Mechanism, dimensions: Array, columns: list[int]
+    ) -> tuple[Array, Array, Array]:
         low = self.side == "low"
         at_corners = evaluate_points(self.inner, mechanism, dimensions, corners(columns))
-        values, slopes, labels = self._bad_side(at_corners)
+        values, slopes, labels = self._values_on_bad_side(at_corners)
         inner_points = worst_inner_points(self.inner, mechanism, dimensions, columns, at_corners, low=low)
         if not len(inner_points.rows):
             return values, slopes, labels
@@ -164,7 +166,7 @@ class RobustQuantity(Quantity):
         # move.
         count = inner_points.points.shape[1]
         at_inner = evaluate_points(self.inner, mechanism, dimensions[inner_points.rows], inner_points.points)
-        worse, slope, label = self._bad_side(at_inner)
+        worse, slope, label = self._values_on_bad_side(at_inner)
         slope[:, :, :3] *= np.repeat(np.abs(inner_points.points) == 1.0, worse.shape[1] // count, axis=1)
         inner_values = np.full((len(values), worse.shape[1]), np.inf if low else -np.inf)
         inner_slopes, inner_labels = np.zeros((*inner_values.shape, slopes.shape[2])), np.zeros(inner_values.shape)
@@ -176,7 +178,7 @@ class RobustQuantity(Quantity):
             np.concatenate([labels, inner_labels], axis=1),
         )
 
-    def _bad_side(self, point_values: PointValues) -> tuple[Array, Array, Array]:
+    def _values_on_bad_side(self, point_values: PointValues) -> tuple[Array, Array, Array]:
         """Return values (n, m), gradients and labels at the points: all pieces, or the highest on the low side."""
         labels = point_values.labels + _LABEL_STEP * np.arange(point_values.labels.shape[1])[:, None]
         if self.side == "high":
@@ -191,7 +193,9 @@ class RobustQuantity(Quantity):
         # Infinite where friction locks the linkage: nothing is high there.
         return np.where(point_values.turns & (values < np.inf), values, -np.inf), slopes, point
 
-    def _linear(self, mechanism: Mechanism, dimensions: Array, columns: list[int]) -> tuple[Array, Array, Array]:
+    def _linear_worst_case(
+        self, mechanism: Mechanism, dimensions: Array, columns: list[int]
+    ) -> tuple[Array, Array, Array]:
         """Return the linear extrapolation of every piece to every corner.
 
         Directional derivatives are central differences over a small fraction h of the limits. Their error is h^2 times
@@ -210,7 +214,7 @@ class RobustQuantity(Quantity):
             change = (values[ahead] - values[opposite]) / (2.0 * _STEP)
         change_slope = (slopes[ahead] - slopes[opposite]) / (2.0 * _STEP)
         # A peak that vanishes nearby is hardly the highest, so its own slope suffices.
-        limits = limits_of(mechanism, dimensions)
+        limits = tolerance_limits(mechanism, dimensions)
         plain = np.einsum("npi,ci->ncp", slope[:, 0, :, :3] * limits[:, None, :], signs)
         values = np.where(np.isfinite(centre), centre + np.where(on_both_sides, change, plain), -np.inf)
         slopes = slope + np.where(on_both_sides[:, :, :, None], change_slope, 0.0)
@@ -240,18 +244,18 @@ class RobustQuantity(Quantity):
         drawn = sample(columns, self.shape, self.samples, self.seed, share)
         # Quantities that depend on |offset| have a kink at zero, which machines in the sample may reach.
         widest = np.abs(drawn.deviations[:, 2]).max()
-        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * limits_of(mechanism, dimensions)[:, 2])
+        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * tolerance_limits(mechanism, dimensions)[:, 2])
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
         for rows in _row_blocks(good, len(drawn.deviations) * values.shape[2]):
-            quantiles[rows], gradients[rows] = drawn.of_star(values[rows], slopes[rows])
+            quantiles[rows], gradients[rows] = drawn.quantile_of_star(values[rows], slopes[rows])
         for rows in _row_blocks(kinked, 32 * len(drawn.deviations)):
             star_values = evaluate_points(self.inner, mechanism, dimensions[rows], drawn.deviations)
             machines, steep = star_values.highest(star_values.gradients)
             if self.side == "low":
                 machines = np.where(star_values.turns & (machines < np.inf), machines, -np.inf)
-            quantiles[rows], gradients[rows] = drawn.of_machines(machines, steep)
+            quantiles[rows], gradients[rows] = drawn.quantile_of_machines(machines, steep)
         return Pieces(quantiles[:, None], gradients[:, None], np.zeros((n, 1)), least=self.side == "low")
 
 
@@ -280,7 +284,7 @@ def _merge_parts(
     return values, slopes, labels
 
 
-def require_options(case: str, order: int, share: float, samples: int, shape: str) -> None:
+def require_robust_options_in_range(case: str, order: int, share: float, samples: int, shape: str) -> None:
     """Raise `InputError` for options of a robust quantity that are out of range."""
     require_word("case", case, Case)
     require_word("shape", shape, Shape)

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.arrays import IntArray, Mask
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
-from .points import PointValues, corners, evaluate_points, in_line, limits_of, match_pieces
+from .points import PointValues, corners, evaluate_points, match_pieces, points_at_zero_offset, tolerance_limits
 
 _SIDE_STEP = (
     1e-6  # in units of the limits: distance from offset zero that distinguishes a kink there from a nearby extreme
@@ -45,8 +45,8 @@ def worst_inner_points(
     the worst of all these points, the quantity must improve in every direction into the box, to first order.
        Otherwise it has an extreme inside, and sequential quadratic programming finds the worst value from there.
     """
-    limits = limits_of(mechanism, dimensions)
-    spanning, points = in_line(columns, dimensions, limits)
+    limits = tolerance_limits(mechanism, dimensions)
+    spanning, points = points_at_zero_offset(columns, dimensions, limits)
     ends = corners(columns)
     worst, slopes, turns = _signed_as_losses(at_corners, low)
     start = ends[np.argmax(worst, axis=1)]
@@ -115,7 +115,7 @@ def _search_worst_point(
         else np.argmax(at_start.values[0, 0]) == np.arange(at_start.values.shape[2])
     )
     size = abs(float(at_start.values[0, 0].max())) or 1.0
-    tolerances = limits_of(mechanism, design[None])[0]
+    tolerances = tolerance_limits(mechanism, design[None])[0]
 
     def pieces(point: Array) -> tuple[Array, Array]:
         at = start.copy()

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.cycle.stroke_times import slow_stroke, time_ratio
-from ...model.kinematics.in_line import without_rounding
+from ...model.kinematics.in_line import offset_without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ...model.machine.mechanism import Mechanism
@@ -42,14 +42,16 @@ def analyse(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantit
     """
     import pandas as pd
 
-    return pd.DataFrame(columns_of(mechanism, dimensions, custom=custom))
+    return pd.DataFrame(analysis_columns(mechanism, dimensions, custom=custom))
 
 
-def columns_of(mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()) -> dict[str, NDArray[Any]]:
+def analysis_columns(
+    mechanism: Mechanism, dimensions: Array, *, custom: Sequence[Quantity] = ()
+) -> dict[str, NDArray[Any]]:
     """Return the columns (n,) of the `analyse` table: importing pandas takes longer than computing one design."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     dimensions = dimensions.copy()
-    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+    dimensions[:, 2] = offset_without_rounding(dimensions[:, 1], dimensions[:, 2])
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     linkage.require_full_rotation()
     inner, outer = linkage.dead_centre_angles

@@ -19,9 +19,9 @@ from ...model.cycle.crank_speed import speed_knots
 from ...model.cycle.cycle import breakpoints
 from ...model.cycle.multi_cylinder import multi_cylinder_breakpoints
 from ...model.cycle.self_locking import locking_margin
-from ...model.dynamics.segments import crowded, crowding, uncrowded
+from ...model.dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single
+from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
@@ -90,7 +90,7 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     For a spike narrower than a few hundred-millionths of a radian, the values beside it count. Raises `InputError` for
     arrays of linkages and for a linkage on another branch than the mechanism's.
     """
-    linkage = single(mechanism, linkage)
+    linkage = single_rotating_linkage(mechanism, linkage)
     first = defined_curves(mechanism, linkage, np.zeros(1))
 
     def values(angles: Array) -> Array:
@@ -144,7 +144,7 @@ def undefined_because(name: str, mechanism: Mechanism) -> str:
     return next((need.missing for need in _NEEDS.get(name, ()) if not need.is_met(mechanism)), "")
 
 
-def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
+def crank_angles_of_cuts(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return ascending crank angles (k,) in a cycle from 0, rad, between which every curve is smooth.
 
     If friction locks the linkage, the angles are those without friction, because the forces are undetermined anyway.
@@ -165,15 +165,15 @@ def cuts_of(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     """Return the crank angles of each smooth piece of the turn, with its ends moved inward by `_INSET`."""
-    cuts = cuts_of(mechanism, linkage)
-    kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
+    cuts = crank_angles_of_cuts(mechanism, linkage)
+    kappa = crowding_parameter(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     pieces = []
     for start, end in zip(cuts, [*cuts[1:], cuts[0] + cycle_turns(mechanism) * _TURN], strict=True):
         if end - start < 8.0 * _INSET:
             continue  # cuts that are equal to rounding
-        low, high = crowded(start, kappa), crowded(end, kappa)
+        low, high = crowded_from_crank_angle(start, kappa), crowded_from_crank_angle(end, kappa)
         count = max(_LEAST_SAMPLES, math.ceil((high - low) / _TURN * _SAMPLES))
-        inner = [uncrowded(tau, kappa) for tau in np.linspace(low, high, count)[1:-1]]
+        inner = [crank_angle_from_crowded(tau, kappa) for tau in np.linspace(low, high, count)[1:-1]]
         sides = [start + _INSET, start + 2.0 * _INSET, end - 2.0 * _INSET, end - _INSET]
         inner = [angle for angle in inner if sides[1] < angle < sides[2]]
         pieces.append(np.array([*sides[:2], *inner, *sides[2:]]))

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.cycle.crank_speed import acceleration_slope, crank_speed
+from ...model.cycle.crank_speed import acceleration_slope_by_angle, crank_speed_and_acceleration
 from ...model.cycle.cycle import cycle
 from ...model.cycle.multi_cylinder import multi_cylinder_curves
 from ...model.errors import InputError
-from ...model.kinematics.position import Motion, motion, third_derivative
+from ...model.kinematics.position import Motion, motion, third_slider_derivative
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.linkage_values import direction, numbers
+from ...model.linkage.linkage_values import direction_angle, numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
 from ...model.machine.two_turns import cycle_turns
@@ -86,7 +86,7 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         torque, all_cylinders = multi_cylinder_curves(mechanism, linkage, theta).torque, " of all cylinders"
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    third = third_derivative(sine, cosine, m, linkage.crank)
+    third = third_slider_derivative(sine, cosine, m, linkage.crank)
     jerk = _jerk(mechanism if speed else replace(mechanism, speed=1.0), m, third, theta)
     velocity, acceleration = moving.slider_velocity, moving.slider_acceleration
     return [
@@ -95,13 +95,13 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("slider_velocity", f"slider velocity{note}", velocity, rates[0]),
         Curve("slider_acceleration", f"slider acceleration{note}", acceleration, rates[1]),
         Curve("slider_jerk", f"slider jerk{note}", jerk, rates[2]),
-        Curve("rod_angle", "rod angle", direction(m.l_sin, m.l_cos), ANGLE),
+        Curve("rod_angle", "rod angle", direction_angle(m.l_sin, m.l_cos), ANGLE),
         Curve("transmission_angle", "transmission angle", moving.transmission_angle, ANGLE),
         Curve("torque", f"drive torque{all_cylinders}", torque, TORQUE),
         Curve(
             "power",
             f"drive power{all_cylinders}",
-            crank_speed(mechanism, theta)[0] * torque if speed else nothing,
+            crank_speed_and_acceleration(mechanism, theta)[0] * torque if speed else nothing,
             POWER,
         ),
         Curve("load", "load on the slider", acting.load, FORCE),
@@ -153,7 +153,7 @@ def _jerk(mechanism: Mechanism, m: Motion, third: Array, theta: Array) -> Array:
     """
     if mechanism.speed_profile is None:
         return np.asarray(third * mechanism.speed**3 + 3.0 * m.x_2 * mechanism.speed * mechanism.acceleration)
-    speed, acceleration = crank_speed(mechanism, theta)
+    speed, acceleration = crank_speed_and_acceleration(mechanism, theta)
     return np.asarray(
-        (third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * acceleration_slope(mechanism, theta)) * speed
+        (third * speed**2 + 3.0 * m.x_2 * acceleration + m.x_1 * acceleration_slope_by_angle(mechanism, theta)) * speed
     )

@@ -12,7 +12,7 @@ from ...model.arrays import Mask
 from ...model.errors import InputError, InputWarning
 from ...model.input_warning import LONGEST
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.linkage.linkage_values import in_both_units
+from ...model.linkage.linkage_values import implausible_length_text
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array
 
@@ -22,7 +22,7 @@ _WARNED = "lengths warned of"
 """Stored in a machine or problem so that it warns only once."""
 
 
-def numbers_of(mechanism: Mechanism) -> tuple[str, ...]:
+def names_of_design_numbers(mechanism: Mechanism) -> tuple[str, ...]:
     """Return the names of the numbers in a design for a machine, in order."""
     return (*DIMENSIONS, *(item.name for item in mechanism.varying))
 
@@ -36,7 +36,7 @@ def require_machine(mechanism: object) -> None:
         )
 
 
-def given_designs(designs: object, names: Sequence[str]) -> Array:
+def designs_as_array(designs: object, names: Sequence[str]) -> Array:
     """Return designs (..., k) as an array, SI, with numbers in the order of the names.
 
     Table columns, or the index of one row, are found by these names, in any order and among others; without names their
@@ -54,7 +54,8 @@ def given_designs(designs: object, names: Sequence[str]) -> Array:
         array = np.asarray(array, dtype=np.float64)
     except (TypeError, ValueError):
         raise InputError(
-            f"designs must be arrays of real numbers, SI; got {shortly(designs)}; give {needed} of each, in m, not as "
+            f"designs must be arrays of real numbers, SI; got {short_text(designs)}; "
+            f"give {needed} of each, in m, not as "
             "text "
             "and not complex"
         ) from None
@@ -74,7 +75,9 @@ def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (
     """
     if _WARNED in vars(owner):
         return
-    doubt = in_both_units((designs[..., place] for place in range(3)), (max(LONGEST, size) for size in greatest))
+    doubt = implausible_length_text(
+        (designs[..., place] for place in range(3)), (max(LONGEST, size) for size in greatest)
+    )
     if doubt is not None:
         vars(owner)[_WARNED] = True
         user = sys._getframe(2)
@@ -88,12 +91,12 @@ def warn_of_lengths(owner: object, designs: Array, greatest: Sequence[float] = (
         )
 
 
-def countable(designs: Array) -> Mask:
+def has_finite_numbers(designs: Array) -> Mask:
     """Return which designs (n, 3 + k) contain only finite numbers, and lengths whose powers are finite, too."""
     return np.asarray(np.isfinite(designs).all(axis=1) & (designs[:, 0] > _LEAST) & (designs[:, 1] < _MOST))
 
 
-def shortly(value: object) -> str:
+def short_text(value: object) -> str:
     """Return a value as it prints, or only its type if that is long."""
     text = repr(value)
     return text if len(text) <= 60 and "\n" not in text else type(value).__name__

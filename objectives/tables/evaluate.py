@@ -12,15 +12,21 @@ from ...model.arrays import Mask
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.peaks import ANGLES
-from ...model.swing.closure import passes
+from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.swing import Swing
-from ...model.swing.swing_batch import driven
+from ...model.swing.swing_batch import can_swing_despite_friction
 from ...model.turning_cylinder.batch import lever_passes
-from ..cycle_peak import screened
-from ..formula.quantity import leaves_of, with_formulas
+from ..cycle_peak import screen_quantities
+from ..formula.quantity import leaves_of, values_with_formulas
 from ..formula.resolve import resolve_quantities
 from ..quantity import Array, Quantity, Values
-from .design_input import countable, given_designs, numbers_of, require_machine, warn_of_lengths
+from .design_input import (
+    designs_as_array,
+    has_finite_numbers,
+    names_of_design_numbers,
+    require_machine,
+    warn_of_lengths,
+)
 from .swinging import require_in_motion, require_of_swing, require_same_driver
 
 
@@ -78,12 +84,12 @@ def evaluate(
            [   nan,    nan]])
     """
     require_machine(mechanism)
-    array = given_designs(designs, numbers_of(mechanism))
+    array = designs_as_array(designs, names_of_design_numbers(mechanism))
     warn_of_lengths(mechanism, array)
-    return evaluated(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
+    return evaluated_as_array(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
 
 
-def evaluated(
+def evaluated_as_array(
     mechanism: Mechanism,
     designs: Array,
     quantities: Sequence[str],
@@ -111,8 +117,8 @@ def evaluated(
         raise InputError(
             f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
         )
-    turns = moving(mechanism, swing, rows)
-    turns &= countable(rows)
+    turns = can_move(mechanism, swing, rows)
+    turns &= has_finite_numbers(rows)
     all_turn = bool(turns.all())
     evaluations = _evaluate_leaves(mechanism, chosen, rows if all_turn else rows[turns], gradients)
     values = np.full((len(rows), len(chosen)), np.nan)
@@ -126,27 +132,27 @@ def evaluated(
     return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
 
 
-def moving(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
-        return (lever_passes if swing.driver == "cylinder" else passes)(mechanism, swing, designs)
+        return (lever_passes if swing.driver == "cylinder" else swings_without_dead_point)(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
 
 
-def running(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+def can_run_despite_friction(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
     if swing is None or swing.driver == "cylinder":
-        return moving(mechanism, swing, designs)
-    return driven(mechanism, swing, designs)
+        return can_move(mechanism, swing, designs)
+    return can_swing_despite_friction(mechanism, swing, designs)
 
 
 def _evaluate_leaves(
     mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool
 ) -> list[Values]:
     leaves = leaves_of(quantities)
-    values = screened(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
+    values = screen_quantities(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
     for leaf in leaves:
         if leaf.name not in values:
             continue
@@ -158,4 +164,4 @@ def _evaluate_leaves(
             if item.gradients is not None:
                 item.gradients[missed] = exact.gradients
     values |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in values}
-    return with_formulas(quantities, values, mechanism, designs, gradients=gradients)
+    return values_with_formulas(quantities, values, mechanism, designs, gradients=gradients)

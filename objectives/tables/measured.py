@@ -16,7 +16,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ..kinds import ANGLE, DISPLAYED_KINDS, TIME, DisplayUnit, Kind
 from ..quantity import Array
-from ..units import squeezed, without_in
+from ..units import letters_and_digits, without_word_in
 from .curve_extremes import every_curve, undefined_because
 
 if TYPE_CHECKING:
@@ -198,13 +198,13 @@ def _column_meaning(
         raise InputError(f"a column must have its unit in its name; got {text!r}; write it like {example}")
     factor = _unit_factor(unit, kind)
     if factor is None:
-        unit = without_in(unit)
+        unit = without_word_in(unit)
         factor = _unit_factor(unit, kind)
     if factor is None and units is not None:
         factor = units(unit, kind)
     if factor is not None:
         return Column(spoken[curve_name], factor, kind)
-    if unit in kind.typed or squeezed(unit) in map(squeezed, kind.typed):
+    if unit in kind.typed or letters_and_digits(unit) in map(letters_and_digits, kind.typed):
         units_read = " or ".join(dict.fromkeys(display_unit.symbol for display_unit in _display_units(kind)))
         raise InputError(f"{curve_name} must be in {units_read}; got {text!r}; write it like {example}")
     matching_kinds = (
@@ -221,7 +221,10 @@ def _column_meaning(
 def _unit_factor(unit: str, kind: Kind) -> float | None:
     """Return the SI value of a unit in a table; None if the kind does not have it."""
     for display_unit in _display_units(kind):
-        if squeezed(unit) in (squeezed(display_unit.symbol), squeezed(display_unit.suffix)):
+        if letters_and_digits(unit) in (
+            letters_and_digits(display_unit.symbol),
+            letters_and_digits(display_unit.suffix),
+        ):
             return 1.0 / display_unit.factor
     return None
 

@@ -23,7 +23,7 @@ from ..own.quantity import OwnQuantity
 from ..quantity import Array, Quantity
 from ..robust.quantity import RobustQuantity
 from ..self_locking import SELF_LOCKING_MARGIN
-from .evaluate import running
+from .evaluate import can_run_despite_friction
 
 _LOCKED_SWING = (
     "a drive must be able to move the slider everywhere on the swing; got a place where none can; lengthen the rod, or "
@@ -71,7 +71,7 @@ def missing_value_reasons(
 def locked_designs(mechanism: Mechanism, designs: Array, swing: Swing | None = None) -> Mask:
     """Return which designs (n, 3) friction locks, or may jam, at some crank angle."""
     if swing is not None:
-        return ~running(mechanism, swing, designs)
+        return ~can_run_despite_friction(mechanism, swing, designs)
     return np.asarray(~(locking_margin(mechanism.friction, designs)[0] > 0.0))
 
 

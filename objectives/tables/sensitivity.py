@@ -15,12 +15,12 @@ from ...model.kinematics import geometry
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing, started
-from ...model.tolerance.sources import limits
+from ...model.swing.swing import Swing, with_start_of_machine
+from ...model.tolerance.sources import limits_of_sources
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
-from .swinging import require_motion, swing_quantities, swinging
+from .swinging import quantities_for_swing, require_motion, swing_quantities
 
 _TIE = 1e-9  # relative to a quantity: pieces that differ by less count as equal
 _ROUNDING = 1e-12  # in units of a quantity over the rod: smaller changes are rounding errors
@@ -80,10 +80,10 @@ def sensitivity(mechanism: Mechanism, dimensions: Array, swing: Swing | None = N
     design[2] = float(linkage.offset)
     if swing is not None:
         require_motion(mechanism, linkage, swing)
-    tolerances = limits(mechanism, linkage)[:3]
+    tolerances = limits_of_sources(mechanism, linkage)[:3]
     rows = []
-    ends = None if swing is None else started(mechanism, swing)
-    for quantity in QUANTITIES.values() if ends is None else swinging(swing_quantities(ends)):
+    ends = None if swing is None else with_start_of_machine(mechanism, swing)
+    for quantity in QUANTITIES.values() if ends is None else quantities_for_swing(swing_quantities(ends)):
         value, slopes_below, slopes_above = _value_and_one_sided_derivatives(quantity, mechanism, design)
         if quantity.undefined_because([mechanism]):
             value = math.nan

@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves, swing_curves
-from ...model.swing.swing import Swing, placed, require_swing
+from ...model.swing.swing import Swing, require_swing, swing_between_crank_angles
 from ..kinds import (
     ACCELERATION,
     ANGLE,
@@ -58,7 +58,7 @@ class SwingCurve:
         return np.asarray(self.kind.metric.factor * getattr(curves, self.attribute))
 
 
-def motion_and_drive(swing: Swing) -> tuple[SwingCurve, ...]:
+def motion_and_drive_curves(swing: Swing) -> tuple[SwingCurve, ...]:
     """Return the curves of a swing except the joint forces; without a duration, only curves that do not need it."""
     drive = "force on the slider" if swing.driver == "slider" else "torque on the crank"
     angle_title = "transmission angle" if swing.driver == "crank" else "angle between rod and crank"
@@ -118,7 +118,7 @@ def driven_side(swing: Swing) -> str:
 def curves_of_both_strokes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple[SwingCurves, SwingCurves]:
     """Return the curves for the forward and the return stroke, at evenly spaced times."""
     checked, share = require_swing(mechanism, linkage, swing), np.linspace(0.0, 1.0, POINTS)
-    swing = placed(mechanism, checked, swing)
+    swing = swing_between_crank_angles(mechanism, checked, swing)
     return (
         swing_curves(mechanism, checked, swing, share),
         swing_curves(mechanism, checked, swing, share, back=True),
@@ -147,7 +147,7 @@ def has_position_error(mechanism: Mechanism, swing: Swing) -> bool:
 
 def defined_curves(mechanism: Mechanism, swing: Swing) -> list[SwingCurve]:
     """Return the curves of a swing that a machine defines: an error needs tolerances."""
-    every = (*motion_and_drive(swing), *force_components())
+    every = (*motion_and_drive_curves(swing), *force_components())
     return [one for one in every if one.attribute != "driven_error" or has_position_error(mechanism, swing)]
 
 
@@ -158,8 +158,8 @@ def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: in
     swing is slow, and the names of the curves with their unit. Raises `InputError` for an odd number of points, too few
     or too many, and `AssemblyError` for a linkage that cannot make the swing.
     """
-    count, checked = even_points(points, MOST), require_swing(mechanism, linkage, swing)
-    swing = placed(mechanism, checked, swing)
+    count, checked = require_even_point_count(points, MOST), require_swing(mechanism, linkage, swing)
+    swing = swing_between_crank_angles(mechanism, checked, swing)
     ways = curves_at_even_times(mechanism, checked, swing, count)
     shares = np.concatenate([ways[0].share, 1.0 + ways[1].share])
     columns: dict[str, Any] = {"way": np.where(shares <= 1.0, "forth", "back")}
@@ -173,7 +173,7 @@ def swing_table(mechanism: Mechanism, linkage: Linkage, swing: Swing, points: in
     return pd.DataFrame(columns)
 
 
-def even_points(count: object, limit: int) -> int:
+def require_even_point_count(count: object, limit: int) -> int:
     """Return a valid number of points for both strokes together.
 
     Raises `InputError` unless it is even and between `LEAST` and a limit.

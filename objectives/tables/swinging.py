@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.kinematics.in_line import without_rounding
+from ...model.kinematics.in_line import offset_without_rounding
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single
+from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing
@@ -35,7 +35,7 @@ def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
     return tuple(replace(fact, swing=swing) for fact in swing_facts() if fact.unfit(swing) is None)
 
 
-def why_not(name: str, swing: Swing | None) -> str | None:
+def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
     """Return the reason why a motion does not have a swing quantity; None if it does, and for other names."""
     fact = FACTS.get(name)
     if not isinstance(fact, SwingQuantity):
@@ -57,7 +57,7 @@ def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: S
     """Raise `InputError` if a motion does not have a named swing quantity. custom: quantities of the problem."""
     custom_names = {item.name for item in custom}
     for name in names:
-        reason = None if name in custom_names else why_not(name, swing)
+        reason = None if name in custom_names else reason_undefined_for_swing(name, swing)
         if reason is not None:
             raise InputError(f"{name}: {reason}")
 
@@ -85,7 +85,7 @@ def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
     """
     require_same_driver(mechanism, swing)
     if swing is None:
-        return single(mechanism, linkage)
+        return single_rotating_linkage(mechanism, linkage)
     return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
 
 
@@ -130,24 +130,24 @@ def require_of_swing(key: str, quantity: Quantity, *, of_lever: bool = False) ->
             )
 
 
-def swinging(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
+def quantities_for_swing(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
     """Return the quantities of designs with a swing, in display order. custom: quantities of the problem."""
     every: Iterable[Quantity] = (*QUANTITIES.values(), *custom)
     quantities = [item for item in every if not any(leaf.turning for leaf in leaves_of([item]))]
     return tuple(sorted(quantities, key=lambda item: item.place))
 
 
-def columns_of(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
-    """Return the columns (n,) for designs with a swing (n, 3 + k), as `analysis.columns_of` does for a full turn."""
+def swing_columns(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
+    """Return the columns (n,) for designs with a swing (n, 3 + k), as `analysis_columns` does for a full turn."""
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
-    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+    dimensions[:, 2] = offset_without_rounding(dimensions[:, 1], dimensions[:, 2])
     columns: dict[str, NDArray[Any]] = {
         name: 1e3 * dimensions[:, place] for place, name in enumerate(("crank_mm", "rod_mm", "offset_mm"))
     }
     for place, item in enumerate(mechanism.varying):
         key, unit = varying_column(item)
         columns[key] = unit.factor * dimensions[:, 3 + place]
-    for quantity in swinging(custom):
+    for quantity in quantities_for_swing(custom):
         if quantity.undefined_because([mechanism]):
             columns[quantity.field] = np.full(len(dimensions), np.nan)
         else:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
 from ...objectives.quantity import Array
-from ...objectives.tables.design_input import given_designs
+from ...objectives.tables.design_input import designs_as_array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective
@@ -77,7 +77,7 @@ class StandardForm:
 
     def designs(self, x: ArrayLike) -> Array:
         """Return the designs (..., 3 + k) of points x; NaN where the eliminated equalities have no solution."""
-        points = given_designs(x, self.names)
+        points = designs_as_array(x, self.names)
         if self._branch is None:
             return points
         designs: Array = self._branch.dimensions(points.reshape(-1, len(self.names)))
@@ -90,7 +90,7 @@ class StandardForm:
         first two columns of G, which measure how far it is from rotating fully. If a design cannot make the swing, all
         are infinite. Raises `InputError` as `Problem.evaluate` does.
         """
-        points = given_designs(x, self.names)
+        points = designs_as_array(x, self.names)
         x = self.designs(points)
         names = tuple(dict.fromkeys([*self.objectives, *(c.quantity for c in self._constraints)]))
         values, slopes = (

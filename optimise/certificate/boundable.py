@@ -9,7 +9,7 @@ from ...objectives.bars import BarPeak
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
 from ...objectives.quantity import Quantity
-from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
+from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Sense
 from .machine import unboundable_load_reason
@@ -31,7 +31,7 @@ def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
         return f"{quantity.title} has no bound over a range of designs where a cylinder moves a lever"
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
-    if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | SwingForm):
+    if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | ClosedFormSwingQuantity):
         profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
         return f"{quantity.title}{profile} has no bound over a range of designs"
     has_forces = _has_forces(quantity)
@@ -39,16 +39,18 @@ def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
         return f"{quantity.title} has no bound over a range of designs with friction"
     if has_forces and (load := unboundable_load_reason(mechanism)):
         return f"{quantity.title} has no bound over a range of designs: {load}"
-    least = isinstance(quantity, SwingLeast | SwingForm) or (isinstance(quantity, BarPeak) and quantity.least)
+    least = isinstance(quantity, SwingLeast | ClosedFormSwingQuantity) or (
+        isinstance(quantity, BarPeak) and quantity.least
+    )
     if objective.sense != ("maximise" if least else "minimise"):
         side, sense = ("an upper", "maximised") if least else ("a lower", "minimised")
         return f"{quantity.title} only has {side} bound, so it can only be certified if it is {sense}"
     return ""
 
 
-def is_swing_form(quantity: Quantity) -> TypeGuard[SwingForm]:
+def is_swing_form(quantity: Quantity) -> TypeGuard[ClosedFormSwingQuantity]:
     """Whether a quantity has a closed form in the two ends of a swing."""
-    return isinstance(quantity, SwingForm) and quantity.measure != "angle"
+    return isinstance(quantity, ClosedFormSwingQuantity) and quantity.measure != "angle"
 
 
 def _has_forces(quantity: Quantity) -> bool:

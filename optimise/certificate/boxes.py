@@ -12,13 +12,13 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
 from ...model.kernel.arithmetic import magnitude
-from ...model.kinematics.closed_forms import closed_form
+from ...model.kinematics.closed_forms import closed_form_value
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.bars import BarPeak
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
-from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
-from ...objectives.tables.evaluate import moving
+from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
+from ...objectives.tables.evaluate import can_move
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.requirements import Constraint, Objective, Range
 from ..problem.violation import restated_constraints
@@ -91,7 +91,7 @@ class Boxes:
             return [CycleCurve(machine, quantity.signal, during=quantity.during) for machine in machines]
         if isinstance(quantity, BarPeak):
             return demand_curves(self.mechanism, quantity)
-        if isinstance(quantity, SwingPeak | SwingLeast | SwingForm) and not is_swing_form(quantity):
+        if isinstance(quantity, SwingPeak | SwingLeast | ClosedFormSwingQuantity) and not is_swing_form(quantity):
             return [SwingCurve(self.mechanism, quantity)]
         return []
 
@@ -108,7 +108,7 @@ class Boxes:
             for constraint in self.cheap:
                 limits.add_constraint(constraint, *self._closed_form_bounds(constraint.quantity, numbers))
             middle = self.branch.dimensions(0.5 * (lower + upper))
-            moves = moving(self.mechanism, self.problem.motion, middle)
+            moves = can_move(self.mechanism, self.problem.motion, middle)
             curves: dict[str, Enclosure] = {}
             for name, curves_of_quantity in self.curves.items():
                 rows = np.flatnonzero(limits.alive)  # constraints before this one may have ruled out boxes
@@ -194,7 +194,8 @@ class Boxes:
         ]
         # NaN for designs that do not rotate fully
         least, highest = [
-            np.where(l > r + a, closed_form(int(quantity.forms[0]), r, l, a), np.nan) for r, l, a in (least_at, most_at)
+            np.where(l > r + a, closed_form_value(int(quantity.forms[0]), r, l, a), np.nan)
+            for r, l, a in (least_at, most_at)
         ]
         least, highest = least - _ROUNDED * np.abs(least), highest + _ROUNDED * np.abs(highest)
         return value, np.where(np.isnan(least), -np.inf, least), np.fmin(greatest, highest)

@@ -27,10 +27,10 @@ from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import Member, cylinders_of, is_shaft, single_cylinder
-from ...model.machine.two_turns import TURN, cycle_turns, halves
+from ...model.machine.members import Member, cylinder_machines, is_treated_as_shaft, single_cylinder
+from ...model.machine.two_turns import TURN, cycle_turns, machines_of_both_turns
 from ...model.signals.peaks import find_peaks
-from ...model.signals.screening import screen, screens
+from ...model.signals.screening import is_supported, screened_maxima
 from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_motion
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
@@ -49,8 +49,8 @@ def machines_with_separate_peaks(mechanism: Mechanism, kind: Signal) -> tuple[Me
     If the cycle of a single crank has two turns, each turn is a separate machine. So is each cylinder, if the signal
     does not add up over the cylinders.
     """
-    if not is_shaft(mechanism):
-        return halves(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
+    if not is_treated_as_shaft(mechanism):
+        return machines_of_both_turns(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
     alike = equivalent_single_cranks(mechanism, kind)
     every = mechanism.arrangement
     if alike:
@@ -83,20 +83,22 @@ class CycleCurve:
         self.turns = cycle_turns(single) if self.kind.needs_forces else 1
         self.machines = [
             BoxMachine(half, *signal_inputs(half, self.kind))
-            for half in (halves(single) if self.turns > 1 else (single,))
+            for half in (machines_of_both_turns(single) if self.turns > 1 else (single,))
         ]
-        self.members = cylinders_of(mechanism) if is_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
+        self.members = (
+            cylinder_machines(mechanism) if is_treated_as_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
+        )
         self.watch = cycle_window(self.machines[0].mechanism, self.kind, during=during)
         self.pace = speed_ratio_of(mechanism)
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
         self.jumps = self.watch.split and self.kind not in (Signal.TORQUE, Signal.POWER)
-        self.steps = self.kind.needs_forces and any(load.steps for load in mechanism.fullest.loads)
+        self.steps = self.kind.needs_forces and any(load.steps for load in mechanism.with_largest_variables.loads)
         self.shares = self.partial and self.kind in _ERRORS
 
     def peak_positions(self, designs: Array) -> Array:
         """Return each design's crank angle at the peak, rad, (n, 1); for a crankshaft, the shaft's angle."""
-        if screens(self.mechanism, self.kind, during=self.during):
-            return screen(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
+        if is_supported(self.mechanism, self.kind, during=self.during):
+            return screened_maxima(self.mechanism, (self.kind,), designs, places=True)[0].angles[:, None]
         angles = find_peaks(self.mechanism, self.kind, designs, during=self.during, limit=1).angles
         return np.where(np.isfinite(angles), angles, 0.0)
 

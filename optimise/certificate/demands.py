@@ -23,12 +23,12 @@ from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import single_cylinder
 from ...model.machine.raw import Raw
-from ...model.machine.two_turns import cycle_turns, halves
+from ...model.machine.two_turns import cycle_turns, machines_of_both_turns
 from ...model.signals.signals import Signal
-from ...model.strength.section_forces import ROD, at_share, stress_along
+from ...model.strength.section_forces import ROD, stress_along, stress_at_length_fraction
 from ...model.strength.stress_cycle import stress_peaks
-from ...model.strength.stress_locations import Eye, StressLocation, eye_factors
-from ...objectives.bars import FORCE, BarPeak, Criteria, Demand
+from ...model.strength.stress_locations import Eye, StressLocation, eye_stress_factor_formulas
+from ...objectives.bars import FORCE, BarPeak, Criteria, SectionLoad
 from .cycle import CycleCurve, machines_with_separate_peaks
 from .enclosure import Enclosure, join_parts
 from .machine import Numbers, parameter_lookup
@@ -84,19 +84,22 @@ class StressCurve(CycleCurve):
         slot = Raw.ROD_WIDTH if location.part == ROD else Raw.CRANK_WIDTH
         c = stress_along(location.part, *state, 0.0, (number(slot), number(slot + 1), number(slot + 2)))
         if not isinstance(location, Eye):
-            return at_share(c, side if location.bent else 0.0, share)
-        axial, bending = eye_factors(self.mechanism, location)
+            return stress_at_length_fraction(c, side if location.bent else 0.0, share)
+        axial, bending = eye_stress_factor_formulas(self.mechanism, location)
         end = 1.0 if location.far else 0.0
-        stress = at_share(c, 0.0, end) * axial(number)
+        stress = stress_at_length_fraction(c, 0.0, end) * axial(number)
         if location.bent:
-            stress = stress + at_share(c._replace(n0=0.0, n1=0.0, n2=0.0), 1.0, end) * bending(number) * side
+            stress = (
+                stress
+                + stress_at_length_fraction(c._replace(n0=0.0, n1=0.0, n2=0.0), 1.0, end) * bending(number) * side
+            )
         return stress
 
 
 class DemandCurve:
     """One load demand: the greatest scale peak / section or, with `least`, the least scale section / peak."""
 
-    def __init__(self, peak: CycleCurve, demand: Demand, *, least: bool) -> None:
+    def __init__(self, peak: CycleCurve, demand: SectionLoad, *, least: bool) -> None:
         self.peak, self.demand, self.least, self.default_position = peak, demand, least, peak.default_position
 
     def peak_positions(self, designs: Array) -> Array:
@@ -120,9 +123,9 @@ class DemandCurve:
 def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
     """Return the curves whose greatest or least value is the quantity."""
     single = single_cylinder(mechanism)
-    turns = halves(single) if cycle_turns(single) > 1 else (single,)
+    turns = machines_of_both_turns(single) if cycle_turns(single) > 1 else (single,)
     curves: list[DemandCurve] = []
-    for demand in quantity.demands(mechanism):
+    for demand in quantity.section_loads(mechanism):
         peaks: list[CycleCurve]
         if isinstance(demand.peak, str):
             signal = FORCE[demand.peak]

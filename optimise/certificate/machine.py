@@ -8,19 +8,19 @@ from typing import Any, cast
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.dynamics.torque import smooth_load
-from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive, design_at
+from ...model.dynamics.torque import load_without_pieces
+from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.numbers import nominal_number, raw_numbers
+from ...model.machine.numbers import nominal_number, raw_numbers_by_slot
 from ...model.machine.raw import Loads
 from .enclosure import UNIT, Enclosure, interval, select
 from .gas import gas_force
 
 _TURN = 2.0 * np.pi
-_derive = cast(Any, derive)
+_derive = cast(Any, derive_design)
 
 Numbers = Mapping[int, Enclosure]
 """Machine parameters that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
@@ -30,7 +30,7 @@ def parameters_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Num
     """Return the machine parameters that designs set, from the columns (n, 1) of a design's own numbers."""
     design = np.empty((1, len(columns)), dtype=object)
     design[0, :] = columns
-    return {slot: value[0] for slot, value in raw_numbers(mechanism, design).items()}
+    return {slot: value[0] for slot, value in raw_numbers_by_slot(mechanism, design).items()}
 
 
 def parameter_lookup(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
@@ -66,7 +66,7 @@ class BoxMachine:
 
     def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
         """Return the load on the slider, N outward. outward: has the sign of the slider's outward velocity."""
-        load: Any = smooth_load(m, d, select_by_stroke(outward, d.outward_force, d.inward_force))
+        load: Any = load_without_pieces(m, d, select_by_stroke(outward, d.outward_force, d.inward_force))
         way = select_by_stroke(outward, 1.0, -1.0)
         for k, code in enumerate(self.loads.kind.tolist()):
             row = DESIGN + LOAD_ROWS * k

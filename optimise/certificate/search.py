@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
-from ...model.arrays import Array, IntArray, distinct
+from ...model.arrays import Array, IntArray, sorted_unique
 from ..problem.problem import Problem
 from ..problem.violation import FEASIBLE, minimised, restated_constraints
 from ..search.assemble import columns_of, span_of
@@ -57,7 +57,7 @@ class Search:
         self.problem, self.epsilon, self.seconds = problem, epsilon, seconds
         self.cancelled = cancelled
         values = np.empty((len(dimensions), len(problem.objectives)))
-        for variant in distinct(variants).tolist():
+        for variant in sorted_unique(variants).tolist():
             rows = variants == variant
             values[rows] = _exact_objectives(problem.part(variant), dimensions[rows])
         self.span, self.ideal = span_of(problem, values), values.min(axis=0)
@@ -68,7 +68,7 @@ class Search:
         m = len(problem.objectives)
         self.added = Candidates.empty(m)  # values scaled
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
-        self.closed = 0.0  # largest excess of closed boxes over the set and over the front alone
+        self.made_periodic = 0.0  # largest excess of closed boxes over the set and over the front alone
         self.closed_by_front = 0.0
         self.gap, self.hole = 0.0, np.full(dimensions.shape[1], np.nan)
         self.stopped = False
@@ -162,7 +162,7 @@ class Search:
     def _record_closed_corners(self, corner: Array, gaps: Array) -> None:
         if not len(corner):
             return
-        self.closed = max(self.closed, float(gaps.max()))
+        self.made_periodic = max(self.made_periodic, float(gaps.max()))
         alone = excess(corner, self.front, enough=self.epsilon)
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
@@ -175,7 +175,7 @@ class Search:
             )
 
     def _proven_epsilon(self) -> float:
-        return max(self.closed, float(self.tree.excess.max(initial=0.0)))
+        return max(self.made_periodic, float(self.tree.excess.max(initial=0.0)))
 
     # ---- the result -----------------------------------------------------------------------------------------------
 

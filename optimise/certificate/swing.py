@@ -12,22 +12,22 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.dynamics.torque import balance, forces, with_couple
+from ...model.dynamics.torque import add_crank_couple, balance_before_pin_force, forces
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.numbers import START
-from ...model.machine.raw import fullest_inputs
+from ...model.machine.raw import raw_inputs_with_all_features
 from ...model.signals.position_error import influences, worst_case
 from ...model.signals.signals import design_motion
-from ...model.swing.ends import ends_of, start_column
-from ...model.swing.law import code_of, corners, way_at
-from ...model.swing.peaks import least_drives, swing_peaks
-from ...model.swing.slider_pin_force import free_pin, toggle_distance
-from ...model.swing.swing import Swing, slowly
+from ...model.swing.ends import ends_of, swing_start_column
+from ...model.swing.law import code_of, corners, travel_and_derivatives_at
+from ...model.swing.peaks import negated_least_drive_peaks, swing_peaks
+from ...model.swing.slider_pin_force import frictionless_pin_force, pin_distance_from_crank_line
+from ...model.swing.swing import Swing, without_inertia
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
-from ...objectives.swing_quantity import SwingForm, SwingLeast, SwingPeak
+from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
 from .crank_angles import angle_near, crank_sine_and_cosine
 from .enclosure import Enclosure, constant, join_parts, sign_of
 from .machine import BoxMachine, Numbers
@@ -65,12 +65,12 @@ class SwingBoxes:
     """A swing over boxes of designs, without friction. slow: without inertia."""
 
     def __init__(self, mechanism: Mechanism, swing: Swing, *, slow: bool = False) -> None:
-        self.mechanism, self.swing = mechanism, slowly(swing) if slow else swing
-        self.machine = BoxMachine(mechanism, *fullest_inputs(mechanism))
-        self.varies = start_column(mechanism) is not None
+        self.mechanism, self.swing = mechanism, without_inertia(swing) if slow else swing
+        self.machine = BoxMachine(mechanism, *raw_inputs_with_all_features(mechanism))
+        self.varies = swing_start_column(mechanism) is not None
         self.slider = swing.driver == "slider"
         self.per_time = 0.0 if self.swing.duration is None else 1.0 / self.swing.duration
-        loads = mechanism.fullest.loads
+        loads = mechanism.with_largest_variables.loads
         self.needs_angle = any(load.on_crank or load.turns for load in loads)
         self.steps = any(load.steps for load in loads)
         self.corners = corners(self.swing.law, self.swing.table)
@@ -92,7 +92,7 @@ class SwingBoxes:
         return _Ends(
             (first, last),
             (positions[0], positions[1]),
-            sign_of(toggle_distance(sine, cosine, design_motion(sine, cosine, d))),
+            sign_of(pin_distance_from_crank_line(sine, cosine, design_motion(sine, cosine, d))),
         )
 
     def state_at_time(self, numbers: Numbers, share: Array, probe: Array, back: Array) -> _State:
@@ -101,7 +101,7 @@ class SwingBoxes:
         probe: fractions on the same side of a corner in the law. back: 1 on the return stroke.
         """
         direction = 1.0 - 2.0 * back
-        way, way_1, way_2, _ = way_at(code_of(self.swing.law), self.swing.table, share, probe)
+        way, way_1, way_2, _ = travel_and_derivatives_at(code_of(self.swing.law), self.swing.table, share, probe)
         return self.state_at_travel(
             numbers, np.where(back > 0.5, 1.0 - way, way), direction, direction * way_1, direction * way_2
         )
@@ -141,8 +141,8 @@ class SwingBoxes:
         if not self.slider:
             torque: Enclosure = forces(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
             return torque
-        b = with_couple(balance(at.sine, at.cosine, at.m, at.d, load), 0.0 - on_crank)
-        force: Enclosure = b.pull - free_pin(at.sine, at.cosine, at.m, at.d, b)[0]
+        b = add_crank_couple(balance_before_pin_force(at.sine, at.cosine, at.m, at.d, load), 0.0 - on_crank)
+        force: Enclosure = b.pull - frictionless_pin_force(at.sine, at.cosine, at.m, at.d, b)[0]
         return force
 
     def position_error(self, at: _State) -> Enclosure:
@@ -160,7 +160,7 @@ class SwingBoxes:
     def transmission_angle(self, numbers: Numbers, way: Array) -> Enclosure:
         """Return the transmission angle on the driven side at fractions of the travel (n, p), rad."""
         at = self.state_at_travel(numbers, way)
-        sine = magnitude(toggle_distance(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
+        sine = magnitude(pin_distance_from_crank_line(at.sine, at.cosine, at.m) if self.slider else at.m.l_sin) / at.d.l
         angle: Enclosure = np.arcsin(sine)
         return angle if self.slider else 0.5 * np.pi - angle
 
@@ -177,7 +177,7 @@ class SwingBoxes:
 class SwingCurve:
     """A quantity of a swing over boxes of designs: greatest or, with `least`, least value of a state."""
 
-    def __init__(self, mechanism: Mechanism, quantity: SwingPeak | SwingLeast | SwingForm) -> None:
+    def __init__(self, mechanism: Mechanism, quantity: SwingPeak | SwingLeast | ClosedFormSwingQuantity) -> None:
         assert quantity.swing is not None
         self.least = not isinstance(quantity, SwingPeak)
         self.quantity = quantity
@@ -203,10 +203,10 @@ class SwingCurve:
         """
         mechanism, swing, quantity = self.boxes.mechanism, self.quantity.swing, self.quantity
         assert swing is not None
-        if isinstance(quantity, SwingForm):
+        if isinstance(quantity, ClosedFormSwingQuantity):
             return _least_transmission_angle_position(mechanism, swing, designs)[:, None]
         if isinstance(quantity, SwingLeast):
-            found = least_drives(mechanism, swing, designs, back=quantity.back, limit=1).places
+            found = negated_least_drive_peaks(mechanism, swing, designs, back=quantity.back, limit=1).places
         elif quantity.state is None:
             return np.full((len(designs), 1), self.default_position)
         else:
@@ -231,7 +231,7 @@ class SwingCurve:
 
     def _enclose_at(self, numbers: Numbers, positions: Array) -> Enclosure:
         boxes, quantity = self.boxes, self.quantity
-        if isinstance(quantity, SwingForm):
+        if isinstance(quantity, ClosedFormSwingQuantity):
             return boxes.transmission_angle(numbers, positions)
         back = (
             np.where(positions > 1.0, 1.0, 0.0)
@@ -266,13 +266,13 @@ def _least_transmission_angle_position(mechanism: Mechanism, swing: Swing, desig
         first, last = (motion(np.sin(at), np.cos(at), r, l, e, mechanism.sign).x for at in (ends.start, ends.end))
         found = -first / (last - first)
     else:  # where the crank is normal to the slider line, first on the side away from it
-        angles = [ends.turned_into(angle) for angle in (0.5 * np.pi, 1.5 * np.pi)]
+        angles = [ends.wrap_into_swing(angle) for angle in (0.5 * np.pi, 1.5 * np.pi)]
         far, near = np.where(e >= 0.0, angles[::-1], angles)
         found = (np.where(np.isnan(far), near, far) - ends.start) / (ends.end - ends.start)
     return np.where((found >= 0.0) & (found <= 1.0), found, 0.0)
 
 
-def swing_form(mechanism: Mechanism, quantity: SwingForm, numbers: Numbers) -> Enclosure:
+def swing_form(mechanism: Mechanism, quantity: ClosedFormSwingQuantity, numbers: Numbers) -> Enclosure:
     """Return lower and upper bounds on the slider's travel, m, or the crank's angle, rad."""
     assert quantity.swing is not None
     boxes = SwingBoxes(mechanism, quantity.swing, slow=True)

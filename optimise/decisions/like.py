@@ -21,7 +21,7 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.linkage.linkage_values import in_both_units
+from ...model.linkage.linkage_values import implausible_length_text
 from ..front.dominance import dominating
 from ..front.front import ParetoFront, lower_and_upper, require_front
 from ..front.hypervolume import scaling
@@ -113,7 +113,7 @@ def like(
     ranges = {name: lower_and_upper(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # raises an error for an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
-    if (doubt := in_both_units(ends)) is not None:
+    if (doubt := implausible_length_text(ends)) is not None:
         warn_user(f"ranges of lengths are in m: {doubt}")
     table = {name: values[row] for name, values in front.columns.items()}
     return nearest_optimal_design(

@@ -17,7 +17,7 @@ from platform import python_version_tuple
 from typing import Any
 
 from ...model.errors import EngineError, InputError, SlidercrankError
-from ...model.extras import required
+from ...model.extras import import_extra
 from .engine import Found, Item, Poll
 
 _log = logging.getLogger(__name__)
@@ -199,7 +199,7 @@ class Cluster:
 
     def _connected_client(self) -> Any:
         if self._client is None:
-            dask = required("distributed", "a Dask cluster needs")
+            dask = import_extra("distributed", "a Dask cluster needs")
             for name in [name for name in logging.root.manager.loggerDict if name.startswith("distributed")]:
                 logging.getLogger(name).setLevel(logging.CRITICAL)  # errors are raised, and logged, here
             security = None

@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, cast
 
 from ...model.errors import EngineError, InputError
-from ...model.kernel.interruption import ask, farewell, killed
+from ...model.kernel.interruption import interruption_grace_time, poll_interruption, record_killed_call
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3
@@ -103,7 +103,7 @@ class Processes:
                     del running[future]
                 if poll is not None:
                     poll()
-                ask()
+                poll_interruption()
         except BrokenProcessPool:
             self.close()
             for future, index in running.items():
@@ -113,8 +113,8 @@ class Processes:
         except BaseException:
             for future in running:
                 future.cancel()
-            if wait([future for future in running if future.running()], timeout=farewell()).not_done:
-                killed()
+            if wait([future for future in running if future.running()], timeout=interruption_grace_time()).not_done:
+                record_killed_call()
                 self._abandon()
             raise
 

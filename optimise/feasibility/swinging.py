@@ -10,11 +10,11 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.closure import closes, passes
-from ...model.swing.ends import start_column
+from ...model.swing.closure import closes_over_swing, swings_without_dead_point
+from ...model.swing.ends import swing_start_column
 from ...model.swing.swing import Swing
-from ...model.swing.swing_batch import driven
-from ...objectives.tables.evaluate import moving
+from ...model.swing.swing_batch import can_swing_despite_friction
+from ...objectives.tables.evaluate import can_move
 from ..problem.problem import Problem
 from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.sampling import first_samples
@@ -40,16 +40,17 @@ def why_no_swing(problem: Problem) -> str:
     stuck: list[tuple[Mechanism, Array]] = []
     for index, branch in enumerate(elimination_branches(problem)):
         machine, designs = problem.part(branch.variant).mechanism, _samples(problem, branch, index)
-        closing += int(closes(machine, motion, designs).sum())
-        passing += int(passes(machine, motion, designs).sum())
-        able = designs[moving(machine, motion, designs)]
-        if driven(machine, motion, able).any():
+        closing += int(closes_over_swing(machine, motion, designs).sum())
+        passing += int(swings_without_dead_point(machine, motion, designs).sum())
+        able = designs[can_move(machine, motion, designs)]
+        if can_swing_despite_friction(machine, motion, able).any():
             return ""
         stuck.append((machine, able))
     factor, unit = (180.0 / math.pi, "deg") if motion.stated_for == "crank" else (1e3, "mm of the slider")
     movement = f"the swing from {factor * motion.start:.6g} to {factor * motion.end:.6g} {unit}"
     if any(
-        start_column(problem.part(branch.variant).mechanism) is not None for branch in elimination_branches(problem)
+        swing_start_column(problem.part(branch.variant).mechanism) is not None
+        for branch in elimination_branches(problem)
     ):
         movement = f"the swing by {factor * (motion.end - motion.start):.6g} {unit}" if motion.follows else "the swing"
     if not closing and motion.stated_for == "slider":
@@ -85,7 +86,7 @@ def _unswung_lever(problem: Problem, motion: Swing) -> str:
     """Return the reason why no lever within the ranges makes the required swing; "" if one in a sample does."""
     for index, branch in enumerate(elimination_branches(problem)):
         machine = problem.part(branch.variant).mechanism
-        if moving(machine, motion, _samples(problem, branch, index)).any():
+        if can_move(machine, motion, _samples(problem, branch, index)).any():
             return ""
     start, end = (f"{180.0 / math.pi * angle:.6g}" for angle in (motion.start, motion.end))
     return (
@@ -102,7 +103,10 @@ def _excessive_friction_text(stuck: list[tuple[Mechanism, Array]], motion: Swing
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         share = 0.5 * (low + high)
-        runs = any(driven(_with_friction_share(machine, share), motion, able).any() for machine, able in stuck)
+        runs = any(
+            can_swing_despite_friction(_with_friction_share(machine, share), motion, able).any()
+            for machine, able in stuck
+        )
         low, high = (share, high) if runs else (low, share)
     return f"the first ones run with {low:.2g} of its coefficients; "
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...model.input_warning import both_readings
+from ...model.input_warning import reading_in_both_units
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
@@ -131,7 +131,9 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
     for name, value in _allowed_misses(part, plain_misses).items():
         quantity = part.quantity(name)
         if quantity.unit.symbol != quantity.kind.unit and value > _LARGE * bounds[name]:
-            doubts.append(both_readings(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor))
+            doubts.append(
+                reading_in_both_units(name, value, quantity.kind.unit, quantity.unit.symbol, quantity.unit.factor)
+            )
     return doubts
 
 

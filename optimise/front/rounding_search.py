@@ -13,7 +13,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
-from ...objectives.tables.evaluate import running
+from ...objectives.tables.evaluate import can_run_despite_friction
 from ...objectives.tables.varying_column import columns_of_numbers
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
@@ -193,7 +193,7 @@ class RoundingSearch:
         grid = np.meshgrid(*self._possible_values(window), indexing="ij")
         designs = np.stack([values.ravel() for values in grid], axis=1)
         if self.part.motion is not None:
-            return np.asarray(designs[running(self.part.mechanism, self.part.motion, designs)])
+            return np.asarray(designs[can_run_despite_friction(self.part.mechanism, self.part.motion, designs)])
         return np.asarray(designs[rotates_beyond_rounding(designs)])
 
     def _steps_away(self, designs: Array) -> Array:

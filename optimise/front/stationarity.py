@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, IntArray, row_lengths
+from ...model.arrays import Array, IntArray, row_norms
 from .nonnegative import nonnegative_least_squares
 
 STATIONARY = 1e-6
@@ -76,6 +76,6 @@ def multipliers_with_positive_weights(
 
 def _row_sizes(goals: Array, active: Array) -> tuple[float, Array]:
     """Return a common size of the objective rows and the length of each active row, for scale-free weights."""
-    lengths = row_lengths(active)
+    lengths = row_norms(active)
     lengths[lengths == 0.0] = 1.0
-    return float(row_lengths(goals).max(initial=0.0)) or 1.0, lengths
+    return float(row_norms(goals).max(initial=0.0)) or 1.0, lengths

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError, JobError
-from ...objectives.formula.formulas import words_of
+from ...objectives.formula.formulas import identifiers_in
 from ...objectives.units import to_si
 from ..problem.violation import FEASIBLE
 from .amounts import excluded_in_words
@@ -49,10 +49,14 @@ def _requirements_on_amounts(tables: Mapping[str, Any], columns: Sequence[Column
     plain = {column.name for column in columns if column.is_amount}
     words: set[str] = set()  # names in formulas, where more or less may be better
     for key, value in (*objectives.items(), *constraints.items()):
-        words |= set() if key in plain else set(words_of(key))
-        words |= {word for bound in value.values() for word in words_of(bound)} if isinstance(value, Mapping) else set()
+        words |= set() if key in plain else set(identifiers_in(key))
+        words |= (
+            {word for bound in value.values() for word in identifiers_in(bound)}
+            if isinstance(value, Mapping)
+            else set()
+        )
     for part in quantity_tables.values():
-        words |= set(words_of(part.get("formula"))) if isinstance(part, Mapping) else set()
+        words |= set(identifiers_in(part.get("formula"))) if isinstance(part, Mapping) else set()
     requests = {}
     for column in columns:
         if not column.is_amount or column.kind is None:

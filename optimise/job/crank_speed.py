@@ -103,7 +103,7 @@ class CrankSpeedPart(Part):
         rate = 0.0 if self.strokes_per_minute is None else self.strokes_per_minute / _RPM
         if self.cycle_time is not None:
             rate = 2.0 * math.pi * turns / self.cycle_time
-        share = 1.0 if self.speed_profile is None else self.speed_profile.build().over_time
+        share = 1.0 if self.speed_profile is None else self.speed_profile.build().time_mean_over_angle_mean
         return (-rate if self.direction == "clockwise" else rate) / share
 
     @model_validator(mode="after")

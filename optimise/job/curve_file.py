@@ -19,7 +19,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import per_si, quote, squeezed, symbol_in, without_in
+from ...objectives.units import letters_and_digits, quote, symbol_in, value_of_one_si_unit_in, without_word_in
 from .table_file import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -58,7 +58,7 @@ class Curve:
     @property
     def full_turn(self) -> float:
         """A full turn of the crank in the unit of its angle."""
-        return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * per_si(self.argument_head.unit))
+        return _TURNS.get(self.argument_head.unit, 2.0 * math.pi * value_of_one_si_unit_in(self.argument_head.unit))
 
     @property
     def turn_count(self) -> float:
@@ -128,7 +128,7 @@ def _units_in(text: str) -> list[str]:
     words = re.split(r"[\s_,:]+|\s/\s", _BRACKETS.sub("", text).strip())
     endings = [" ".join(words[n:]) for n in range(1, len(words))]
     units = [*_BRACKETS.findall(text)[::-1], *sorted(endings, key=lambda ending: ending.startswith("in "))]
-    return [without_in(unit) for unit in units]
+    return [without_word_in(unit) for unit in units]
 
 
 def _names_kind(text: str, kind: Kind) -> bool:
@@ -147,10 +147,10 @@ def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
 
 def _heading_remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     """Return the remedy for headings without a unit: correct a misspelt one, or add one."""
-    words = {squeezed(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
+    words = {letters_and_digits(unit).casefold(): unit for kind in kinds for unit in (*kind.typed, kind.metric.symbol)}
     words |= {"grad": ANGLE.metric.symbol} if ANGLE in kinds else {}
     for unit in (unit for head in heads if not head.startswith("#") for unit in _units_in(head)):
-        if intended_unit := words.get(squeezed(unit).casefold()):
+        if intended_unit := words.get(letters_and_digits(unit).casefold()):
             return f"the unit {quote(unit)} is not known; write {intended_unit}"
     return "name the unit"
 
@@ -203,7 +203,7 @@ def convert_time_to_angle(curve: Curve, speed: float) -> Curve:
         raise InputError(
             f"{curve.name}: times must increase; got {curve.arguments[wrong[0] + 1]:g} later; sort the rows"
         )
-    turns = curve.arguments / per_si(curve.argument_head.unit) * speed / (2.0 * math.pi)
+    turns = curve.arguments / value_of_one_si_unit_in(curve.argument_head.unit) * speed / (2.0 * math.pi)
     notes = (*curve.notes, f"times are crank angles at {speed * 30.0 / math.pi:.6g} rpm")
     order = slice(None, None, -1 if speed < 0.0 else 1)
     head = curve.argument_head._replace(kind=ANGLE, unit="deg")

@@ -14,19 +14,19 @@ from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula import formulas
 from ...objectives.formula.expression import ARGUMENTS
-from ...objectives.formula.formulas import words_of
+from ...objectives.formula.formulas import identifiers_in
 from ...objectives.kinds import TIME, Kind, kind_in
 from ...objectives.own.quantity import (
     FUNCTION,
     LIMIT,
     Gradient,
     OwnQuantity,
-    installed,
+    installed_quantity,
     quantity_entry_points,
     require_name,
 )
 from ...objectives.registry import FACTS
-from ...objectives.units import is_value, kind_for, per_si, quote
+from ...objectives.units import is_value, kind_of_any_unit, quote, value_of_one_si_unit_in
 from .amounts import amounts_in, kinds_of_amounts
 from .part_kinds import Kinds
 from .quantities import SLOW_STROKE, Stated
@@ -45,7 +45,7 @@ def _check_function(text: str) -> str:
 
 def _check_unit(text: str) -> str:
     try:
-        kind_for(text)
+        kind_of_any_unit(text)
     except InputError as error:
         raise InputError(
             f'must be a unit; got {quote(text)}: {error}; write it like "N m", or "" for a ratio'
@@ -90,7 +90,7 @@ class FunctionPart(Part):
             name=name,
             function=self.function,
             title=self.title or "",
-            kind=kind_in(self.unit, per_si(self.unit), kind_for(self.unit)),
+            kind=kind_in(self.unit, value_of_one_si_unit_in(self.unit), kind_of_any_unit(self.unit)),
             gradient=self.gradient,
             folders=tuple(folders),
             limit=self.limit,
@@ -185,9 +185,9 @@ def declared_quantities(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             continue
         unit = part.get("unit", "") if isinstance(part, Mapping) else ""
         try:
-            kind = kind_for(unit if isinstance(unit, str) else "")
+            kind = kind_of_any_unit(unit if isinstance(unit, str) else "")
         except InputError:
-            kind = kind_for("")
+            kind = kind_of_any_unit("")
         is_taken = name in FACTS or name == SLOW_STROKE
         if not is_taken and name.isidentifier() and not name.startswith("_"):
             tables[name] = _quantity_facts(name.replace("_", " "), kind)
@@ -198,14 +198,14 @@ def declared_quantities(data: Mapping[str, Any], *, allowed: bool) -> Declared:
     }
     limits = (table_in(part, "constraints") for part in (data, *options_in(data)))
     requested = [name for table in (table_in(data, "objectives"), *limits) for name in _used_names(table)]
-    requested += [word for name in names for word in words_of(parts[name]["formula"])]
+    requested += [word for name in names for word in identifiers_in(parts[name]["formula"])]
     known_names = {*FACTS, *tables, *names, *DIMENSIONS, SLOW_STROKE}
     # Formulas are looked up first, because finding packages takes longer than reading a job.
     unknown = [name for name in dict.fromkeys(requested) if name not in known_names and name.isidentifier()]
     packages = quantity_entry_points() if unknown else {}
-    installed_quantities = tuple(installed(name) for name in unknown if name in packages)
+    installed_quantities = tuple(installed_quantity(name) for name in unknown if name in packages)
     for quantity in installed_quantities:
-        tables[quantity.name] = _quantity_facts(quantity.title, kind_for(quantity.unit.symbol))
+        tables[quantity.name] = _quantity_facts(quantity.title, kind_of_any_unit(quantity.unit.symbol))
     return Declared(tables, installed_quantities, names)
 
 
@@ -226,10 +226,10 @@ def _quantity_facts(title: str, kind: Kind) -> Stated:
 def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
     """Yield the names in a table's keys and bounds, including those in formulas."""
     for key, value in table.items():
-        yield from words_of(key)
+        yield from identifiers_in(key)
         for bound in value.values() if isinstance(value, Mapping) else ():
             if not (isinstance(bound, str) and is_value(bound)):  # words in a value are units
-                yield from words_of(bound)
+                yield from identifiers_in(bound)
 
 
 def import_folders(folder: Path | None) -> list[str]:

@@ -17,7 +17,7 @@ from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
 from ...objectives.tables.varying_column import number_in_words
-from ...objectives.units import is_value, kind_for
+from ...objectives.units import is_value, kind_of_any_unit
 from .amounts import amounts_in, kinds_of_amounts
 from .catalogue import with_options
 from .messages import key_of
@@ -138,7 +138,7 @@ class _Kinds:
         unit, formula = part.get("unit"), part.get("formula")
         try:
             if isinstance(unit, str):
-                return kind_for(unit)
+                return kind_of_any_unit(unit)
             return self.formula_kind(formula) if isinstance(formula, str) else None
         except InputError:
             return None
@@ -152,4 +152,4 @@ def _kind_of_first_value(value: object) -> Kind | None:
         return next((kind for item in value[:2] if (kind := _kind_of_first_value(item))), None)
     if not (isinstance(value, str) and is_value(value)):
         return None
-    return kind_for(value.strip().lstrip("+-.0123456789eE").strip())
+    return kind_of_any_unit(value.strip().lstrip("+-.0123456789eE").strip())

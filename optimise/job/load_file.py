@@ -7,7 +7,7 @@ from typing import Any
 
 from ...model.errors import InputError, JobError
 from ...model.machine.loads.load import ANGLE_DATUM, CYCLE, Entry, Table
-from ...model.machine.loads.registry import kinds
+from ...model.machine.loads.registry import load_classes
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
 from . import values
@@ -82,7 +82,7 @@ def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any
 
 def load_tables_with_points() -> list[tuple[Table, Entry, Entry]]:
     """Return the tables of loads with points, each with its entries for the arguments and for the values."""
-    every = [table for kind in kinds() for table in kind.tables]
+    every = [table for kind in load_classes() for table in kind.tables]
     pairs = [(table, [entry for entry in table.entries if entry.several]) for table in every]
     return [(table, pair[0], pair[1]) for table, pair in pairs if len(pair) == 2]
 

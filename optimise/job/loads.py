@@ -19,7 +19,7 @@ from pydantic import (
 
 from ...model.errors import InputError
 from ...model.machine.loads import load as model
-from ...model.machine.loads.registry import kinds
+from ...model.machine.loads.registry import load_classes
 from ...objectives.units import quote
 from . import values
 from .load_file import load_tables_with_points
@@ -45,7 +45,7 @@ def require_nondecreasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> 
     at: tuple[float, ...] = handler(typed)
     n = model.out_of_order(at)
     if n is not None:
-        raise InputError(model.order_rule(n, at, quote(typed[n]), quote(typed[n - 1])))
+        raise InputError(model.broken_order_rule(n, at, quote(typed[n]), quote(typed[n - 1])))
     return at
 
 
@@ -110,14 +110,18 @@ def _refuse_file(file: str, **_: object) -> model.Load:
     raise unread_file_error(file, "points")
 
 
-PARTS = {table.key: _part_of_table(table) for kind in kinds() for table in kind.tables} | {"file": _load_file_part()}
+PARTS = {table.key: _part_of_table(table) for kind in load_classes() for table in kind.tables} | {
+    "file": _load_file_part()
+}
 """Tables of loads by the key that identifies the kind, in the order of the tests."""
 
 
 def _load_kinds_text() -> str:
     """Return the kinds of load for messages, each by its required keys."""
     required = [
-        [entry.name for entry in table.entries if entry.default is None] for kind in kinds() for table in kind.tables
+        [entry.name for entry in table.entries if entry.default is None]
+        for kind in load_classes()
+        for table in kind.tables
     ]
     shapes = [f"{{ {', '.join(names)} }}" for names in [*required, ["file"]]]
     return f"{', '.join(shapes[:-1])} or {shapes[-1]}"

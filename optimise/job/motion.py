@@ -19,7 +19,7 @@ from ...objectives.lever_geometry import LEVER_TRANSMISSION_ANGLE
 from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
-from ...objectives.tables.swinging import swing_facts, why_not
+from ...objectives.tables.swinging import reason_undefined_for_swing, swing_facts
 from ..problem.requirements import Constraint
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
 from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
@@ -212,7 +212,9 @@ def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Par
     """Raise JobError if a job requires a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
         for quantity in swing_facts():
-            reason = why_not(quantity.name, swing) if getattr(part, quantity.name) is not None else None
+            reason = (
+                reason_undefined_for_swing(quantity.name, swing) if getattr(part, quantity.name) is not None else None
+            )
             if reason is not None:
                 raise JobError(f"{table}.{quantity.name}: {reason}")
 

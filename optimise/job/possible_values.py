@@ -14,7 +14,7 @@ from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, ratio_of
+from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, time_ratio_of_excess_angle
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Range
@@ -249,7 +249,7 @@ def greatest_time_ratio(cosine: float, share: Range) -> float:
         q = min(cosine - top * cell / _CELLS, share.upper)
         sine = q / (1.0 - p) if p < 1.0 else 1.0
         best = max(best, math.asin(min(sine, 1.0)) - math.asin(min(q / (1.0 + p), 1.0)))
-    return ratio_of(best)
+    return time_ratio_of_excess_angle(best)
 
 
 def _offset_sizes(offset: Range) -> Range:

@@ -139,7 +139,7 @@ def _require_tolerances_below_lengths(problem: Problem) -> None:
     """Reject a tolerance that may be as long as its link, because its unit must be wrong."""
     for part in problem.variants or (problem,):
         for name, ends in (("crank", part.crank), ("rod", part.rod)):
-            limit = getattr(part.mechanism.fullest.tolerances, name).limit(ends.lower)
+            limit = getattr(part.mechanism.with_largest_variables.tolerances, name).limit(ends.lower)
             if limit >= ends.lower:
                 raise JobError(
                     f"tolerances.{name}: must be less than the {name} itself, which may be {1e3 * ends.lower:g} mm; "

@@ -9,7 +9,7 @@ from pydantic import Field
 from ...model.errors import InputError, JobError
 from ...model.tolerance.spreads import Shape
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.robust.points import uncertain
+from ...objectives.robust.points import toleranced_columns
 from ...objectives.robust.quantity import SAMPLES, Case
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
@@ -55,7 +55,7 @@ def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
         return problem
     if problem.motion is not None:
         raise JobError("robust: needs a rotating crank; this crank swings; leave the table out")
-    if not uncertain(problem.part(0).mechanism):
+    if not toleranced_columns(problem.part(0).mechanism):
         raise JobError(
             "robust: needs tolerances of crank, rod or offset; got none (that of the crank angle affects no quantity "
             'of a whole cycle); add for example [tolerances] crank = "0.05 mm"'

@@ -12,7 +12,7 @@ from pydantic import Field
 from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
-from ...objectives.units import per_si
+from ...objectives.units import value_of_one_si_unit_in
 from .curve_file import Curve, curve_in, drop_closing_point
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
@@ -98,8 +98,8 @@ def _convert_time_to_turn_angle(curve: Curve) -> Curve:
     from scipy.interpolate import CubicSpline
 
     at, rpm = (
-        curve.arguments / per_si(curve.argument_head.unit),
-        curve.values / per_si(curve.value_head.unit) * (30.0 / math.pi),
+        curve.arguments / value_of_one_si_unit_in(curve.argument_head.unit),
+        curve.values / value_of_one_si_unit_in(curve.value_head.unit) * (30.0 / math.pi),
     )
     if len(at) < 4 or np.any(np.diff(at) <= 0.0):
         raise InputError(

@@ -54,10 +54,11 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
                 f"{request.crank_acceleration:.6g} rad/s^2{slower}"
             )
     if request.torque_limit is not None:
-        mean_torque, name = abs(turn.work) / TURN, limits.name("torque_limit")
+        mean_torque, name = abs(turn.load_work) / TURN, limits.name("torque_limit")
         if mean_torque > request.torque_limit:
             return InputError(
-                f"the loads take {abs(turn.work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; {name} is "
+                f"the loads take {abs(turn.load_work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
+                f"{name} is "
                 f"{request.torque_limit:.6g} N m; raise it"
             )
         solved = programme.solve("peak torque", needs)

@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.motion_law.law_turn import LawTerms, LawTurn
 from ...model.transient.equation import TURN
-from ...objectives.dead_centre import before_dead_centre
+from ...objectives.dead_centre import angle_and_travel_rate_before_dead_centre
 from .words import RANGE, LawObjective, Timing
 
 _EDGE = 1e-9  # rad
@@ -201,7 +201,7 @@ def _crank_angle_window(
             "reduce it"
         )
     design = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])
-    angles, _ = before_dead_centre(mechanism, design, np.array([request.window]))
+    angles, _ = angle_and_travel_rate_before_dead_centre(mechanism, design, np.array([request.window]))
     dead = float(linkage.dead_centre_angles[("inner", "outer").index(mechanism.slider.dead_centre)])
     return dead - mechanism.direction * float(angles[0]), float(angles[0])
 

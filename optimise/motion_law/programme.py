@@ -20,8 +20,8 @@ from typing import Any, Literal
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.extras import required
-from ...model.motion_law.law_turn import LawTurn, integrals_to
+from ...model.extras import import_extra
+from ...model.motion_law.law_turn import LawTurn, cell_integral_weights
 from ...model.transient.equation import TURN
 from .law_limits import LawLimits
 
@@ -93,12 +93,12 @@ class Programme:
         self.energy_unit = 0.5 * float(turn.terms.inertia.mean()) * (TURN / limits.cycle_time) ** 2
         self.ratio = self.energy_unit / self.unit
         n = len(turn.width)
-        half = np.repeat(integrals_to(np.array([0.5])), n, axis=0)
+        half = np.repeat(cell_integral_weights(np.array([0.5])), n, axis=0)
         self.loads = np.sum(turn.weights * turn.terms.load, axis=1) / self.unit
         self.half_loads = turn.width * np.einsum("ni,ni->n", half, turn.terms.load) / self.unit
         self.angles = np.stack([turn.low, turn.low + 0.5 * turn.way * turn.width])
         self.inertia = turn.inertia_at(self.angles)
-        low, high = limits.energy_limits(self.angles, self.inertia, turn.slider(self.angles)[0])
+        low, high = limits.energy_limits(self.angles, self.inertia, turn.slider_derivatives(self.angles)[0])
         lifted, lowered = (np.stack([np.maximum(by, np.roll(by, 1)), by]) for by in (margins.least, margins.greatest))
         self.low, self.high = low * (1.0 + lifted) / self.energy_unit, high * (1.0 - lowered) / self.energy_unit
         self.low = np.minimum(self.low, self.high)
@@ -156,7 +156,7 @@ class _Cone:
     rules: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.cp = cp = required("cvxpy", "a motion law needs")
+        self.cp = cp = import_extra("cvxpy", "a motion law needs")
         of, turn, n = self.programme, self.programme.turn, len(self.programme.turn.width)
         self.energy, self.torque, self.size = cp.Variable(n), cp.Variable(n), cp.Variable()
         self.following = np.roll(np.arange(n), -1)

@@ -55,12 +55,12 @@ class Reachable:
 
     def laws_within(self, torque: float) -> ReachableLaws:
         """Return the slowest and fastest law within a torque, N m."""
-        loss = self._continue_over_three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.work)
-        gain = self._continue_over_three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.work)
+        loss = self._continue_over_three_turns(torque * self.passed + self.taken, torque * TURN + self.turn.load_work)
+        gain = self._continue_over_three_turns(torque * self.passed - self.taken, torque * TURN - self.turn.load_work)
         slowest, fastest = self._least_energies(self.low, loss, gain), -self._least_energies(-self.high, gain, loss)
         within = bool(np.all(slowest <= self.high * (1.0 + _ROUNDING)))
         fastest = np.maximum(fastest, slowest)  # it may be lower if no law exists
-        closes = abs(self.turn.work) <= torque * TURN * (1.0 + _ROUNDING)
+        closes = abs(self.turn.load_work) <= torque * TURN * (1.0 + _ROUNDING)
         return ReachableLaws(slowest, fastest, self._time(slowest), self._time(fastest), within and closes)
 
     def least_torque(self, torque: float, longest: float, least: float) -> float:

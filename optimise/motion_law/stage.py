@@ -216,7 +216,7 @@ def _law_with_cycle_time(
     turn: LawTurn, limits: LawLimits, slow: Solution, fast: Solution | None
 ) -> tuple[MotionLaw, float, bool]:
     """Return the law with the cycle time, or at most that; the time that was missing; whether laws were combined."""
-    law = MotionLaw.closed(turn, slow.torque, float(slow.energy[0]))
+    law = MotionLaw.made_periodic(turn, slow.torque, float(slow.energy[0]))
     request, cycle_time = limits.request, limits.cycle_time
     if not law.node_energies.min() > 0.0 or request.objective == "cycle time":
         return law, 0.0, fast is not None
@@ -224,7 +224,7 @@ def _law_with_cycle_time(
     if request.timing == "at most" and missing >= 0.0:
         return law, 0.0, False
     if fast is not None:
-        other = MotionLaw.closed(turn, fast.torque, float(fast.energy[0]))
+        other = MotionLaw.made_periodic(turn, fast.torque, float(fast.energy[0]))
         if missing <= 0.0 and other.node_energies.min() > 0.0:
             return _with_period(lambda share: law.combined(other, share), 0.0, 1.0, cycle_time), 0.0, True
     # A constant added to K changes no torque.

@@ -9,7 +9,7 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.tolerance.sources import limits
+from ...model.tolerance.sources import limits_of_sources
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +84,7 @@ NAMES = (*DIMENSIONS, "crank_angle")
 
 def costs_of_tolerances(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
     """Return the cost of each tolerance of a mechanism, by name; None if a tolerance with a cost is zero."""
-    limits_by_name = dict(zip(NAMES, limits(before, linkage)[: len(NAMES)], strict=True))
+    limits_by_name = dict(zip(NAMES, limits_of_sources(before, linkage)[: len(NAMES)], strict=True))
     if not all(limits_by_name[name] > 0.0 for name in costs.by_name):
         return None
     return {name: cost.cost_at(float(limits_by_name[name])) for name, cost in costs.by_name.items()}

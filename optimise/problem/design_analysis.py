@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
-from ...model.input_warning import both_readings, warn_user
+from ...model.input_warning import reading_in_both_units, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import numbers
@@ -26,18 +26,18 @@ from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import Curve, cycle_curves, cycle_table, even_angles
 from ...objectives.tables.design_input import (
-    countable,
-    given_designs,
-    numbers_of,
+    designs_as_array,
+    has_finite_numbers,
+    names_of_design_numbers,
     require_machine,
-    shortly,
+    short_text,
     warn_of_lengths,
 )
 from ...objectives.tables.deviation import deviations
 from ...objectives.tables.measured import measured_from
 from ...objectives.tables.missing_values import missing_value_reason
-from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive, swing_table
-from ...objectives.tables.swinging import require_in_motion, require_motion, swinging
+from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
+from ...objectives.tables.swinging import quantities_for_swing, require_in_motion, require_motion
 from ...objectives.tables.violations import violations
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ class Analysis(Mapping[str, float]):
         for angle in () if np.ndim(angles) == 0 else numbers(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
-                doubt = both_readings("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
+                doubt = reading_in_both_units("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
                 warn_user(f"crank angles must be in rad: {doubt}")
                 break
         return cycle_table(self.mechanism, self.linkage, angles)
@@ -205,7 +205,7 @@ class Analysis(Mapping[str, float]):
             turns = cycle_turns(self.mechanism)
             closed_angles = turns * np.append(even_angles(360 * turns), 2.0 * np.pi)
             return [{curve.name: curve for curve in cycle_curves(self.mechanism, self.linkage, closed_angles)}]
-        described = {curve.name: curve for curve in motion_and_drive(self.swing)}
+        described = {curve.name: curve for curve in motion_and_drive_curves(self.swing)}
         return [
             {name: Curve(name, one.title, getattr(way, one.attribute), one.kind) for name, one in described.items()}
             for way in curves_of_both_strokes(self.mechanism, self.linkage, self.swing)
@@ -239,11 +239,12 @@ class Analysis(Mapping[str, float]):
 def machine_and_design_row(mechanism: Mechanism, design: ArrayLike) -> tuple[Mechanism, Array]:
     """Return a design's machine and numbers (3 + k,); raise `InputError` for anything that is not a design."""
     require_machine(mechanism)
-    names = numbers_of(mechanism)
-    sizes = given_designs(design, names)
-    if sizes.ndim != 1 or not np.isfinite(sizes).all() or (sizes[0] > 0.0 and not countable(sizes[None])[0]):
+    names = names_of_design_numbers(mechanism)
+    sizes = designs_as_array(design, names)
+    if sizes.ndim != 1 or not np.isfinite(sizes).all() or (sizes[0] > 0.0 and not has_finite_numbers(sizes[None])[0]):
         raise InputError(
-            f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got {shortly(design)}; give one "
+            f"a design must be {len(names)} finite numbers ({', '.join(names)}), SI; got {short_text(design)}; "
+            "give one "
             "design, as a list of these"
         )
     machine = mechanism.with_values(sizes[3:].tolist())
@@ -288,7 +289,7 @@ def analyse_machine(
     linkage = require_motion(machine, given, swing)
     values: dict[str, float] = {}
     undefined: dict[str, str] = {}
-    chosen = (*QUANTITIES.values(), *own) if swing is None else swinging(own)
+    chosen = (*QUANTITIES.values(), *own) if swing is None else quantities_for_swing(own)
     row = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset), *sizes[3:]]])
     for item in chosen:
         reason = item.undefined_because([mechanism]) or item.zero_because([mechanism])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.checks import keep_tuples
+from ...model.checks import store_as_tuples
 from ...model.errors import InputError
 from .requirements import Range
 
@@ -30,7 +30,7 @@ class Discrete:
     rule: str
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "values")
+        store_as_tuples(self, "values")
         rising = all(low < high for low, high in zip(self.values, self.values[1:], strict=False))
         if not self.values or not all(map(math.isfinite, self.values)) or not rising:
             raise InputError(f"the values of {self.name} must be finite and ascending, at least one; sort them")

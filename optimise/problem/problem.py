@@ -11,27 +11,27 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from numpy.typing import ArrayLike
 
-from ...model.checks import keep_tuples, require_kinds
+from ...model.checks import require_kinds, store_as_tuples
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
-from ...model.machine.crank_loads import require_no_winding
+from ...model.machine.crank_loads import require_loads_repeating_each_turn
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.bounds import QuantityBounds
-from ...objectives.catalogue_amount import Amount, with_amounts
+from ...objectives.catalogue_amount import Amount, substitute_amounts
 from ...objectives.formula.resolve import is_formula, resolve_quantities
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, listed
-from ...objectives.tables.design_input import given_designs, numbers_of, warn_of_lengths
-from ...objectives.tables.evaluate import evaluated
+from ...objectives.tables.design_input import designs_as_array, names_of_design_numbers, warn_of_lengths
+from ...objectives.tables.evaluate import evaluated_as_array
 from ...objectives.tables.swinging import (
+    reason_undefined_for_swing,
     require_in_motion,
     require_loads,
     require_of_swing,
     require_same_driver,
     swing_quantities,
-    why_not,
 )
 from .costs import Costs
 from .design_analysis import Analysis, analyse_machine, machine_and_design_row
@@ -102,7 +102,7 @@ class Variant:
     ranks: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "labels", "limits", "amounts", "notes", "ranks")
+        store_as_tuples(self, "labels", "limits", "amounts", "notes", "ranks")
         _require_slow_stroke_word(self.slow_stroke)
 
     def note(self, choice: str, head: str) -> str:
@@ -162,8 +162,8 @@ class Problem:
     warnings: tuple[str, ...] = field(default=(), compare=False)
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out")
-        keep_tuples(self, "catalogue", "discrete", "warnings")
+        store_as_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out")
+        store_as_tuples(self, "catalogue", "discrete", "warnings")
         require_kinds(self, _KINDS, _CHANGE)
         require_kinds(self, _EACH, _CHANGE, item_by_item=True)
         require_distinct_numbers(self.discrete, [*self.ranges])
@@ -173,7 +173,7 @@ class Problem:
             self._add_swing_quantities(self.motion)
         else:
             for own in self.variants or (self,):
-                require_no_winding(own.mechanism)
+                require_loads_repeating_each_turn(own.mechanism)
         self._add_formulas()
         require_free_columns(self.own, self.mechanism.varying, self.choice_fields)
         _require_slow_stroke_word(self.slow_stroke)
@@ -224,7 +224,7 @@ class Problem:
             require_loads(variant.mechanism)
         tables = {item.quantity: "objectives" for item in self.objectives}
         for name, table in ({item.quantity: "constraints" for item in self.every_constraint} | tables).items():
-            reason = why_not(name, swing)
+            reason = reason_undefined_for_swing(name, swing)
             if reason is not None:
                 raise InputError(f"{table}.{name}: {reason}")
             require_of_swing(f"{table}.{name}", self.quantity(name), of_lever=swing.driver == "cylinder")
@@ -293,9 +293,9 @@ class Problem:
         """
         self._require_no_choices()
         names = [objective.quantity for objective in self.objectives] if quantities is None else quantities
-        given = given_designs(designs, numbers_of(self.mechanism))
+        given = designs_as_array(designs, names_of_design_numbers(self.mechanism))
         warn_of_lengths(self, given, self._greatest_dimensions)
-        return evaluated(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
+        return evaluated_as_array(self.mechanism, given, names, gradients=gradients, own=self.own, swing=self.motion)
 
     def analyse(self, design: ArrayLike) -> Analysis:
         """Return the analysis of one design (3 + k,): crank, rod, offset, m, and the extra variables, SI.
@@ -471,7 +471,7 @@ class Problem:
             offset=chosen.offset,
             constraints=merged((*self.constraints, *chosen.limits)),
             slow_stroke=_common_stroke(self.slow_stroke, chosen.slow_stroke),
-            own=tuple(with_amounts(of, amounts) for of in self.own),
+            own=tuple(substitute_amounts(of, amounts) for of in self.own),
             choices=(),
             variants=(),
             left_out=(),

@@ -10,7 +10,7 @@ from numbers import Real
 from typing import Literal
 
 from ...model.errors import InputError
-from ...model.input_warning import both_readings, warn_user
+from ...model.input_warning import reading_in_both_units, warn_user
 from ...objectives.kinds import ANGLE
 from ...objectives.peak_torque import PEAK_TORQUE
 from ...objectives.registry import FACTS, QUANTITIES, listed
@@ -160,7 +160,7 @@ def _warn_of_units(quantity: str, numbers: Mapping[str, float | None]) -> None:
     for name, number in numbers.items():
         if number is not None and abs(number) > most > 0.0:
             usual = kind.metric
-            doubt = both_readings(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
+            doubt = reading_in_both_units(f"{name} =", number, kind.unit, usual.symbol, usual.factor)
             warn_user(f"requirements must be in SI: {quantity}, {doubt}")
             break
 

@@ -79,7 +79,7 @@ def restate(problem: Problem, constraint: Constraint) -> Constraint:
     of = next((own for own in problem.own if own.name == constraint.quantity), None)
     if not isinstance(of, FormulaQuantity):
         return constraint
-    machine = problem.mechanism.fullest
+    machine = problem.mechanism.with_largest_variables
     steady = machine.speed_profile is None
     known = _restatement(of, machine.branch, steady, problem.crank, problem.rod, problem.offset)
     if known is None or not (known.quantity in QUANTITIES or any(own.name == known.quantity for own in problem.own)):

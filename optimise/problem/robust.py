@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from ...model.errors import InputError
 from ...model.tolerance.spreads import Shape
-from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_options
+from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_robust_options_in_range
 from .problem import Problem
 from .requirements import Constraint, Objective, merged
 
@@ -28,7 +28,7 @@ class Robust:
     quantities: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
-        require_options(self.kind, self.order, self.share, self.samples, self.shape)
+        require_robust_options_in_range(self.kind, self.order, self.share, self.samples, self.shape)
 
 
 def robust(problem: Problem, plan: Robust) -> Problem:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...model.arrays import Array, Mask
-from ...model.cycle.gas_cycle import may_deliver_nothing
+from ...model.cycle.gas_cycle import compressor_may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
 from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
@@ -42,9 +42,9 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
     if problem.motion is not None:
         return _with_floor(problem, problem.constraints, SWING_TRANSMISSION_ANGLE)
     constraints = _with_floor(problem, problem.constraints, TRANSMISSION_ANGLE)
-    if problem.mechanism.fullest.friction.acts:
+    if problem.mechanism.with_largest_variables.friction.acts:
         constraints = _with_floor(problem, constraints, SELF_LOCKING_MARGIN)
-    if may_deliver_nothing(problem.mechanism):
+    if compressor_may_deliver_nothing(problem.mechanism):
         constraints = _with_floor(problem, constraints, VOLUMETRIC_EFFICIENCY)
     if problem.slow_stroke is not None:
         constraints = _with_slow_stroke(problem, constraints)

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.arrays import Array, IntArray, Mask, distinct
-from ...model.kinematics.in_line import without_rounding
+from ...model.arrays import Array, IntArray, Mask, sorted_unique
+from ...model.kinematics.in_line import offset_without_rounding
 from ...objectives.catalogue_amount import Amount
 from ...objectives.count_text import counted
 from ...objectives.formula.quantity import FormulaQuantity
@@ -47,7 +47,7 @@ def assemble(
     best = candidates[_rows_to_deliver(problem, candidates, run.stage_reporter(SELECTING)) if rows is None else rows]
     best = best[np.lexsort(best.values.T[::-1])]
     values, dimensions = best.values, best.dimensions(evaluators)
-    dimensions[:, 2] = without_rounding(dimensions[:, 1], dimensions[:, 2])
+    dimensions[:, 2] = offset_without_rounding(dimensions[:, 1], dimensions[:, 2])
     span = span_of(problem, values) if len(best) > 1 else best.span
     goals, active = list(best.goals), list(best.active)
     residual = np.array(
@@ -97,7 +97,7 @@ def _on_partly_described_kink(problem: Problem, variants: IntArray, dimensions: 
     formulas = [
         formula for formula in problem.own if isinstance(formula, FormulaQuantity) and formula.name in is_maximised
     ]
-    for variant in distinct(variants).tolist() if formulas else []:
+    for variant in sorted_unique(variants).tolist() if formulas else []:
         rows = np.flatnonzero(variants == variant)
         for formula in formulas:
             pieces = formula.pieces(problem.part(variant).mechanism, dimensions[rows])
@@ -129,7 +129,7 @@ def columns_of(
     parts: list[Columns] = []
     order, count = [], 0
     alike: dict[tuple[object, ...], list[int]] = {}  # variants with the same machine and rules are analysed together
-    for variant in distinct(variants).tolist():
+    for variant in sorted_unique(variants).tolist():
         part = problem.part(variant)
         alike.setdefault((part.mechanism, part.constraints, part.own), []).append(variant)
     chosen = _choice_columns(problem, variants, dimensions)
@@ -138,7 +138,7 @@ def columns_of(
         part = problem.part(same[0])
         for rows in np.split(rows_of_machine, range(_BATCH, len(rows_of_machine), _BATCH)):
             report(count, len(dimensions))
-            judged = analysis.columns_of if problem.motion is None else swinging.columns_of
+            judged = analysis.analysis_columns if problem.motion is None else swinging.swing_columns
             columns = judged(part.mechanism, dimensions[rows], custom=part.own)
             report(count, len(dimensions))
             before = 3 + len(part.mechanism.varying)

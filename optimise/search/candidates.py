@@ -9,7 +9,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Array, IntArray, Mask, distinct
+from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
 from ..front.stationarity import STATIONARY
@@ -115,7 +115,7 @@ class Candidates(Table):
     def dimensions(self, evaluators: list[Evaluator]) -> Array:
         """Return the designs (n, 3 + v), SI."""
         designs = np.zeros((len(self), max(len(evaluator.branch.names) for evaluator in evaluators)))
-        for index in distinct(self.branch).tolist():
+        for index in sorted_unique(self.branch).tolist():
             on_branch, branch = self.branch == index, evaluators[index].branch
             designs[on_branch, : len(branch.names)] = branch.dimensions(self.u[on_branch][:, : len(branch.free)])
         return designs

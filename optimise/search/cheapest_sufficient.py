@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, IntArray, Mask, distinct
+from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ...model.errors import InputError
 from ...objectives.quantity import Quantity
 from ..front.front import Columns
@@ -25,7 +25,7 @@ def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array)
     for place in problem.catalogues:
         name = problem.choices[place]
         least_variants: list[Variant | None] = [None] * len(dimensions)
-        for variant in distinct(variants).tolist():
+        for variant in sorted_unique(variants).tolist():
             labels = problem.variants[variant].labels
             rows = np.flatnonzero(variants == variant)
             serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)

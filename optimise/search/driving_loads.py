@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.dissipation import load_works_over_a_turn, with_loads_alone
+from ...model.machine.dissipation import loads_may_do_work_over_a_turn, with_loads_alone
 from ...model.machine.loads.stroke_force import StrokeForce
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.machine.varying import Varying
 from ...model.signals.averages import average_torque
-from ...model.swing.work import work_of_loads
+from ...model.swing.work import net_work_of_loads
 from ...objectives.energy import DELIVERED_WORK
 from ..problem.problem import Problem
 from ..problem.remark import Change, Remark
@@ -66,8 +66,8 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
         loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.drives]
     machine = _with_counted_loads(problem.mechanism, loads)
     if problem.motion is not None:
-        return work_of_loads(machine, problem.motion, designs)
-    if not load_works_over_a_turn(machine):
+        return net_work_of_loads(machine, problem.motion, designs)
+    if not loads_may_do_work_over_a_turn(machine):
         return np.zeros(len(designs))
     torque = average_torque(with_loads_alone(machine), designs)
     mean = np.where(np.abs(torque.mean) > _ROUNDING * torque.rms_over_angle, torque.mean, 0.0)
@@ -98,7 +98,9 @@ def _may_be_driven(problem: Problem) -> bool:
         constraint.quantity == DELIVERED_WORK.name and constraint.lower is not None and constraint.lower >= 0.0
         for constraint in problem.constraints
     )
-    return not delivers and any(not (load.drives or load.resists) for load in problem.mechanism.fullest.loads)
+    return not delivers and any(
+        not (load.drives or load.resists) for load in problem.mechanism.with_largest_variables.loads
+    )
 
 
 def _load_warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[str]:

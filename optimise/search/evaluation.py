@@ -10,7 +10,7 @@ import numpy as np
 from ...model.arrays import IntArray, Mask
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.quantity import Array, Pieces, Quantity
-from ...objectives.tables.evaluate import running
+from ...objectives.tables.evaluate import can_run_despite_friction
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
 from ..problem.problem import Problem
@@ -153,7 +153,7 @@ class Evaluator:
         Required motion: the linkage rotates fully, or makes the problem's swing, and friction does not lock it.
         """
         violation = np.zeros(len(dimensions))
-        turns = running(self.mechanism, self.problem.motion, dimensions)
+        turns = can_run_despite_friction(self.mechanism, self.problem.motion, dimensions)
         violation[~turns] = np.inf
         for name in self.computed:
             # A linear rule may give an offset of the other sign, which belongs to the other branch.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...model.arrays import Array, distinct
+from ...model.arrays import Array, sorted_unique
 from ..front.dominance import nondominated
 from ..front.hypervolume import hypervolume, scaling
 
@@ -57,4 +57,4 @@ class FrontVolume:
         return self._volume
 
     def _spread_sample(self, values: Array) -> Array:
-        return values[distinct(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values
+        return values[sorted_unique(np.linspace(0, len(values) - 1, self._most).astype(int))] if len(values) else values

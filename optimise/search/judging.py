@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.machine.mechanism import Mechanism
 from ...objectives.cycle_peak import CyclePeak, screen_peaks
-from ...objectives.formula.quantity import leaves_of, with_formulas
+from ...objectives.formula.quantity import leaves_of, values_with_formulas
 from ...objectives.quantity import Array, Pieces, Quantity, Values
 from ...objectives.robust.quantity import RobustQuantity
 
@@ -40,7 +40,7 @@ def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array
         else screened.get(quantity.name) or quantity.evaluate(problem.mechanism, dimensions)
         for quantity in leaves
     }
-    return [item.values for item in with_formulas(quantities, values_by_leaf, problem.mechanism, dimensions)]
+    return [item.values for item in values_with_formulas(quantities, values_by_leaf, problem.mechanism, dimensions)]
 
 
 def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions: Array) -> Array:

@@ -13,7 +13,7 @@ from collections.abc import Hashable
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.machine.members import is_shaft
+from ...model.machine.members import is_treated_as_shaft
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
@@ -69,7 +69,7 @@ def _wider_and_narrower(
 
 def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) -> bool:
     """Whether gravity, a load, friction, or any value of random designs differs between the offsets e and -e."""
-    machine = part.mechanism.fullest
+    machine = part.mechanism.with_largest_variables
     if (
         any(map(_may_distinguish_mirror_images, part.own))
         or machine.gravity[1]
@@ -77,7 +77,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
         or machine.friction.acts
     ):
         return True
-    if is_shaft(part.mechanism):
+    if is_treated_as_shaft(part.mechanism):
         return True
     if not all(load.is_conservative for load in machine.loads):
         return True  # a difference at only some crank angles would show in only some designs

@@ -20,7 +20,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...model.arrays import Array, IntArray, Mask, row_lengths
+from ...model.arrays import Array, IntArray, Mask, row_norms
 from ..front.stationarity import multipliers, multipliers_with_positive_weights
 from .candidates import Polished, object_array
 from .pieces import (
@@ -322,7 +322,7 @@ def make_convex(hessian: Array, normals: Array) -> Array:
     if not np.isfinite(hessian).all():
         return np.eye(len(hessian))
     values, vectors = np.linalg.eigh(hessian)
-    lengths = row_lengths(normals)
+    lengths = row_norms(normals)
     if values[0] < _CURVATURE and lengths.any():
         _, sizes, directions = np.linalg.svd(normals[lengths > 0.0] / lengths[lengths > 0.0, None])
         held_directions = directions[: len(sizes)][sizes > _INDEPENDENT]

@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...model.arrays import Array, row_lengths
+from ...model.arrays import Array, row_norms
 from ..front.nonnegative import nonnegative_least_squares
 from .pieces import Rows
 
@@ -137,7 +137,7 @@ def _least_distance(rows: Array, bounds: Array, root: Array, weights: Array) -> 
     shift = np.zeros(size)
     shift[k:] = -1.0 / weights
     g, h = -rows @ scale, rows @ shift - bounds
-    lengths = row_lengths(g)
+    lengths = row_norms(g)
     lengths[lengths == 0.0] = 1.0
     columns = np.empty((len(rows), size + 1))
     columns[:, :-1], columns[:, -1] = g / lengths[:, None], h / lengths

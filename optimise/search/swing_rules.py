@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.swing.ends import start_column
+from ...model.swing.ends import swing_start_column
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..problem.problem import Problem
 from .elimination_rule import Rule
@@ -43,7 +43,7 @@ def swing_rules(problem: Problem, required: Mapping[str, float], sign: float) ->
     motion = problem.motion
     if motion is None:
         return
-    column = start_column(problem.mechanism)
+    column = swing_start_column(problem.mechanism)
     free = () if column is None else (problem.mechanism.varying[column - 3].name,)
     swing_values = (sign, motion.start, motion.end, float(motion.follows))
     travel, angle = ACTUATOR_TRAVEL.name, SWING_ANGLE.name

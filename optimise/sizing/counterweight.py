@@ -32,12 +32,12 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.shaking import ShakingCurves, shaking_curves
 from ...model.errors import InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single
+from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import require_plain
+from ...model.machine.members import require_single_cylinder_at_constant_speed
 from ...model.signals.averages import average
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
@@ -146,8 +146,8 @@ def balance(
     balance; None for none. Raises `InputError` if the crank is at rest or accelerates, or if no moving part has a mass.
     """
     require_word("measure", measure, Measure)
-    require_plain(mechanism, "the balance of a counterweight")
-    linkage = single(mechanism, linkage)
+    require_single_cylinder_at_constant_speed(mechanism, "the balance of a counterweight")
+    linkage = single_rotating_linkage(mechanism, linkage)
     for name, value in (("arm", arm), ("radius", radius), ("greatest_moment", greatest_moment)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise InputError(f"{name} must be positive and finite; got {value:g}")
@@ -217,7 +217,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, float, float]:
         """Return x (6,), the least objective, N, for peaks at only these angles, and the price of `most`, N/(kg m)."""
-        cp = required("cvxpy", "balancing a counterweight needs")
+        cp = import_extra("cvxpy", "balancing a counterweight needs")
         z = cp.Variable(self.count)
         goals, rules = [], []
         peaks = self.measure == "peak"

@@ -20,13 +20,13 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single
+from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import require_plain
+from ...model.machine.members import require_single_cylinder_at_constant_speed
 from ...model.machine.strength import Material
 from ..problem.section_limits import SectionLimits
 from .limit_states import AMPLIFICATION, Above, crank_loads, identity, joint_load_terms, limit_states, rod_loads
@@ -75,8 +75,8 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     bars at their pins.
     """
     require_frictionless(mechanism.friction, "section sizing")
-    require_plain(replace(mechanism, arrangement=None), "section sizing")
-    linkage = single(mechanism, linkage)
+    require_single_cylinder_at_constant_speed(replace(mechanism, arrangement=None), "section sizing")
+    linkage = single_rotating_linkage(mechanism, linkage)
     task = _Task(mechanism, linkage, material, limits, greatest_rod_accelerations(mechanism, linkage))
     sizes = np.log([limits.width[0], limits.depth[0]] * 2)
     programme = _Programme(task, list(task.joint_load_terms(sizes)))
@@ -207,7 +207,7 @@ class _Programme:
     """
 
     def __init__(self, task: _Task, loads: list[str]) -> None:
-        cp = required("cvxpy", "sizing sections needs")
+        cp = import_extra("cvxpy", "sizing sections needs")
 
         self.loads, self.powers = cp.Parameter(len(loads), pos=True), cp.Parameter((len(loads), 4))
         self.low, self.high = cp.Parameter(4, pos=True), cp.Parameter(4, pos=True)
@@ -241,7 +241,7 @@ class _Programme:
 
         sizes: (4,), logarithms, at which the loads (n,) have the slopes `powers` (n, 4).
         """
-        cp = required("cvxpy", "sizing sections needs")
+        cp = import_extra("cvxpy", "sizing sections needs")
 
         self.loads.value, self.powers.value = loads * np.exp(-powers @ sizes), powers
         self.low.value, self.high.value = np.exp(sizes - radius), np.exp(sizes + radius)

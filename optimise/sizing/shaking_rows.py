@@ -25,7 +25,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.shaking import shaking_curves
-from ...model.dynamics.segments import crowding, uncrowded
+from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.linkage import Linkage
 from ...model.machine.design import link_properties
 from ...model.machine.links import Bar, Counterweight, Link, RigidLink
@@ -63,9 +63,9 @@ def shaking_rows(mechanism: Mechanism, linkage: Linkage, angles: Array) -> tuple
 
 def rms_shaking_rows(mechanism: Mechanism, linkage: Linkage) -> tuple[Array, Array]:
     """Return force and moment rows (7, 7) each; |rows @ (1, x)| is the root mean square over the cycle."""
-    kappa = crowding(float(linkage.crank), float(linkage.rod), float(linkage.offset))
+    kappa = crowding_parameter(float(linkage.crank), float(linkage.rod), float(linkage.offset))
     tau = np.arange(_NODES) * (2.0 * math.pi / _NODES)
-    angles = np.array([uncrowded(float(t), kappa) for t in tau])
+    angles = np.array([crank_angle_from_crowded(float(t), kappa) for t in tau])
     weight = kappa / (np.cos(tau) ** 2 + (kappa * np.sin(tau)) ** 2) / _NODES
     force, moment = shaking_rows(mechanism, linkage, angles)
     share = np.sqrt(weight)[:, None]

@@ -35,9 +35,9 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single
+from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ..problem.costs import Costs
@@ -115,7 +115,7 @@ def allocate(
     given = Mechanism(branch=linkage.branch) if mechanism is None else mechanism
     if window is not None:
         given = replace(given, tolerances=replace(given.tolerances, window=window))
-    return _Programme(ErrorRows(given, single(given, linkage), costs, limit, kind), costs).solve()
+    return _Programme(ErrorRows(given, single_rotating_linkage(given, linkage), costs, limit, kind), costs).solve()
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class _Programme:
 
     def _cone(self, angles: Array) -> tuple[Array, Array]:
         """Return x and the multipliers of the limit at crank angles (m,), by cvxpy."""
-        cp = required("cvxpy", "tolerance allocation needs")
+        cp = import_extra("cvxpy", "tolerance allocation needs")
         rows, margin = self.error.rows(angles)
         size = float(self.beta.sum())
         x = cp.Variable(len(self.beta))

@@ -1,5 +1,5 @@
 """The HTTP API of the service."""
 
-from ...model.extras import required
+from ...model.extras import import_extra
 
-required("fastapi", "the service needs")
+import_extra("fastapi", "the service needs")

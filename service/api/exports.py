@@ -8,7 +8,7 @@ from typing import Any
 from fastapi import APIRouter, Response
 from pydantic_core import to_json
 
-from ...model.extras import is_installed, required
+from ...model.extras import import_extra, is_installed
 from ..designs.display_units import convert_result, convert_rows
 from ..designs.selection import numbered_rows
 from ..runs.result import csv_text
@@ -71,7 +71,7 @@ def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> 
     """Return every design with all its quantities as a column-oriented table; needs pyarrow on the server."""
     import pandas as pd
 
-    required("pyarrow", "fronts as Parquet need")
+    import_extra("pyarrow", "fronts as Parquet need")
 
     out = io.BytesIO()
     pd.DataFrame(convert_rows(stored_front.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)

@@ -154,7 +154,7 @@ def list_units() -> UnitTable:
     """List the units for every kind, and the equivalents of API units in inches and pounds."""
     from ...objectives.column_keys import split_unit
     from ...objectives.registry import FACTS
-    from ...objectives.units import per_si
+    from ...objectives.units import value_of_one_si_unit_in
 
     inch_units = [
         (kind.metric.symbol, metric_unit_in(kind.metric.symbol, "inch")) for kind in DISPLAYED_KINDS if kind.inch
@@ -162,7 +162,7 @@ def list_units() -> UnitTable:
     kinds = [
         KindModel(
             name=kind.plain,
-            units=[TypedUnit(unit=unit, factor=1.0 / per_si(unit)) for unit in kind.typed],
+            units=[TypedUnit(unit=unit, factor=1.0 / value_of_one_si_unit_in(unit)) for unit in kind.typed],
             spoken=dict(kind.spoken),
             si=kind.usual or kind.metric.symbol,
             inch=(kind.inch or kind.metric).symbol,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ...model.classical.polygons import Polygons, polygons
+from ...model.classical.polygons import Polygons, motion_polygons
 from ...model.linkage.inverse import crank_motion
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Branch
@@ -38,7 +38,7 @@ def values_by_key() -> Numbers:
         acceleration=exact["open_acceleration"],
         solution="outward",
     )
-    pin = polygons(linkage(), ANGLE).position[1]
+    pin = motion_polygons(linkage(), ANGLE).position[1]
     vertices = len(Polygons.POSITION) + len(Polygons.VELOCITY) + len(Polygons.ACCELERATION)
     given_coordinates = 9  # origin and slider line of each polygon
     return Numbers(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.classical.lumped import rotating_and_reciprocating
-from ...model.classical.series import series_acceleration, series_torque, tangent_torque
+from ...model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import RigidLink
 from ...model.machine.mechanism import Mechanism
@@ -47,7 +47,7 @@ def exact_torque(offset: float, crank_angle: Array) -> Array:
 def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = False) -> Array:
     """Return the drive torque T = k F_i tan(alpha), N m, in one of its two readings."""
     rotating, reciprocating = masses()
-    torque: Array = tangent_torque(
+    torque: Array = drive_torque_equation_48(
         linkage(offset),
         crank_angle,
         speed=SPEED,

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
-from ...objectives.column_keys import key_in
+from ...objectives.column_keys import column_key_in_system
 from ...objectives.count_text import counted
 from ...objectives.kinds import ANGLE
 from ..designs.columns import find_columns
@@ -59,7 +59,7 @@ def front(
     listed_columns = names = None
     if chosen_columns is not None:
         listed_columns = find_columns(
-            ",".join(key_in(column.key, units)[0] for column in chosen_columns), list(result.designs[0])
+            ",".join(column_key_in_system(column.key, units)[0] for column in chosen_columns), list(result.designs[0])
         )
         names = [column.key for column in listed_columns]
     if json:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, OutputLost, StoreError
-from ...model.extras import is_installed, required
+from ...model.extras import import_extra, is_installed
 from ...model.file_names import path_text
 from ...objectives.kinds import System
 from ..designs.display_units import convert_result
@@ -91,7 +91,7 @@ def optimise(
     if resume is not None and settings.overrides:
         raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
-        required("matplotlib", "figures need")
+        import_extra("matplotlib", "figures need")
     options, place = engine.validated(), runs_place(places.runs)
     with contextlib.ExitStack() as opened:
         listed = True

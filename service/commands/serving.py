@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ..jobs.stores import STORE_VARIABLE, Address, open_store, store_address
 from ..resources.memory import size_of
 from ..runs.run_folder import runs_place
@@ -98,7 +98,7 @@ def worker(
     another worker then continues after its last round. With a PostgreSQL store, workers may run on any number of
     machines.
     """
-    required("psutil", "workers need")  # needed to end processes that a job leaves behind
+    import_extra("psutil", "workers need")  # needed to end processes that a job leaves behind
     from ..workers.supervisor import Supervisor
 
     settings = options.settings(store_address(store), engine, processes, drain=drain)
@@ -228,7 +228,7 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
     The agent's client starts this command. It reads and writes runs and the store in the folder of runs; other messages
     go to standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
     """
-    required("mcp", "serving agents needs")
+    import_extra("mcp", "serving agents needs")
     from ...model.kernel.disk import compile_ahead
     from ..agents.server import serve
 

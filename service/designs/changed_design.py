@@ -11,7 +11,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.tables.evaluate import evaluated, moving
+from ...objectives.tables.evaluate import can_move, evaluated_as_array
 from ...objectives.tables.swinging import require_motion
 from ...objectives.tables.varying_column import varying_column
 from ...optimise.problem.problem import Problem
@@ -179,14 +179,16 @@ def _equality_residuals(design: StoredDesign, equal: list[Constraint], values: A
     targets = np.array([constraint.lower or 0.0 for constraint in equal])
     part, names = design.part, [constraint.quantity for constraint in equal]
     # Not `Problem.evaluate`, which warns about lengths entered by users: these are intermediate.
-    reached, slopes = evaluated(part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion)
+    reached, slopes = evaluated_as_array(
+        part.mechanism, values[None], names, gradients=True, own=part.own, swing=part.motion
+    )
     return reached[0] - targets, slopes[0], np.maximum(np.abs(targets), 1e-6)
 
 
 def _rotates_or_swings(part: Problem, values: Array) -> bool:
     """Return whether a design rotates fully, or swings as far as its job requires."""
     if part.motion is not None:
-        return bool(moving(part.mechanism, part.motion, values[None])[0])
+        return bool(can_move(part.mechanism, part.motion, values[None])[0])
     crank, rod, offset = values[:3]
     return bool(crank > 0.0 and rod > crank + abs(offset))
 

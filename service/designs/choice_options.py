@@ -101,15 +101,15 @@ def _order(text: str, objectives: Sequence[StoredObjective]) -> list[tuple[int, 
 
 
 def _tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
-    from ...objectives.units import kind_for, per_si, to_si
+    from ...objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 
     try:
         if value.endswith("%"):
             return 0.0, to_si(value[:-1], RATIO, sign="zero or more") / 100.0
-        kind = kind_for(objective.unit)
+        kind = kind_of_any_unit(objective.unit)
         if kind.unit and plain_number(value) is not None:
             raise InputError(f"must be {kind.name} with its unit, or a percentage of the range; got {value}")
-        return to_si(value, kind, sign="zero or more", plain=False) * per_si(objective.unit), 0.0
+        return to_si(value, kind, sign="zero or more", plain=False) * value_of_one_si_unit_in(objective.unit), 0.0
     except InputError as error:
         raise InputError(f"the tolerance in {part!r} {error}; write it like {_LEXICOGRAPHIC}") from None
 

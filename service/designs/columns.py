@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import key_in, metric_key, split_unit
+from ...objectives.column_keys import column_key_in_system, metric_key, split_unit
 from ...objectives.kinds import System
 
 if TYPE_CHECKING:
@@ -104,8 +104,8 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     from ...objectives.registry import QUANTITIES
 
     system: System = "metric" if "crank_mm" in keys or "crank_in" not in keys else "inch"
-    aliases = {dimension: key_in(f"{dimension}_mm", system)[0] for dimension in DIMENSIONS}
-    aliases |= {quantity.name: key_in(quantity.field, system)[0] for quantity in QUANTITIES.values()}
+    aliases = {dimension: column_key_in_system(f"{dimension}_mm", system)[0] for dimension in DIMENSIONS}
+    aliases |= {quantity.name: column_key_in_system(quantity.field, system)[0] for quantity in QUANTITIES.values()}
     for plain, key in ((split_unit(key)[0], key) for key in keys if "_robust" in key):
         for quantity in QUANTITIES.values():
             stem = split_unit(quantity.field)[0]  # key and name of a robust quantity have the same ending

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.cycle.crank_speed import turn_time
 from ...model.machine.two_turns import cycle_turns
-from ...model.swing.swing import placed, require_swing
+from ...model.swing.swing import require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
 from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import System
@@ -19,9 +19,9 @@ from ...objectives.tables.swing_curves import (
     curves_at_even_times,
     curves_of_both_strokes,
     defined_curves,
-    even_points,
     force_components,
-    motion_and_drive,
+    motion_and_drive_curves,
+    require_even_point_count,
 )
 from ..runs.result import csv_text, json_ready, rows_of
 from .display_units import convert_rows
@@ -117,8 +117,8 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
         at_inner, at_outer = (1e3 * float(x) for x in design.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
     linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
-    swing = placed(design.mechanism, linkage, design.part.motion)
-    ways = curves_at_even_times(design.mechanism, linkage, swing, even_points(count, MOST))
+    swing = swing_between_crank_angles(design.mechanism, linkage, design.part.motion)
+    ways = curves_at_even_times(design.mechanism, linkage, swing, require_even_point_count(count, MOST))
     start, end = (1e3 * float(way.slider_position[0]) for way in ways)
     return DesignCurves(
         0,
@@ -139,7 +139,7 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
 
 def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dict[str, Any]]:
     """Return a row for each point of both strokes, metric: time, motion, drive, power, joint forces, errors."""
-    all_curves = (*motion_and_drive(swing), *force_components())
+    all_curves = (*motion_and_drive_curves(swing), *force_components())
     rows = []
     for way, curves in zip(("forth", "back"), curves_of_both_strokes(mechanism, linkage, swing), strict=True):
         time = {} if swing.duration is None else {"time_s": swing.duration * curves.share}

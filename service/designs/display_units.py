@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
-from ...objectives.column_keys import key_in, split_unit
+from ...objectives.column_keys import column_key_in_system, split_unit
 from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, Row, StoredObjective
 
@@ -27,7 +27,7 @@ def convert_rows(rows: Sequence[Row], system: System) -> list[Row]:
     """Return designs that share their keys, converted as by `convert_row`."""
     if system == "metric" or not rows:
         return list(rows)
-    names = {key: key_in(key, system) for key in rows[0]}
+    names = {key: column_key_in_system(key, system) for key in rows[0]}
     return [{names[key][0]: _scaled(value, names[key][1]) for key, value in row.items()} for row in rows]
 
 
@@ -39,7 +39,7 @@ def convert_record(record: Any, system: System) -> Any:
     if system == "metric":
         return record
     if isinstance(record, Mapping):
-        keys = {key: key_in(key, system) for key in record}
+        keys = {key: column_key_in_system(key, system) for key in record}
         return {name: _scaled(convert_record(record[key], system), factor) for key, (name, factor) in keys.items()}
     return [convert_record(item, system) for item in record] if isinstance(record, list | tuple) else record
 
@@ -64,7 +64,7 @@ def convert_result(result: Result, system: System, problem: Problem | None = Non
 
 def convert_objective(objective: StoredObjective, system: System) -> StoredObjective:
     """Return an objective in a unit system."""
-    column, factor = key_in(objective.column, system)
+    column, factor = column_key_in_system(objective.column, system)
     target = None if objective.target is None else objective.target * factor
     return replace(objective, column=column, unit=metric_unit_in(objective.unit, system)[0], target=target)
 

@@ -15,11 +15,11 @@ from ...objectives.formula.dimensions import kind_of_formula
 from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
 from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse
-from ...objectives.formula.quantity import key_of
+from ...objectives.formula.quantity import column_key_of_formula
 from ...objectives.formula.slopes import Slopes
 from ...objectives.kinds import Kind
 from ...objectives.quantity import Array, Values
-from ...objectives.units import kind_for
+from ...objectives.units import kind_of_any_unit
 from ..runs.result import Row
 from .columns import Column, find_column
 
@@ -50,7 +50,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
     node = parse(text, Units(frozenset(split_unit(key)[0] for key in keys)))
     written = text_of(node)
     for key in keys:
-        if split_unit(key)[0] == key_of(written) or key == key_of(written):
+        if split_unit(key)[0] == column_key_of_formula(written) or key == column_key_of_formula(written):
             stored_column = find_column(key, keys)
             # It was referred to without its unit.
             return replace(stored_column, plain=None if stored_column.unit else 1.0)
@@ -62,7 +62,7 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
         )
     if isinstance(node, Name):
         return columns[node.name]
-    kinds = {name: kind_for(column.unit) for name, column in columns.items()}
+    kinds = {name: kind_of_any_unit(column.unit) for name, column in columns.items()}
     return RowFormula(written, node, tuple(columns.items()), kind_of_formula(node, kinds))
 
 

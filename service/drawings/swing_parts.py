@@ -10,7 +10,7 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing, dead_points, placed, require_swing
+from ...model.swing.swing import Swing, dead_points, require_swing, swing_between_crank_angles
 from . import layers as on
 from .linkage_shapes import (
     LinkageSizes,
@@ -73,7 +73,7 @@ class SwingSizes:
 def swing_sizes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSizes:
     """Return the drawn sizes of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
-    swing = placed(mechanism, checked, swing)
+    swing = swing_between_crank_angles(mechanism, checked, swing)
     turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
     ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
     slider_range = (min(ways), max(ways))

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...model.cycle.stroke_times import slow_stroke
-from ...model.dynamics.segments import crowding, uncrowded
+from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
@@ -153,8 +153,8 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, *, torque: bool = True)
         "slider_velocity": peak(moving, Signal.SLIDER_SPEED),
         "slider_acceleration": peak(moving, Signal.SLIDER_ACCELERATION),
     }
-    kappa = crowding(*dimensions[0])
-    crowded = [uncrowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
+    kappa = crowding_parameter(*dimensions[0])
+    crowded = [crank_angle_from_crowded(tau, kappa) for tau in np.linspace(0.0, 2.0 * np.pi, SAMPLES // 2)]
     # At a load step, the curve has different values on the two sides of the peak.
     near_extremes = [
         extreme[1] + side for extreme in extremes.values() if extreme for side in (-_SIDE_STEP, 0.0, _SIDE_STEP)

@@ -12,7 +12,12 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System
-from ...objectives.tables.swing_curves import SwingCurve, curves_of_both_strokes, has_position_error, motion_and_drive
+from ...objectives.tables.swing_curves import (
+    SwingCurve,
+    curves_of_both_strokes,
+    has_position_error,
+    motion_and_drive_curves,
+)
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
 from ..render.blocks import dimensions, joined
@@ -70,7 +75,7 @@ def figure_below_machine(
 def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelFigure:
     """Return the curves of both strokes over the crank angle; the return stroke is drawn only if it differs."""
     ways = curves_of_both_strokes(mechanism, linkage, swing)
-    curves = {curve.attribute: curve for curve in motion_and_drive(swing)}
+    curves = {curve.attribute: curve for curve in motion_and_drive_curves(swing)}
     if not has_position_error(mechanism, swing):
         del curves["driven_error"]
     panels = [

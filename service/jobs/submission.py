@@ -89,10 +89,12 @@ def _function_not_allowed_error(name: str, function: str, allowed: Collection[st
 
 def with_time_limit_per_call(problem: Problem, seconds: float) -> Problem:
     """Return a problem with a time limit per call, s, for its custom functions."""
-    from ...objectives.own.quantity import bounded
+    from ...objectives.own.quantity import with_time_limit
 
     return (
-        replace(problem, own=tuple(bounded(quantity, seconds) for quantity in problem.own)) if problem.own else problem
+        replace(problem, own=tuple(with_time_limit(quantity, seconds) for quantity in problem.own))
+        if problem.own
+        else problem
     )
 
 

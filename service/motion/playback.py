@@ -18,7 +18,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System
-from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive
+from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves
 from ..designs.design_curves import CurveColumn, cycle_table
 from ..drawings import layers as on
 from ..drawings.linkage_shapes import LinkageSizes, bar, block, fixed_shapes, lengths_in_words, linkage_sizes
@@ -180,7 +180,7 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
             curve.kind.metric.symbol,
             np.concatenate([curve.values_in(way) for way in ways]).tolist(),
         )
-        for curve in motion_and_drive(drawn.swing)
+        for curve in motion_and_drive_curves(drawn.swing)
         if curve.name not in _LEFT_OUT
         and (curve.attribute != "driven_error" or has_position_error(mechanism, drawn.swing))
     ]

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.swing.ends import start_column
+from ...model.swing.ends import swing_start_column
 from ...objectives.registry import QUANTITIES
 from ...optimise.job.possible_values import Box
 from ...optimise.problem.problem import Problem
@@ -89,7 +89,7 @@ def _points(branches: Sequence[EliminationBranch], count: int, stream: int) -> I
 
 def _length_columns(problem: Problem) -> list[int]:
     """Return the displayed columns of designs: the three lengths, and the start of a swing if it varies."""
-    column = start_column(problem.mechanism)
+    column = swing_start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
 
 

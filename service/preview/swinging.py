@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from ...model.errors import InputError
 from ...model.kinematics.position import motion
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.closure import passes
+from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.ends import ends_of
 from ...model.swing.swing import STARTS, Swing
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
@@ -96,7 +96,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
 def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: tuple[str, ...]) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
     box, is_uniform = designs_of(replace(light, constraints=()))
-    turning = passes(light.mechanism, swing, box)
+    turning = swings_without_dead_point(light.mechanism, swing, box)
     designs, good = sample.designs, sample.is_feasible
     closes = np.isfinite(sample.violation)
     example = example_design(designs, sample.violation, box[turning])

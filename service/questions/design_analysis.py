@@ -84,11 +84,11 @@ def quantities_of_design(
     mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = ()
 ) -> tuple[Row, dict[str, str]]:
     """Return every quantity of one design, and by column the reason for each missing one. custom: custom quantities."""
-    from ...objectives.tables.analysis import columns_of
+    from ...objectives.tables.analysis import analysis_columns
     from .peaks import lengths_row
 
     return with_undefined_values(
-        rows_of(columns_of(mechanism, lengths_row(linkage), custom=custom))[0], mechanism, linkage, custom
+        rows_of(analysis_columns(mechanism, lengths_row(linkage), custom=custom))[0], mechanism, linkage, custom
     )
 
 
@@ -97,7 +97,8 @@ def with_undefined_values(
 ) -> tuple[Row, dict[str, str]]:
     """Return a row of all quantities with NaN for undefined ones, and the reason for each by column.
 
-    row: row with the `columns_of` a table. custom: custom quantities of the job. swing: swing instead of full rotation.
+    row: row with the `analysis_columns` a table. custom: custom quantities of the job. swing: swing instead of full
+    rotation.
     """
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
@@ -124,9 +125,9 @@ def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
     """Return every quantity of a swinging design, and by column the reason for each missing one."""
     import numpy as np
 
-    from ...objectives.tables.swinging import columns_of
+    from ...objectives.tables.swinging import swing_columns
 
-    row = rows_of(columns_of(design.part.mechanism, np.array([design.values]), design.part.own))[0]
+    row = rows_of(swing_columns(design.part.mechanism, np.array([design.values]), design.part.own))[0]
     return with_undefined_values(row, design.mechanism, design.linkage, design.part.own, design.part.motion)
 
 

@@ -119,11 +119,11 @@ class DesignQuestion:
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
         """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
-        from ...model.linkage.single_linkage import single
+        from ...model.linkage.single_linkage import single_rotating_linkage
 
         bound = self.bind_to_problem(mechanism, linkage, problem, inputs)
         if self.command is None:
-            single(mechanism, linkage)
+            single_rotating_linkage(mechanism, linkage)
         record: dict[str, Any] = json_ready(bound.numbers())
         return record
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, get_args
 
 from ...model.errors import InputError
-from ...model.input_warning import both_readings, warn_user
+from ...model.input_warning import reading_in_both_units, warn_user
 from ...objectives.kinds import DisplayUnit, Kind
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class Input:
         kind = replace(self.kind, example=self.usual or self.example or self.kind.example)
         value = parse_value(word, raw, kind, sign=self.sign)
         if not isinstance(raw, str) and kind.believed is not None and abs(value) > kind.believed[1]:
-            doubt = both_readings(f"{word} =", value, kind.unit, self.unit.symbol, self.unit.factor)
+            doubt = reading_in_both_units(f"{word} =", value, kind.unit, self.unit.symbol, self.unit.factor)
             warn_user(f"inputs of questions must be in SI: {doubt}", through_callers=True)
         if self.upper_limit is not None and value >= self.upper_limit:
             limit = f"{self.unit.factor * self.upper_limit:g} {self.unit.symbol}".rstrip()

@@ -1,5 +1,5 @@
 """Report on a design for a review: job, front, design, evidence, as HTML and PDF."""
 
-from ...model.extras import required
+from ...model.extras import import_extra
 
-required("matplotlib", "reports need")
+import_extra("matplotlib", "reports need")

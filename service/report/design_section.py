@@ -7,7 +7,7 @@ from functools import partial
 from typing import get_args
 
 from ...model.errors import InputError
-from ...objectives.column_keys import key_in
+from ...objectives.column_keys import column_key_in_system
 from ...objectives.kinds import unit_text
 from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
@@ -95,7 +95,8 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
     """
     part, mechanism = subject.design.part, subject.design.mechanism
     quantity_of_column = {
-        key_in(quantity.field, subject.system)[0]: quantity for quantity in (*QUANTITIES.values(), *part.own)
+        column_key_in_system(quantity.field, subject.system)[0]: quantity
+        for quantity in (*QUANTITIES.values(), *part.own)
     }
     required = {item.column for item in subject.result.objectives} | {
         slack.removeprefix("slack_") for slack in _bounds_by_slack(subject)
@@ -155,7 +156,7 @@ def _bounds_by_slack(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):
-        key, factor = key_in(item.slack_column, subject.system)
+        key, factor = column_key_in_system(item.slack_column, subject.system)
         ends = [("at least", item.lower), ("at most", item.upper)]
         if item.lower == item.upper:
             ends = [("equal to", item.lower)]

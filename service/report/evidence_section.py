@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.tolerance.sources import limits
+from ...model.tolerance.sources import limits_of_sources
 from ...objectives.kinds import System, metric_unit_in
 from ..questions.sensitivity.figure import tornado_figure, tornado_rows
 from ..questions.tolerances.analysis import PositionError, numbers
@@ -32,7 +32,7 @@ def sensitivity_section(subject: Subject) -> Section:
 def tolerance_section(subject: Subject) -> Section | None:
     """Return the section on the effect of the tolerances on the slider position; None for a job without tolerances."""
     mechanism, linkage = subject.design.mechanism, subject.design.linkage
-    if not np.any(limits(mechanism, linkage)):
+    if not np.any(limits_of_sources(mechanism, linkage)):
         return None
     record = numbers(mechanism, linkage)
     blocks: tuple[Block, ...] = (

@@ -13,12 +13,12 @@ from typing import Any
 
 import matplotlib
 
-from ...model.extras import required
+from ...model.extras import import_extra
 from ...objectives.kinds import DISPLAYED_KINDS, unit_text
 from ..figures.style import figure_bytes
 from .document import Block, Facts, Paragraph, Picture, Report, Table
 
-typst = required("typst", "reports as PDF need")
+typst = import_extra("typst", "reports as PDF need")
 
 _TEMPLATE = Path(__file__).parent / "page" / "report.typ"
 _FONTS = Path(matplotlib.get_data_path()) / "fonts" / "ttf"

@@ -7,7 +7,7 @@ from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from ...objectives.column_keys import key_in
+from ...objectives.column_keys import column_key_in_system
 from ...objectives.kinds import System
 from ...objectives.tables.measured import Measured
 from ...optimise.front.front import ParetoFront
@@ -85,7 +85,7 @@ class Subject:
     def tolerances(self) -> dict[str, float]:
         """Tolerance of each dimension that has one, by column and in its unit."""
         tolerances_mm = tolerances_of(self.design.mechanism, self.design.linkage)
-        keys = {name: key_in(f"{name}_mm", self.system) for name in tolerances_mm}
+        keys = {name: column_key_in_system(f"{name}_mm", self.system) for name in tolerances_mm}
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def format_cell(self, key: str, cell: Cell) -> str:

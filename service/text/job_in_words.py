@@ -15,7 +15,7 @@ from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.two_turns import cycle_turns
 from ...model.machine.varying import Varying
-from ...model.swing.ends import start_column
+from ...model.swing.ends import swing_start_column
 from ...objectives.count_text import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
@@ -117,7 +117,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
 
 def _machine_lines(problem: Problem) -> list[str]:
     """Return the machine of a problem line by line, with the ranges of its variables."""
-    low, high = (machine_in_words(problem, end) for end in problem.mechanism.ends)
+    low, high = (machine_in_words(problem, end) for end in problem.mechanism.at_lower_and_upper_bounds)
     if len(low) != len(high):  # a number that is zero at one end would omit its line
         return machine_in_words(problem, problem.mechanism)
     return [range_text(lowest, highest) for lowest, highest in zip(low, high, strict=True)]
@@ -187,7 +187,7 @@ def _motion_lines(problem: Problem) -> list[str]:
     factor, unit = (180.0 / math.pi, "deg") if swing.stated_for == "crank" else (1e3, "mm")
     start, end = (f"{factor * value:.6g}" for value in (swing.start, swing.end))
     ends = f"{swing.stated_for} swings from {start} to {end} {unit} and back"
-    if start_column(problem.mechanism) is not None:
+    if swing_start_column(problem.mechanism) is not None:
         moved = f"by {factor * (swing.end - swing.start):.6g} {unit}" if swing.follows else f"to {end} {unit}"
         ends = f"{swing.stated_for} swings {moved} from the start of each design, and back"
     if swing.stated_for == "slider":

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
 from ..designs.selection import parse_value
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def require_drawable(folder: Path | None) -> Path | None:
     """Raise an error before any computation if figures cannot be drawn."""
     if folder is not None:
-        required("matplotlib", "figures need")
+        import_extra("matplotlib", "figures need")
     return folder
 
 

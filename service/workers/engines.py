@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import required
+from ...model.extras import import_extra
 from ..text.options import File
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class EngineOptions:
                 raise InputError(f"the files of an encrypted connection must exist; got {file}; correct the path")
         if self.scheduler is not None:
             _make_engine(self)  # raises an error for an invalid address
-            required("distributed", "a Dask cluster needs")
+            import_extra("distributed", "a Dask cluster needs")
         return self
 
     def divided_among(self, workers: int) -> EngineOptions:

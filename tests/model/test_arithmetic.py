@@ -11,7 +11,7 @@ import pytest
 from numba import njit
 
 from slidercrank.model.kernel.arithmetic import STEP, arcsine, inverse, magnitude, root
-from slidercrank.model.kernel.compiler import know_formulas
+from slidercrank.model.kernel.compiler import register_formulas
 
 CASES: list[tuple[str, Callable[[Any], Any], float, float, float]] = [
     ("inverse", inverse, 0.3, 1.0 / 0.3, -1.0 / 0.09),
@@ -26,7 +26,7 @@ CASES: list[tuple[str, Callable[[Any], Any], float, float, float]] = [
 
 
 def compiled(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
-    know_formulas()
+    register_formulas()
 
     @njit
     def call(z):  # type: ignore[no-untyped-def]

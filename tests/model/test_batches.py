@@ -12,7 +12,7 @@ from textwrap import dedent
 import pytest
 
 from slidercrank.model.kernel.batches import in_chunks
-from slidercrank.model.kernel.interruption import ask, interrupted_by
+from slidercrank.model.kernel.interruption import interrupted_by, poll_interruption
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
@@ -113,7 +113,7 @@ def test_what_ends_one_chunk_ends_those_under_way_too() -> None:
     def work(begin: int, _: int) -> None:
         begun.append(begin)
         try:
-            ask()
+            poll_interruption()
         finally:
             time.sleep(0.01)
             ended.append(begin)

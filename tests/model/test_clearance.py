@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from slidercrank.model.clearance import equations
 from slidercrank.model.clearance.phases import Integrator
-from slidercrank.model.clearance.system import build
+from slidercrank.model.clearance.system import build_system
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance, Joint
@@ -31,7 +31,7 @@ PIN = Clearance(joint="crank pin", radius=1e-3, journal_radius=0.01)
 
 def integrator(mechanism: Mechanism, clearance: Clearance, state: Array, tolerance: float = 1e-11) -> Integrator:
     return Integrator(
-        *build(mechanism, LINKAGE, clearance),
+        *build_system(mechanism, LINKAGE, clearance),
         hysteresis=clearance.hysteresis,
         slow_impact=clearance.slow_impact,
         tolerance=tolerance,
@@ -44,7 +44,7 @@ def seen(run: Integrator) -> tuple[Array, Array, Array]:
     trace = run.trace
     times, states = np.concatenate(trace.times), np.ascontiguousarray(np.concatenate(trace.states, axis=1))
     rates, outward = np.concatenate(trace.rates), np.concatenate(trace.outward)
-    return times, states, equations.observe(times, states, rates, outward, run.system, run.block, run.loads)
+    return times, states, equations.reported_quantities(times, states, rates, outward, run.system, run.block, run.loads)
 
 
 @pytest.mark.parametrize("joint", JOINTS)
@@ -63,7 +63,7 @@ def test_equations_of_motion_agree_with_newton_and_euler_of_every_body(joint: Jo
             stiffness=1e10,
         )
         start = float(random.uniform(0.0, 2.0 * math.pi))
-        system, block, loads = build(machine, linkage, clearance, start=start)
+        system, block, loads = build_system(machine, linkage, clearance, start=start)
         way = random.uniform(0.0, 2.0 * math.pi)
         share = random.choice([0.5, 1.0 + 1e-2])
         gap = share * clearance.radius * np.array([math.cos(way), math.sin(way)])
@@ -78,8 +78,10 @@ def test_equations_of_motion_agree_with_newton_and_euler_of_every_body(joint: Jo
         )
         damping = 0.7
         y = np.array([*gap, *gap_t, 0.0, 0.0, 0.0])
-        got = equations.rates(0.0, y, damping, bool(stroke[0]), system, block, loads)
-        observed = equations.observe(np.zeros(1), y.reshape(-1, 1), np.array([damping]), stroke, system, block, loads)
+        got = equations.state_rates(0.0, y, damping, bool(stroke[0]), system, block, loads)
+        observed = equations.reported_quantities(
+            np.zeros(1), y.reshape(-1, 1), np.array([damping]), stroke, system, block, loads
+        )
         x_tt, rod_tt, torque, lost = accelerations(machine, linkage, clearance, state, damping, load)
         phi, phi_t = state.angles[1], state.spins[1]
         l, r, w = float(linkage.rod), float(linkage.crank), machine.speed
@@ -104,11 +106,11 @@ def test_loads_are_those_of_the_ideal_linkage_where_the_gap_is_closed() -> None:
         machine = replace(random_machine(random), acceleration=0.0)
         linkage = linkage_of(design, machine.branch)
         clearance = replace(PIN, radius=1e-6, journal_radius=1e-5)
-        system, block, loads = build(machine, linkage, clearance, start=1.1)
+        system, block, loads = build_system(machine, linkage, clearance, start=1.1)
         at = path(design, np.array([1.1]), linkage.sign)
         load = linkage.sign * slider_load(machine, design, np.array([1.1]), at)[0]
         stroke = bool(outward_motion(machine, at)[2][0])
-        got = equations.rates(0.0, np.zeros(7), -1.0, stroke, system, block, loads)
+        got = equations.state_rates(0.0, np.zeros(7), -1.0, stroke, system, block, loads)
         x_t = at.x_1[0] * machine.speed
         assert got[5] == pytest.approx(load * x_t, rel=1e-11, abs=1e-12 * abs(x_t))
 
@@ -129,9 +131,9 @@ def test_the_reaction_of_the_ideal_joint_keeps_the_gap_closed(joint: Joint) -> N
             "slider pin": complex(ideal.slider_pin_x[0], ideal.slider_pin_y[0]),
         }[joint]
         clearance = replace(PIN, joint=joint, radius=1e-6)
-        system, _, _ = build(machine, linkage, clearance, start=start)
-        place = equations.locate(0.0, 0j, 0j, system)
-        gap_tt, x_tt, torque = equations.accelerate(place, force, 0.0, 0.0, 0.0, system)
+        system, _, _ = build_system(machine, linkage, clearance, start=start)
+        place = equations.configuration_of(0.0, 0j, 0j, system)
+        gap_tt, x_tt, torque = equations.solve_accelerations(place, force, 0.0, 0.0, 0.0, system)
         size = max(1.0, abs(float(ideal.slider_acceleration[0])), float(linkage.crank) * machine.speed**2)
         assert abs(gap_tt) < 1e-9 * size
         assert x_tt == pytest.approx(ideal.slider_acceleration[0], abs=1e-9 * size)
@@ -163,7 +165,7 @@ def test_a_bouncing_journal_rebounds_as_the_law_says(law: Any, restitution: floa
     machine = Mechanism(crank=BAR, rod=BAR, slider_mass=1.95)
     linkage = Linkage(0.14, 0.31, 0.0)
     clearance = replace(PIN, joint="slider pin", law=law, restitution=restitution, slow_impact=1e-6)
-    system, block, loads = build(machine, linkage, clearance)
+    system, block, loads = build_system(machine, linkage, clearance)
     run = Integrator(
         system, block, loads, clearance.hysteresis, 1e-6, 1e-11, np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0])
     )
@@ -180,7 +182,7 @@ def test_slow_impacts_lose_less_as_hunt_and_crossley_found() -> None:
     """Below the slow impact, ten times faster than this one, the damping stays: h is a tenth."""
     machine = Mechanism(crank=BAR, rod=BAR, slider_mass=1.95)
     clearance = replace(PIN, joint="slider pin", restitution=0.5, slow_impact=0.1)
-    system, block, loads = build(machine, Linkage(0.14, 0.31, 0.0), clearance)
+    system, block, loads = build_system(machine, Linkage(0.14, 0.31, 0.0), clearance)
     start = np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0])
     run = Integrator(system, block, loads, clearance.hysteresis, 0.1, 1e-11, start)
     run.advance(0.5, outward=True)
@@ -247,11 +249,13 @@ def test_free_flight_keeps_momentum_and_energy() -> None:
 
 def test_the_contact_never_pulls() -> None:
     """Not even where the surfaces part at many times the speed of the impact."""
-    system, block, loads = build(SIEVE, LINKAGE, PIN)
+    system, block, loads = build_system(SIEVE, LINKAGE, PIN)
     y = np.array([1.01e-3, 0.0, -5.0, 0.0, 0.0, 0.0, 0.0])
-    out = equations.observe(np.zeros(1), y.reshape(-1, 1), np.array([100.0]), np.array([True]), system, block, loads)
+    out = equations.reported_quantities(
+        np.zeros(1), y.reshape(-1, 1), np.array([100.0]), np.array([True]), system, block, loads
+    )
     assert out[3, 0] == 0.0
-    assert equations.rates(0.0, y, 100.0, True, system, block, loads)[6] > 0.0
+    assert equations.state_rates(0.0, y, 100.0, True, system, block, loads)[6] > 0.0
 
 
 def test_stiffness_is_that_of_hertz() -> None:

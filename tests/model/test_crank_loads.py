@@ -11,11 +11,11 @@ import pytest
 
 from slidercrank.model.clearance.run import simulate as simulate_clearance
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
-from slidercrank.model.machine.dissipation import works_over_a_turn
+from slidercrank.model.machine.dissipation import may_do_work_over_a_turn
 from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink
@@ -115,12 +115,12 @@ def test_work_over_a_turn() -> None:
     """A table of no mean torque takes exactly zero energy; a resistance takes 2 pi of it."""
     still = replace(STROKES, acceleration=0.0, loads=())
     even = CrankTable(angles=(0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi), forces=(0.0, 7.0, 0.0, -7.0))
-    assert not works_over_a_turn(loaded(still, even))
+    assert not may_do_work_over_a_turn(loaded(still, even))
     assert average_torque(loaded(still, even), DESIGNS).mean.tolist() == [0.0, 0.0, 0.0]
     for load in (TABLE, CrankTorque(torque=1.0), CrankTorque(resistance=1.0)):
-        assert works_over_a_turn(loaded(still, load))
+        assert may_do_work_over_a_turn(loaded(still, load))
     own = loaded(still, CrankTorque(resistance=4.0), TABLE)
-    found = energies(replace(own, friction=RUBBING), Linkage(*DESIGNS[0]))
+    found = cycle_energies(replace(own, friction=RUBBING), Linkage(*DESIGNS[0]))
     table = TABLE.turn_work(moving=True)[CrankTable]
     assert found.useful == pytest.approx(4.0 * TURN + math.fsum(table), rel=1e-12)  # it turns clockwise
     assert found.input == pytest.approx(found.useful + found.heat, rel=1e-12)
@@ -152,7 +152,7 @@ def test_forward_dynamics_takes_them() -> None:
     run = simulate(
         whole, Linkage(0.05, 0.2, 0.03), Drive(motor=ConstantTorque(torque=40.0), flywheel=1.5), duration=1.0
     )
-    assert run.imbalance < 1e-8
+    assert run.energy_balance_error < 1e-8
     assert abs(run.turns) > 1.0
 
 

@@ -28,6 +28,6 @@ def test_no_row_is_left_as_the_memory_was(machine: Mechanism, monkeypatch: pytes
     blocks, steps = unset((2, rows, 1)), unset((6, rows, 1), np.complex128)
     monkeypatch.setattr(derived, "np", SimpleNamespace(empty=unset, zeros=np.zeros, complex128=np.complex128))
     columns, designs = np.arange(3), random_designs(2, seed=12)
-    derived._derive.function(raw, columns, designs, loads.kind, loads.datum, blocks, steps)  # type: ignore[attr-defined]
+    derived._fill_derived_blocks.function(raw, columns, designs, loads.kind, loads.datum, blocks, steps)  # type: ignore[attr-defined]
     assert np.isfinite(blocks).all()
     assert np.isfinite(steps).all()

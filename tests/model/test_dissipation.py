@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.dissipation import works_over_a_turn
+from slidercrank.model.machine.dissipation import may_do_work_over_a_turn
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.load import Load
@@ -53,7 +53,7 @@ def mean_and_size(machine: Mechanism) -> tuple[float, float]:
 @pytest.mark.parametrize("loads", IDLE)
 def test_loads_that_store_what_they_take_do_no_work_over_a_turn(loads: tuple[Load, ...]) -> None:
     machine = replace(BARE, loads=loads)
-    assert not works_over_a_turn(machine)
+    assert not may_do_work_over_a_turn(machine)
     mean, size = mean_and_size(machine)
     assert mean < 1e-6 * size
     found = average_torque(machine, random_designs(20, seed=8, least_margin=0.1), gradients=True)
@@ -66,15 +66,15 @@ def test_loads_that_store_what_they_take_do_no_work_over_a_turn(loads: tuple[Loa
 @pytest.mark.parametrize("loads", WORKING)
 def test_loads_that_do_not_give_it_back_work(loads: tuple[Load, ...]) -> None:
     machine = replace(BARE, loads=loads)
-    assert works_over_a_turn(machine)
+    assert may_do_work_over_a_turn(machine)
     assert average_torque(machine, random_designs(20, seed=8, least_margin=0.1)).mean.all()
 
 
 def test_friction_and_acceleration_work_and_a_crank_at_rest_moves_no_damper() -> None:
-    assert works_over_a_turn(replace(BARE, acceleration=1.0))
-    assert works_over_a_turn(replace(BARE, friction=Friction(guide=0.1)))
-    assert works_over_a_turn(replace(BARE, friction=Friction(slider_pin=Pin(radius=0.01, coefficient=0.1))))
-    assert not works_over_a_turn(replace(BARE, speed=0.0, loads=(Viscous(coefficient=10.0),)))
+    assert may_do_work_over_a_turn(replace(BARE, acceleration=1.0))
+    assert may_do_work_over_a_turn(replace(BARE, friction=Friction(guide=0.1)))
+    assert may_do_work_over_a_turn(replace(BARE, friction=Friction(slider_pin=Pin(radius=0.01, coefficient=0.1))))
+    assert not may_do_work_over_a_turn(replace(BARE, speed=0.0, loads=(Viscous(coefficient=10.0),)))
 
 
 def test_a_machine_works_if_it_does_for_some_value_of_what_varies() -> None:
@@ -82,5 +82,5 @@ def test_a_machine_works_if_it_does_for_some_value_of_what_varies() -> None:
         item = Varying(name="push", sets=sets, lower=-150.0, upper=200.0)
         return replace(BARE, loads=(StrokeForce(outward=200.0, inward=200.0),), varying=(item,))
 
-    assert works_over_a_turn(varied(("loads.0.outward", 1.0)))
-    assert not works_over_a_turn(varied(("loads.0.outward", 1.0), ("loads.0.inward", 1.0)))
+    assert may_do_work_over_a_turn(varied(("loads.0.outward", 1.0)))
+    assert not may_do_work_over_a_turn(varied(("loads.0.outward", 1.0), ("loads.0.inward", 1.0)))

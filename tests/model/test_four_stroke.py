@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.gas_cycle import gas_cycle
+from slidercrank.model.cycle.gas_cycle import gas_cycle_number
 from slidercrank.model.cycle.indicator import indicator
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -145,7 +145,10 @@ def test_several_cylinders_share_a_crankshaft_and_one_of_two_strokes_keeps_its_o
     two = Engine(**own, compression_exponent=1.3, expansion_exponent=1.3)
     design = np.array([[0.043, 0.15, 0.0]])
     work, cycles = (
-        [gas_cycle(Mechanism(speed=300.0, loads=loads), design, of)[0][0] for loads in ((four,), (two,), (four, two))]
+        [
+            gas_cycle_number(Mechanism(speed=300.0, loads=loads), design, of)[0][0]
+            for loads in ((four,), (two,), (four, two))
+        ]
         for of in (lambda gas: gas.work, lambda gas: gas.cycle_work)
     )
     assert work[2] == pytest.approx(work[0] + 2.0 * work[1], rel=1e-12)

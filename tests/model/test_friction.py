@@ -12,7 +12,7 @@ import pytest
 from scipy.optimize import root
 
 from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screens
+from slidercrank.model.signals.screening import is_supported
 from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import SMOOTH, Array, linkage_of, random_designs, random_friction, random_machine
@@ -226,7 +226,7 @@ def test_breakpoints_are_where_the_curves_jump_or_the_guide_force_changes_sides(
 
 def test_input_less_useful_work_is_the_friction_heat() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
-        e = energies(machine, linkage_of(design, machine.branch))
+        e = cycle_energies(machine, linkage_of(design, machine.branch))
         size = max(abs(e.input), abs(e.useful), abs(e.stored), e.heat)
         assert abs(e.input - e.useful - e.stored - e.heat) < 1e-12 * size
         assert min(e.guide_heat, e.crank_pivot_heat, e.crank_pin_heat, e.slider_pin_heat) > 0.0
@@ -241,13 +241,13 @@ def test_efficiency_is_below_one_with_friction_one_without_and_undefined_without
     push = (StrokeForce(outward=-100.0, inward=0.0),)
     machine = Mechanism(speed=3.0, slider_mass=1.0, loads=push, friction=Friction(guide=0.2))
     linkage = Linkage(0.05, 0.2, 0.02)
-    efficiency = energies(machine, linkage).efficiency
+    efficiency = cycle_energies(machine, linkage).efficiency
     assert efficiency is not None
     assert 0.8 < efficiency < 1.0
-    assert energies(dataclasses.replace(machine, friction=Friction()), linkage).efficiency == 1.0
-    assert energies(dataclasses.replace(machine, loads=(Spring(stiffness=500.0),)), linkage).efficiency is None
+    assert cycle_energies(dataclasses.replace(machine, friction=Friction()), linkage).efficiency == 1.0
+    assert cycle_energies(dataclasses.replace(machine, loads=(Spring(stiffness=500.0),)), linkage).efficiency is None
     driving = dataclasses.replace(machine, loads=(StrokeForce(outward=100.0, inward=0.0),))
-    given = energies(driving, linkage)
+    given = cycle_energies(driving, linkage)
     assert given.efficiency == pytest.approx(-given.input / -given.useful, rel=1e-10)
 
 
@@ -265,9 +265,9 @@ def test_rms_torque_is_that_of_adaptive_quadrature() -> None:
 
 def test_machine_with_friction_is_not_screened() -> None:
     rubbing = dataclasses.replace(SMOOTH, friction=Friction(guide=0.1))
-    assert screens(SMOOTH, Signal.TORQUE)
-    assert not screens(rubbing, Signal.TORQUE)
-    assert screens(rubbing, Signal.POSITION_ERROR)
+    assert is_supported(SMOOTH, Signal.TORQUE)
+    assert not is_supported(rubbing, Signal.TORQUE)
+    assert is_supported(rubbing, Signal.POSITION_ERROR)
 
 
 @pytest.mark.parametrize("value", [-0.1, math.nan, math.inf])

@@ -25,7 +25,7 @@ def test_rod_and_offset_from_stroke_give_back_rod_and_offset() -> None:
 
 def test_offset_from_excess_angle_gives_back_the_offset() -> None:
     r, l, e = DESIGNS.T
-    angle = geometry.excess_angle(r, l, e)
+    angle = geometry.excess_stroke_angle(r, l, e)
     found = geometry.offset_from_excess_angle(r, l, np.sin(angle), np.cos(angle))
     # The excess angle is a difference of two arcsines: its rounding 1e-16 counts against angles down to 1e-5.
     np.testing.assert_allclose(found, e, rtol=1e-10)
@@ -33,7 +33,7 @@ def test_offset_from_excess_angle_gives_back_the_offset() -> None:
 
 def test_excess_angle_has_the_sign_of_the_offset() -> None:
     r, l, e = DESIGNS.T
-    np.testing.assert_array_equal(np.sign(geometry.excess_angle(r, l, e)), np.sign(e))
+    np.testing.assert_array_equal(np.sign(geometry.excess_stroke_angle(r, l, e)), np.sign(e))
 
 
 def test_stroke_is_the_difference_of_the_dead_centres() -> None:

@@ -25,7 +25,7 @@ from numba.core import event
 from slidercrank.model.errors import SlidercrankError
 from slidercrank.model.kernel import compile_all, compiler, disk
 from slidercrank.model.kernel.arithmetic import arcsine
-from slidercrank.model.kernel.closure import digest
+from slidercrank.model.kernel.closure import kernel_digest
 from slidercrank.model.kernel.compile_all import compile_missing
 from slidercrank.model.kernel.disk import KernelSource, keep, read, report_progress
 from slidercrank.model.kernel.interruption import interrupted_by
@@ -169,7 +169,7 @@ def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.
         raise TimeoutError
 
     compiling = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
-    monkeypatch.setattr(disk, "_start", lambda *_: [compiling])
+    monkeypatch.setattr(disk, "_start_compilers", lambda *_: [compiling])
     try:
         with interrupted_by(stop), pytest.raises(TimeoutError):
             disk.compile_in_processes(tmp_path, "some.package", tmp_path / "never")
@@ -180,8 +180,8 @@ def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.
 
 def test_who_compiles_ends_with_who_asked_for_it() -> None:
     ends = (
-        "import os; from slidercrank.model.kernel.compile_all import end_with; parent = os.getppid();"
-        "print(flush=True); end_with(parent)"
+        "import os; from slidercrank.model.kernel.compile_all import end_with_parent; parent = os.getppid();"
+        "print(flush=True); end_with_parent(parent)"
     )
     asks = f"""
 import os, subprocess, sys
@@ -265,9 +265,9 @@ SAME = {"c": 2.0, "inner": "x", "comment": "y = 1", "k": 1.0}
 )
 def test_a_digest_follows_what_a_kernel_does(change: dict[str, Any], same: bool) -> None:
     first, second = (of_source(PLAIN.format(**given)) for given in (SAME, SAME | change))
-    digests = [digest(found.function, (0.0,)) for found in (first, second)]
+    digests = [kernel_digest(found.function, (0.0,)) for found in (first, second)]
     assert (digests[0] == digests[1]) == same
-    assert digests[0] != digest(first.function, (0,))
+    assert digests[0] != kernel_digest(first.function, (0,))
 
 
 MAKES = """
@@ -301,8 +301,9 @@ def test_digests_do_not_depend_on_the_process() -> None:
         "import json; import slidercrank.model.cycle.cycle, slidercrank.model.signals.averages;"
         "import slidercrank.model.signals.peaks;"
         "import slidercrank.model.signals.screening, slidercrank.model.signals.complex_forces;"
-        "from slidercrank.model.kernel.kernel import KERNELS; from slidercrank.model.kernel.closure import digest;"
-        "print(json.dumps({w.name: digest(w.function, w.examples) for w in (k.source() for k in KERNELS)}))"
+        "from slidercrank.model.kernel.kernel import KERNELS;"
+        "from slidercrank.model.kernel.closure import kernel_digest;"
+        "print(json.dumps({w.name: kernel_digest(w.function, w.examples) for w in (k.source() for k in KERNELS)}))"
     )
     found = []
     for seed in ("1", "2"):
@@ -364,11 +365,11 @@ def test_the_peaks_of_a_machine_are_those_of_the_functions_in_python(monkeypatch
 def test_formulas_that_are_only_linked_give_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("slidercrank.model.kernel.kernel.machine_code", lambda wanted, modules: wanted.compile())
     designs = random_designs(200, seed=4)
-    assert isinstance(closed_forms._evaluate, Kernel)
+    assert isinstance(closed_forms._fill_values_and_gradients, Kernel)
     found = []
     for tried in (compiler._TRIED, "another version"):
         monkeypatch.setattr(compiler, "_TRIED", tried)
-        own = Kernel(closed_forms._evaluate.function)
+        own = Kernel(closed_forms._fill_values_and_gradients.function)
         values, gradients = np.empty((7, 200)), np.empty((7, 200, 3))
         for kind in range(7):
             own(kind, designs, values[kind], gradients[kind])
@@ -379,7 +380,7 @@ def test_formulas_that_are_only_linked_give_the_same_numbers(monkeypatch: pytest
 
 def test_what_another_thread_compiles_meanwhile_is_whole() -> None:
     found: list[float] = []
-    with compiler._linked("a kernel"):
+    with compiler._compiled_for_linking("a kernel"):
         other = Thread(target=lambda: found.append(numba.njit(lambda x: 2.0 * x)(21.0)))
         other.start()
         other.join()

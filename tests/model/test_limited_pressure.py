@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator import burning_ends, indicator
+from slidercrank.model.cycle.indicator import burning_end_angle, indicator
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke, LimitedPressure
@@ -104,7 +104,7 @@ def test_burning_ends_where_the_volume_says_and_cuts_the_cycle_there(seed: int) 
     (load,) = machine.loads
     assert isinstance(load, LimitedPressure)
     linkage = Linkage(design[0, 0], design[0, 1], design[0, 2], branch=machine.branch)
-    end = burning_ends(machine, linkage, load)
+    end = burning_end_angle(machine, linkage, load)
     assert end is not None
     area, top = load.area * (1.0 if load.head == "inner dead centre" else -1.0), swept(load, design)
     wanted = top * (load.clearance + load.burning_share)

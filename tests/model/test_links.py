@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import quad
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.design import DESIGN, LOAD_ROWS, Design, derive, design_at
+from slidercrank.model.machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.raw import load_structure, raw_vector
@@ -62,7 +62,7 @@ def derived(machine: Mechanism, designs: Any) -> Design:
     raw = np.repeat(raw_vector(machine)[:, None], len(designs), axis=1).astype(designs.dtype)
     raw[:3] = designs.T
     block = np.empty((DESIGN + LOAD_ROWS * len(machine.loads), len(designs)), dtype=designs.dtype)
-    derive(raw, loads.kind, loads.datum, block)
+    derive_design(raw, loads.kind, loads.datum, block)
     found: Design = design_at(block, slice(None))
     return found
 

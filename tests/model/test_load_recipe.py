@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.machine.loads.load import Entry, Table, built
+from slidercrank.model.machine.loads.load import Entry, Table, load_builder
 from slidercrank.model.machine.loads.viscous import Viscous
 from tests.recipes import code_of
 
@@ -21,7 +21,7 @@ package.__path__.append({folder!r})
 import numpy as np
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.dissipation import works_over_a_turn
+from slidercrank.model.machine.dissipation import may_do_work_over_a_turn
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.job import parse_job
@@ -44,7 +44,7 @@ assert np.abs(power).max() <= 1e-12 * np.abs(curves.load * curves.slider_velocit
 peak = find_peaks(machine, Signal.TORQUE, np.array([[0.05, 0.2, 0.03]])).values[0, 0]
 swept = np.abs(curves.torque).max()
 assert swept <= peak <= 1.001 * swept
-assert not works_over_a_turn(machine)
+assert not may_do_work_over_a_turn(machine)
 print("followed")
 """
 
@@ -67,5 +67,7 @@ def test_a_table_whose_build_takes_other_names_is_refused_where_it_is_declared()
     resistance = Entry("resistance", "Resistance", "force at 1 m/s", "20 N")
     with pytest.raises(ValueError, match="got resistance, which Drag does not take, and no coefficient"):
         Table("resistance", "Drag", "drag", "A drag.", (resistance,), {}, Viscous)
-    table = Table("resistance", "Drag", "drag", "A drag.", (resistance,), {}, built(Viscous, resistance="coefficient"))
+    table = Table(
+        "resistance", "Drag", "drag", "A drag.", (resistance,), {}, load_builder(Viscous, resistance="coefficient")
+    )
     assert table.build(resistance=20.0) == Viscous(coefficient=20.0)

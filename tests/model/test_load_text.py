@@ -143,7 +143,7 @@ def test_the_effect_of_random_loads_is_the_sign_of_their_power_in_each_stroke_of
         for stroke, during in (("outward", outward), ("inward", ~outward)):
             gives, takes = (power[during] > noise).any(), (power[during] < -noise).any()
             found = re.search(rf"({_VERBS}) (?:both strokes|the {stroke} stroke)", load.effect)
-            if found is None and load.push is None:  # by direction, below, or a spring
+            if found is None and load.possible_stroke_forces is None:  # by direction, below, or a spring
                 continue
             said = found[1] if found else ""
             assert not gives or "helps" in said, load.text

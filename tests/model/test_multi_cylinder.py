@@ -16,7 +16,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import members, single_cylinder
+from slidercrank.model.machine.members import member_machines, single_cylinder
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -168,4 +168,4 @@ def test_impossible_cylinders_are_refused(given: dict[str, tuple[float, ...]], s
 
 def test_without_cylinders_there_is_no_whole() -> None:
     with pytest.raises(InputError, match=r"cylinders = \{ phases"):
-        members(PISTONS)
+        member_machines(PISTONS)

@@ -22,7 +22,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import STORED_PEAKS, find_peaks
-from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import (
     MACHINES,
@@ -348,6 +348,6 @@ def test_designs_that_do_not_turn_have_no_peaks_and_no_averages(design: tuple[fl
     with pytest.raises(AssemblyError, match=message):
         find_peaks(SMOOTH, Signal.TORQUE, designs)
     with pytest.raises(AssemblyError, match=message):
-        screen(SMOOTH, (Signal.TORQUE,), designs)
+        screened_maxima(SMOOTH, (Signal.TORQUE,), designs)
     with pytest.raises(AssemblyError, match=message):
         average_torque(SMOOTH, designs)

@@ -15,7 +15,7 @@ import pytest
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screen
+from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from tests.model.virtual_work import path
 
@@ -42,7 +42,7 @@ def test_peak_inertia_torque_is_exact(offset_mm: int, figure: float) -> None:
     assert exact == pytest.approx(figure, rel=0.0, abs=0.05)
     for peak in (
         find_peaks(RECIPROCATING, Signal.TORQUE, designs).values[0, 0],
-        screen(RECIPROCATING, (Signal.TORQUE,), designs)[0].values[0],
+        screened_maxima(RECIPROCATING, (Signal.TORQUE,), designs)[0].values[0],
     ):
         # A torque of 1e2 N m is the sum of some ten products, each rounded: 1e-15 of it.
         assert peak == pytest.approx(exact, rel=1e-13)

@@ -13,7 +13,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerances, Window
 from slidercrank.model.signals import screening
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import LANES, Screened, screens
+from slidercrank.model.signals.screening import LANES, Screened, is_supported
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import SMOOTH, STROKES, TABLES, TOLERANCES, Array, random_designs, random_machine
 
@@ -22,14 +22,14 @@ SCREENED = (Signal.TORQUE, Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 
 
 def screen(machine: Mechanism, signal: Signal, designs: Array, *, gradients: bool = False) -> Screened:
-    return screening.screen(machine, (signal,), designs, gradients=gradients, places=True)[0]
+    return screening.screened_maxima(machine, (signal,), designs, gradients=gradients, places=True)[0]
 
 
 @pytest.mark.parametrize("signal", SCREENED, ids=lambda signal: signal.name)
 @pytest.mark.parametrize("branch", ["open", "crossed"])
 def test_screening_equals_peaks_where_the_curve_is_smooth(signal: Signal, branch: Branch) -> None:
     machine = dataclasses.replace(SMOOTH, branch=branch)
-    assert screens(machine, signal)
+    assert is_supported(machine, signal)
     exact = find_peaks(machine, signal, DESIGNS, gradients=True)
     fast = screen(machine, signal, DESIGNS, gradients=True)
     assert exact.gradients is not None
@@ -84,17 +84,17 @@ def test_number_of_designs_does_not_matter(count: int) -> None:
 
 def test_what_screening_does_not_handle_it_says() -> None:
     windowed = Mechanism(tolerances=Tolerances(window=Window(end=0.5)))
-    assert not screens(TABLES, Signal.TORQUE)
-    assert not screens(windowed, Signal.POSITION_ERROR)
-    assert not screens(SMOOTH, Signal.TORQUE, during="inward stroke")
-    assert not screens(SMOOTH, Signal.GUIDE_FORCE)
+    assert not is_supported(TABLES, Signal.TORQUE)
+    assert not is_supported(windowed, Signal.POSITION_ERROR)
+    assert not is_supported(SMOOTH, Signal.TORQUE, during="inward stroke")
+    assert not is_supported(SMOOTH, Signal.GUIDE_FORCE)
     # The position error does not depend on loads.
-    assert screens(dataclasses.replace(TABLES, tolerances=TOLERANCES), Signal.POSITION_ERROR)
+    assert is_supported(dataclasses.replace(TABLES, tolerances=TOLERANCES), Signal.POSITION_ERROR)
 
 
 @pytest.mark.parametrize("gradients", [False, True])
 def test_several_signals_together_are_what_each_is_alone(gradients: bool) -> None:
-    together = screening.screen(SMOOTH, SCREENED, DESIGNS, gradients=gradients)
+    together = screening.screened_maxima(SMOOTH, SCREENED, DESIGNS, gradients=gradients)
     for signal, found in zip(SCREENED, together, strict=True):
         alone = screen(SMOOTH, signal, DESIGNS, gradients=gradients)
         np.testing.assert_allclose(found.values, alone.values, rtol=1e-13)

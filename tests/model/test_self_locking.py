@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.efficiency import energies
-from slidercrank.model.cycle.locked_angles import states_at, verdict
+from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.locked_angles import locking_verdict, states_at
 from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -45,7 +45,7 @@ def test_guide_locks_where_the_transmission_angle_is_below_the_angle_of_friction
         expected = angle <= math.atan(coefficient)
         np.testing.assert_array_equal(states_at(machine, linkage, theta) == "locks", expected)
         np.testing.assert_array_equal(np.isnan(cycle(machine, linkage, theta).torque), expected)
-        found = verdict(machine, linkage)
+        found = locking_verdict(machine, linkage)
         assert found.locks == bool(float(linkage.least_transmission_angle) <= math.atan(coefficient))
         for end in (end for span in found.locked for end in span):
             assert float(linkage.at(end).transmission_angle) == pytest.approx(math.atan(coefficient), rel=1e-9)
@@ -61,7 +61,7 @@ def test_pins_add_the_angle_of_their_friction_circles() -> None:
     expected = math.acos((r + e) / l) - math.atan(0.4) - math.asin(circles / l)
     assert margin(PINS, DESIGN) == pytest.approx(expected, rel=1e-14)
     machine = Mechanism(speed=1.0, loads=(RESISTS,), friction=PINS)
-    (span,) = verdict(machine, Linkage(*DESIGN)).locked
+    (span,) = locking_verdict(machine, Linkage(*DESIGN)).locked
     # Before 270 deg the rod swings one way, after it the other: the slider pin's circle helps, then hinders.
     before, after = (Linkage(*DESIGN).at(end) for end in span)
     lean = math.atan(0.4)
@@ -88,7 +88,7 @@ def test_forces_are_determined_all_over_the_cycle_exactly_when_the_margin_is_mor
             linkage = Linkage(design[0], rod, design[2], machine.branch)
             finite = np.isfinite(cycle(machine, linkage, theta).torque)
             assert bool(finite.all()) == drives
-            assert verdict(machine, linkage).locks != drives
+            assert locking_verdict(machine, linkage).locks != drives
 
 
 def test_margin_without_friction_is_the_least_transmission_angle() -> None:
@@ -120,7 +120,7 @@ def test_nothing_is_returned_of_a_design_that_locks() -> None:
     assert np.isnan(averages.mean[0])
     assert averages.rms[0] == math.inf
     with pytest.raises(InputError, match=r"self-locking margin must be more than zero; got -.* deg; lengthen the rod"):
-        energies(machine, Linkage(*DESIGN))
+        cycle_energies(machine, Linkage(*DESIGN))
     theta = np.linspace(0.0, 2.0 * math.pi, 3600)
     curves = cycle(machine, Linkage(*DESIGN), theta)
     held = states_at(machine, Linkage(*DESIGN), theta) != "drives"

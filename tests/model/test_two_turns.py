@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -18,7 +18,7 @@ from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.two_turns import halves
+from slidercrank.model.machine.two_turns import machines_of_both_turns
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
@@ -73,8 +73,8 @@ def test_peaks_and_means_are_those_of_both_turns(seed: int) -> None:
     machine, _, designs = random_case(seed)
     peaks = find_peaks(machine, Signal.TORQUE, designs)
     averages = average_torque(machine, designs)
-    ends = [average_torque(half, designs) for half in halves(machine)]
-    tops = [find_peaks(half, Signal.TORQUE, designs).values[:, 0] for half in halves(machine)]
+    ends = [average_torque(half, designs) for half in machines_of_both_turns(machine)]
+    tops = [find_peaks(half, Signal.TORQUE, designs).values[:, 0] for half in machines_of_both_turns(machine)]
     assert peaks.values[:, 0] == pytest.approx(np.maximum(*tops), rel=1e-15)
     assert averages.mean == pytest.approx(0.5 * (ends[0].mean + ends[1].mean), rel=1e-12, abs=1e-12)
     for n, (crank, rod, offset) in enumerate(designs):
@@ -97,7 +97,7 @@ def test_peaks_and_means_are_those_of_both_turns(seed: int) -> None:
             continue
         extremes = {curve.name: curve for curve in curve_extremes(machine, linkage)}["torque"]
         assert max(extremes.greatest.value, -extremes.least.value) == pytest.approx(peaks.values[n, 0], rel=1e-9)
-        given = energies(machine, linkage).input
+        given = cycle_energies(machine, linkage).input
         assert given == pytest.approx(machine.direction * 2.0 * TURN * averages.mean[n], rel=1e-9, abs=1e-9 * size)
 
 

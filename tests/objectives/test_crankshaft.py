@@ -18,7 +18,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import members, single_cylinder
+from slidercrank.model.machine.members import member_machines, single_cylinder
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks
@@ -188,7 +188,7 @@ def test_four_strokes_in_line_are_a_dense_sweep_of_their_sum() -> None:
     machine, design = SHAFTS["four-stroke"], random_designs(1, seed=2, least_margin=0.5)
     linkage, theta = linkage_of(design[0]), np.linspace(0.0, 2.0 * TURN, 40_001)[:-1]
     torque = np.zeros(len(theta))
-    for own in members(machine):
+    for own in member_machines(machine):
         torque += cycle(own.mechanism, linkage, theta + own.lead).torque
     found = find_peaks(machine, Signal.TORQUE, design, limit=1)
     assert found.values[0, 0] == pytest.approx(np.abs(torque).max(), rel=1e-6)

@@ -13,7 +13,7 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.slider_distances import DeadCentre, SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.objectives.dead_centre import DWELL_ANGLE, TOUCH_SPEED, before_dead_centre
+from slidercrank.objectives.dead_centre import DWELL_ANGLE, TOUCH_SPEED, angle_and_travel_rate_before_dead_centre
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from tests.model.cases import Array, linkage_of, random_designs
@@ -120,7 +120,7 @@ def test_angle_and_travel_before_a_dead_centre_at_any_distance(
         linkage = linkage_of(design, branch)
         distance = share * float(linkage.stroke)
         machine = Mechanism(speed=speed, branch=branch, slider=slider)
-        (angle,), (travel,) = before_dead_centre(machine, design, np.array([distance]))
+        (angle,), (travel,) = angle_and_travel_rate_before_dead_centre(machine, design, np.array([distance]))
         r, l, e = map(big, (crank, rod, offset))
         outer, sign = dead_centre == "outer", big(machine.sign)
         dead = np.sqrt((l + r) ** 2 - e * e) if outer else np.sqrt((l - r) ** 2 - e * e)

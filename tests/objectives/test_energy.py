@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.efficiency import Energies, energies
+from slidercrank.model.cycle.efficiency import Energies, cycle_energies
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -55,7 +55,7 @@ def test_they_are_those_of_the_analysis_of_one_design_and_balance() -> None:
     for machine in rubbing_machines(6, seed=82):
         efficiency, energy, loss = (values(name, machine) for name in NAMES)
         for n, design in enumerate(DESIGNS):
-            found = energies(machine, linkage_of(design, machine.branch))
+            found = cycle_energies(machine, linkage_of(design, machine.branch))
             assert energy[n] == pytest.approx(found.input, abs=1e-11 * found.throughput)
             assert loss[n] == pytest.approx(found.heat, rel=1e-11)
             driven += balances(found, efficiency[n], energy[n], loss[n])
@@ -70,7 +70,7 @@ def test_what_torques_on_the_crank_take_is_useful_too() -> None:
             own = replace(machine, loads=loads)
             efficiency, energy, loss = (values(name, own) for name in NAMES)
             for n, design in enumerate(DESIGNS):
-                found = energies(own, linkage_of(design, machine.branch))
+                found = cycle_energies(own, linkage_of(design, machine.branch))
                 driven += balances(found, efficiency[n], energy[n], loss[n])
     assert 0 < driven < 48
 
@@ -107,7 +107,7 @@ def test_a_cycle_of_two_turns_counts_both() -> None:
     table = AngleTable(angles=angles, forces=forces, cycle="720 deg")
     machine = Mechanism(speed=5.0, slider_mass=1.0, loads=(table,), friction=Friction(guide=0.05))
     design = np.array([[0.05, 0.2, 0.02]])
-    found = energies(machine, linkage_of(design[0]))
+    found = cycle_energies(machine, linkage_of(design[0]))
     assert values("friction_loss", machine, design)[0] == pytest.approx(found.heat, rel=1e-10)
     assert values("energy_per_cycle", machine, design)[0] == pytest.approx(found.input, rel=1e-9)
     assert values("delivered_work", machine, design)[0] == pytest.approx(-found.input, rel=1e-9)

@@ -16,7 +16,7 @@ import pytest
 from scipy.integrate import quad
 
 import slidercrank as sc
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
@@ -124,7 +124,7 @@ def test_works_of_a_cycle_have_one_basis_and_are_integrals_of_pressure_over_volu
     turns = len(pressures) // 2
     power = value("mean_power", machine, design)
     assert power == pytest.approx(works["energy_per_cycle"] * 50.0 / (2.0 * math.pi * turns), rel=1e-12)
-    found = energies(machine, linkage)
+    found = cycle_energies(machine, linkage)
     assert (-found.useful, -found.input, found.heat) == pytest.approx(
         (wanted, works["delivered_work"], works["friction_loss"]), rel=1e-9
     )
@@ -146,7 +146,7 @@ def test_efficiency_is_continuous_from_a_driven_machine_to_one_that_drives_and_z
         given, taken = (useful + heat, useful) if useful > 0.0 else (-useful, max(0.0, -useful - heat))
         found[force] = value("efficiency", own, design)
         assert found[force] == pytest.approx(taken / given, rel=1e-9)
-        assert energies(own, Linkage(*design)).efficiency == pytest.approx(found[force], rel=1e-7)
+        assert cycle_energies(own, Linkage(*design)).efficiency == pytest.approx(found[force], rel=1e-7)
     assert found[1e-6] == found[1.0] == 0.0
     assert 0.0 < found[-1e-6] < 1e-6
     assert found[400.0] > 0.5

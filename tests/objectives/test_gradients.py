@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import STORED_PEAKS
-from slidercrank.objectives.bars import OfBars, Part
+from slidercrank.objectives.bars import BarPieces, BarQuantity
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.pins import PinRubbing
 from slidercrank.objectives.quantity import Group, Pieces, Quantity
@@ -63,9 +63,9 @@ def same_piece(quantity: Quantity, machine: Mechanism, designs: Array, which: An
     def function(displaced: Array, index: NDArray[np.int64]) -> Array:
         if pieces.values.shape[1] == 1:
             return quantity.evaluate(machine, displaced).values
-        there: Pieces | Part
-        if isinstance(quantity, OfBars):  # without gradients, which take most of the time
-            there = quantity.joined(machine, displaced, STORED_PEAKS, False)
+        there: Pieces | BarPieces
+        if isinstance(quantity, BarQuantity):  # without gradients, which take most of the time
+            there = quantity.join_parts(machine, displaced, STORED_PEAKS, False)
         else:
             there = quantity.pieces(machine, displaced)
         away = np.abs(there.labels - label[index, None])

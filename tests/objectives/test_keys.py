@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from slidercrank.objectives.column_keys import key_in, metric_key
+from slidercrank.objectives.column_keys import column_key_in_system, metric_key
 
 LB, LBF, IN = 0.45359237, 4.4482216152605, 25.4
 
@@ -25,8 +25,8 @@ LB, LBF, IN = 0.45359237, 4.4482216152605, 25.4
     ],
 )
 def test_a_key_has_the_unit_of_the_system_and_its_value_the_factor(key: str, inch: str, factor: float) -> None:
-    assert key_in(key, "metric") == (key, 1.0)
-    found, by = key_in(key, "inch")
+    assert column_key_in_system(key, "metric") == (key, 1.0)
+    found, by = column_key_in_system(key, "inch")
     assert found == inch
     assert by == pytest.approx(factor, rel=1e-14)
     if key.endswith(("_mm", "_MPa", "_kg_m")):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Tolerance, Tolerances
-from slidercrank.model.tolerance.sources import limits
+from slidercrank.model.tolerance.sources import limits_of_sources
 from slidercrank.model.tolerance.spreads import Spreads, error_distribution
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
@@ -109,7 +109,7 @@ def test_percentile_of_the_stroke_is_that_of_the_monte_carlo_simulation(shape: s
     dimension = error_distribution(shape)  # type: ignore[arg-type]
     spreads = Spreads(crank=dimension, rod=dimension, offset=dimension)
     for row, (crank, rod, offset) in enumerate(DESIGNS):
-        reach = limits(COARSE, Linkage(crank, rod, offset))
+        reach = limits_of_sources(COARSE, Linkage(crank, rod, offset))
         drawn = spreads.draw(reach, count, np.random.default_rng([5, row]))
         stroke = np.sort(Linkage(crank + drawn.crank, rod + drawn.rod, offset + drawn.offset).stroke)
         for side, share in (("high", 0.99), ("low", 0.01)):

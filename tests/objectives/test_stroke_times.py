@@ -150,7 +150,7 @@ def test_both_strokes_take_the_time_of_a_turn_over_any_profile() -> None:
     for seed in range(20):
         machine, design = random_case(seed)
         assert machine.speed_profile is not None
-        period = TURN / abs(machine.speed) / machine.speed_profile.over_time
+        period = TURN / abs(machine.speed) / machine.speed_profile.time_mean_over_angle_mean
         assert sum(value(name, machine, design) for name in TIMES) == pytest.approx(period, rel=1e-13)
 
 

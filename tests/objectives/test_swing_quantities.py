@@ -18,9 +18,9 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, slowly
+from slidercrank.model.swing.swing import Swing, without_inertia
 from slidercrank.objectives.swing_quantity import SwingQuantity
-from slidercrank.objectives.tables.swinging import swing_facts, swing_quantities, swinging
+from slidercrank.objectives.tables.swinging import quantities_for_swing, swing_facts, swing_quantities
 from tests.model.cases import Array
 from tests.model.swing.swings import Case, random_swings
 from tests.objectives.richardson import derivatives
@@ -76,7 +76,7 @@ def test_quantities_are_those_of_a_single_design(friction: bool) -> None:
         for name, value in expected.items():
             assert found.pop(name) == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(one.energy_forward)), name
         if friction:
-            slow = summarise(replace(machine, friction=Friction()), linkage, slowly(swing))
+            slow = summarise(replace(machine, friction=Friction()), linkage, without_inertia(swing))
             held = max(map(abs, slow.drive_start + slow.drive_end))
             assert found.pop(f"holding_{kind}_without_friction") == pytest.approx(held, rel=1e-9)
         assert not set(found) - {"swing_efficiency", f"least_{kind}_forth", f"least_{kind}_back"}
@@ -99,7 +99,7 @@ def test_least_drives_are_those_of_a_dense_sweep(friction: bool) -> None:
     """Signed along the motion of each way; a linkage that both ways must drive holds itself."""
     share, held = np.linspace(0.0, 1.0, 20_001), set()
     for machine, linkage, swing in cases(6, seed=74, friction=friction):
-        found, slow = values(machine, swing, design_of(linkage)), slowly(swing)
+        found, slow = values(machine, swing, design_of(linkage)), without_inertia(swing)
         least = []
         for back, way in ((False, "forth"), (True, "back")):
             curves = swing_curves(machine, linkage, slow, share, back=back)
@@ -209,7 +209,7 @@ def test_masses_are_of_a_swing_too() -> None:
     rod = Bar(width=0.05, depth=0.02, density=7800.0)
     machine = Mechanism(crank=RigidLink(mass=3.0), rod=rod, slider_mass=2.0)
     swing = Swing(start=0.2, end=1.4, driver="slider")
-    names = {of.name: of for of in swinging(swing_quantities(swing))}
+    names = {of.name: of for of in quantities_for_swing(swing_quantities(swing))}
     design = np.array([[0.4, 1.3, 0.05], [0.5, 0.9, -0.1]])
     found = names["moving_mass"].evaluate(machine, design, gradients=True)
     bar = 7800.0 * 0.02 * (0.05 * design[:, 1] + 0.25 * np.pi * 0.05**2)

@@ -11,7 +11,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives import kinds, units
 from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.units import closest, kind_of, quote, to_si
+from slidercrank.objectives.units import closest, kind_of_symbol, quote, to_si
 
 PLATES = [
     *("1/min", "/min", "min^-1", "U/min", "Upm", "r/min", "r.p.m.", "spm", "SPM", "stroke/min", "strokes/min"),
@@ -206,7 +206,7 @@ def test_the_example_of_each_kind_is_read_and_its_si_unit_is_one(kind: Kind) -> 
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_every_quantity_has_a_kind_whose_unit_agrees_with_its_factor(name: str) -> None:
     unit = QUANTITIES[name].unit
-    one = to_si(f"1 {unit.symbol}".rstrip(), kind_of(unit.symbol))
+    one = to_si(f"1 {unit.symbol}".rstrip(), kind_of_symbol(unit.symbol))
     assert one * unit.factor == pytest.approx(1.0, rel=1e-15)
 
 
@@ -220,9 +220,9 @@ def test_usual_units_are_those_of_the_definitions(monkeypatch: pytest.MonkeyPatc
 
 
 def test_a_kind_is_found_for_another_unit_of_its_dimension() -> None:
-    assert kind_of("kN m") is kinds.TORQUE
+    assert kind_of_symbol("kN m") is kinds.TORQUE
     with pytest.raises(InputError, match="no kind of value"):
-        kind_of("kg s")
+        kind_of_symbol("kg s")
 
 
 def assert_answered(value: object, kind: Kind) -> None:

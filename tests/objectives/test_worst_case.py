@@ -11,7 +11,7 @@ from scipy.stats import qmc
 
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.robust.points import limits_of
+from slidercrank.objectives.robust.points import tolerance_limits
 from slidercrank.objectives.robust.quantity import RobustQuantity, Side
 from tests.model.cases import SMOOTH, STROKES
 
@@ -26,7 +26,7 @@ def worst_of_machines(
     name: str, side: Side, machine: Mechanism, design: Array, count: int, cube: Array
 ) -> tuple[float, Array]:
     """Return the worst value among machines within the limits, and it after shrinking the box around the worst ones."""
-    reach = limits_of(machine, design[None])[0]
+    reach = tolerance_limits(machine, design[None])[0]
     sign = 1.0 if side == "high" else -1.0
 
     def value(points: Array) -> Array:

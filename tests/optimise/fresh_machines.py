@@ -12,7 +12,7 @@ from scipy.stats import binomtest
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.tolerance.spreads import error_distribution
 from slidercrank.objectives.quantity import Quantity
-from slidercrank.objectives.robust.points import limits_of
+from slidercrank.objectives.robust.points import tolerance_limits
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.robust import robust_quantities
@@ -35,7 +35,7 @@ def realised(front: ParetoFront, *, samples: int, seed: int = 1_000_000_007) -> 
             deviations = error_distribution(quantity.shape if quantity.case == "percentile" else "uniform").rvs(
                 (samples, 3), random_state=np.random.default_rng([seed, row])
             )
-            machines[:, :3] += deviations * limits_of(problem.mechanism, design)
+            machines[:, :3] += deviations * tolerance_limits(problem.mechanism, design)
             values, rounding = _evaluated(quantity.inner, problem.mechanism, machines), 1e-12 * abs(promised)
             good = values <= promised + rounding if quantity.side == "high" else values >= promised - rounding
             interval = binomtest(int(good.sum()), samples).proportion_ci(0.999, method="exact")

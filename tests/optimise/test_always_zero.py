@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.kinematics.in_line import without_rounding
+from slidercrank.model.kinematics.in_line import offset_without_rounding
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -94,7 +94,7 @@ def test_an_offset_that_is_rounding_is_none() -> None:
         assert row["slow_stroke"] == "equal"
         assert math.isinf(row["rod_to_offset"])
     assert Linkage(0.05, 0.16, 1e-9).offset == 1e-9
-    found = without_rounding(np.array([0.16, 0.16, 0.16]), np.array([1e-18, -1e-9, math.nan]))
+    found = offset_without_rounding(np.array([0.16, 0.16, 0.16]), np.array([1e-18, -1e-9, math.nan]))
     np.testing.assert_array_equal(found, [0.0, -1e-9, math.nan])
 
 

@@ -13,9 +13,9 @@ import pytest
 from slidercrank.model.arrays import Array, Mask
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.swing.closure import passes
+from slidercrank.model.swing.closure import swings_without_dead_point
 from slidercrank.model.swing.forces import swing_curves
-from slidercrank.model.swing.swing_batch import driven
+from slidercrank.model.swing.swing_batch import can_swing_despite_friction
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.violation import FEASIBLE
@@ -57,7 +57,7 @@ def sampled(given: Problem, count: int) -> tuple[Array, Mask]:
         found.append(np.column_stack([dimensions, violation <= FEASIBLE]))
     every = np.concatenate(found)
     assert given.motion is not None
-    every = every[passes(given.mechanism, given.motion, every[:, :3])]
+    every = every[swings_without_dead_point(given.mechanism, given.motion, every[:, :3])]
     return every[:, :3], every[:, 3] > 0.0
 
 
@@ -109,7 +109,7 @@ def test_a_job_that_friction_locks_altogether_is_refused_with_how_much(driver: s
             continue
         designs, _ = sampled(given, 4000)
         assert given.motion is not None
-        runs.append(bool(driven(given.mechanism, given.motion, designs).any()))
+        runs.append(bool(can_swing_despite_friction(given.mechanism, given.motion, designs).any()))
     assert runs == [True, False]
 
 

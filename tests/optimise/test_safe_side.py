@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.units import kind_of, to_si
+from slidercrank.objectives.units import kind_of_symbol, to_si
 from slidercrank.optimise.feasibility.safe_side import Side, isolated_value_text, round_to_safe_side
 
 UNITS = sorted({(quantity.unit.symbol, quantity.unit.factor) for quantity in QUANTITIES.values()})
@@ -22,7 +22,7 @@ def test_a_limit_typed_again_lies_on_its_safe_side_and_hardly_gives_anything_awa
     symbol, factor = unit
     value = sign * size / factor
     text = round_to_safe_side(value * factor, side)
-    kind = kind_of(symbol)
+    kind = kind_of_symbol(symbol)
     again = to_si(f"{text} {symbol}" if symbol else text, kind)
     beyond = (again - value) * (1.0 if side == "down" else -1.0)
     assert beyond <= 1.01e-10 * abs(value)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.kernel.interruption import ask
+from slidercrank.model.kernel.interruption import poll_interruption
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -55,7 +55,7 @@ def test_progress_counts_up_and_is_kept() -> None:
 
 
 def test_cancelling_while_kernels_are_waited_for_gives_a_front_without_designs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.optimise.solve.require_finite", lambda *_: ask())
+    monkeypatch.setattr("slidercrank.optimise.solve.require_finite", lambda *_: poll_interruption())
     front = solve(problem(WISHES), cancelled=lambda: True)
     assert (front.status, len(front), front.evaluations) == ("cancelled", 0, 0)
 

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying import Varying
-from slidercrank.model.swing.closure import passes
+from slidercrank.model.swing.closure import swings_without_dead_point
 from slidercrank.model.swing.ends import ends_of, greatest_pin_distance
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_types import Side
@@ -67,7 +67,7 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
         start_at = random.uniform(swing.start - 0.2, swing.start + 0.2, (400, 1))
         designs = np.concatenate([random.uniform(lower, upper, (400, 3)), *([start_at] if free else [])], axis=1)
         probe = problem_of(of, branch, 1.0, free=free, rod=rod, swing=swing)
-        designs = designs[passes(probe.mechanism, probe.motion or swing, designs)][:2]
+        designs = designs[swings_without_dead_point(probe.mechanism, probe.motion or swing, designs)][:2]
         for design in designs:
             value = float(probe.evaluate(design, [name])[0])
             own = problem_of(of, branch, value, free=free, rod=rod, swing=swing)
@@ -79,7 +79,7 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
                 hits += bool(np.allclose(again, design, rtol=1e-7, atol=1e-9))
                 tried = sheet.dimensions(random.random((60, len(sheet.free))))
                 tried = tried[np.isfinite(tried).all(axis=1)]
-                tried = tried[passes(own.mechanism, own.motion or swing, tried)]
+                tried = tried[swings_without_dead_point(own.mechanism, own.motion or swing, tried)]
                 ends = ends_of(own.mechanism, own.motion or swing, tried)
                 tried = tried[
                     greatest_pin_distance(tried, [ends.start, ends.end]) < 0.995 * tried[:, 1]

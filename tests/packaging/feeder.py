@@ -20,8 +20,8 @@ from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.exact import extremes
-from slidercrank.model.tolerance.first_order import first_order
+from slidercrank.model.tolerance.exact import position_deviation_extremes
+from slidercrank.model.tolerance.first_order import first_order_position_errors
 
 FEEDER = Linkage(0.040, 0.064, -0.020)
 ANGLE = math.radians(30.0)
@@ -55,7 +55,7 @@ def _closed_forms() -> dict[str, float]:
         "inner dead centre, crank angle": inner,
         "outer dead centre, crank angle": outer,
         "stroke": 1e3 * float(FEEDER.stroke),
-        "excess angle, magnitude": math.degrees(geometry.excess_angle(0.040, 0.064, 0.020)),
+        "excess angle, magnitude": math.degrees(geometry.excess_stroke_angle(0.040, 0.064, 0.020)),
         "time ratio": float(FEEDER.time_ratio),
         "least transmission angle": math.degrees(float(FEEDER.least_transmission_angle)),
         "crank from this stroke": 1e3 * float(crank_from_stroke(FEEDER.stroke, rod=0.064, offset=-0.020)),
@@ -123,8 +123,8 @@ def _cycle() -> dict[str, float]:
 
 def _errors() -> dict[str, float]:
     influences = FEEDER.error_influences(ANGLE)
-    first = first_order(MACHINE, FEEDER, [ANGLE])
-    exact = extremes(MACHINE, FEEDER, [ANGLE])
+    first = first_order_position_errors(MACHINE, FEEDER, [ANGLE])
+    exact = position_deviation_extremes(MACHINE, FEEDER, [ANGLE])
     return {
         "influence of the crank": float(influences.crank),
         "influence of the rod": float(influences.rod),

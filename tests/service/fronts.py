@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import columns_of
+from slidercrank.objectives.tables.analysis import analysis_columns
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
@@ -103,7 +103,7 @@ def _front(names: tuple[str, ...], designs: int, mechanism: Mechanism) -> Pareto
     better = np.all(values[:, None] <= values, axis=2) & np.any(values[:, None] < values, axis=2)
     rows = np.flatnonzero(~better.any(axis=0))[:designs]
     rows = rows[np.argsort(values[rows, 0])]
-    columns = columns_of(mechanism, dimensions[rows])
+    columns = analysis_columns(mechanism, dimensions[rows])
     columns["slack_least_transmission_angle_deg"] = columns["least_transmission_angle_deg"] - 30.0
     columns["residual"] = np.full(len(rows), 1e-9)
     columns["status"] = np.full(len(rows), "stationary")

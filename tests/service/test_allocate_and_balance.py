@@ -15,7 +15,7 @@ from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.mechanism import Window
-from slidercrank.model.tolerance.first_order import first_order
+from slidercrank.model.tolerance.first_order import first_order_position_errors
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, balance
 from slidercrank.optimise.sizing.input_words import Kind
@@ -108,7 +108,7 @@ def test_allocation_is_that_of_the_model(job: Path, command: Command) -> None:
     assert by_name["rod"]["tolerance_mm"] == pytest.approx(0.04, rel=1e-12)
     assert by_name["rod"]["bound_saving_per_um"] > 0.0
     assert by_name["crank_angle"]["tolerance_deg"] == pytest.approx(np.degrees(found.parts[2].tolerance), rel=1e-12)
-    before = first_order(problem.mechanism, LINKAGE, np.linspace(0.0, 2.0 * np.pi, 2000))
+    before = first_order_position_errors(problem.mechanism, LINKAGE, np.linspace(0.0, 2.0 * np.pi, 2000))
     assert numbers["error_before_mm"] == pytest.approx(1e3 * before.root_sum_square.max(), rel=1e-5)
     assert numbers["cost_before"] == pytest.approx(8.0 + 5.0 + 6.0 + 10.0, rel=1e-12)
 
@@ -207,7 +207,7 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     found = allocate(LINKAGE, problem.costs, 3e-4, kind, mechanism=mechanism)
     data = allocation_curves(found, LINKAGE, problem.costs, mechanism)
     theta = np.radians(data.angles)
-    now, before = (first_order(each, LINKAGE, theta) for each in (found.mechanism, mechanism))
+    now, before = (first_order_position_errors(each, LINKAGE, theta) for each in (found.mechanism, mechanism))
     errors = [each.worst_case if kind == "worst case" else each.root_sum_square for each in (now, before)]
     np.testing.assert_allclose(data.parts.sum(axis=0), errors[0], rtol=1e-9)
     assert data.error_before is not None

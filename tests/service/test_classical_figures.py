@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.comparison import TORQUE, compare
-from slidercrank.model.classical.polygons import polygons
+from slidercrank.model.classical.comparison import TORQUE, compare_approximations
+from slidercrank.model.classical.polygons import motion_polygons
 from slidercrank.model.classical.static_forces import static_forces
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
@@ -48,7 +48,7 @@ def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
     sheet = polygons_analysis.polygon_panels(found, title="", subtitle="")
     position, velocity, acceleration = sheet.panels
     for branch in ("open", "crossed"):
-        expected = polygons(Linkage(0.14, 0.31, 0.06, branch), 0.5, speed=3.0, acceleration=2.0)
+        expected = motion_polygons(Linkage(0.14, 0.31, 0.06, branch), 0.5, speed=3.0, acceleration=2.0)
         np.testing.assert_allclose(line(position, branch).x, expected.position[:, 0], rtol=1e-14)
         for panel, points in ((velocity, expected.velocity), (acceleration, expected.acceleration)):
             closed = np.concatenate([points, points[:1]])
@@ -102,7 +102,7 @@ def test_static_forces_of_a_dead_centre_have_no_finite_advantage() -> None:
 
 def test_approximation_panels_are_those_of_the_comparison() -> None:
     acceleration, torque, of_acceleration, of_torque = approximations_analysis.figure(MACHINE, LINKAGE).panels
-    found = compare(MACHINE, LINKAGE, np.radians(torque.lines[0].x))
+    found = compare_approximations(MACHINE, LINKAGE, np.radians(torque.lines[0].x))
     np.testing.assert_allclose(line(acceleration, "exact").y, found.acceleration, rtol=0, atol=1e-9)
     np.testing.assert_allclose(line(acceleration, "series").y, found.accelerations["series"], rtol=0, atol=1e-9)
     np.testing.assert_allclose(line(torque, "exact").y, found.torque, rtol=0, atol=1e-9)
@@ -125,7 +125,7 @@ def test_errors_of_a_massless_machine_are_not_defined() -> None:
 
 def test_polygon_numbers_are_the_vertices() -> None:
     numbers: Any = polygons_analysis.numbers(MACHINE, LINKAGE, crank_angle=0.5)
-    expected = polygons(LINKAGE, 0.5, speed=MACHINE.speed)
+    expected = motion_polygons(LINKAGE, 0.5, speed=MACHINE.speed)
     np.testing.assert_allclose(numbers["open"]["position_mm"]["B"], 1e3 * expected.position[2], rtol=1e-14)
     np.testing.assert_allclose(numbers["open"]["acceleration_m_s2"]["b11"], expected.acceleration[3], rtol=1e-14)
 

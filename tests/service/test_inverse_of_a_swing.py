@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from slidercrank.model.swing.swing import placed, require_swing
+from slidercrank.model.swing.swing import require_swing, swing_between_crank_angles
 from slidercrank.service.questions.inverse.analysis import numbers
 from tests.model.swing.swings import random_swings
 
@@ -16,7 +16,7 @@ def test_the_angle_that_a_place_comes_from_is_found_within_the_swing() -> None:
     random, twice = np.random.default_rng(3), 0
     for mechanism, linkage, swing in random_swings(40, seed=99):
         own = require_swing(mechanism, linkage, swing)
-        between = placed(mechanism, own, swing)
+        between = swing_between_crank_angles(mechanism, own, swing)
         low, high = sorted(math.degrees(angle) for angle in (between.start, between.end))
         for share in (0.0, 1.0, *random.random(3)):
             angle = between.start + (between.end - between.start) * share

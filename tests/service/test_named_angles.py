@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.first_greatest import angle_in_cycle, first_greatest
-from slidercrank.objectives.tables.analysis import columns_of
+from slidercrank.objectives.tables.analysis import analysis_columns
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves
 from slidercrank.service.questions.cylinders import analysis as cylinders
@@ -57,7 +57,7 @@ def angle_of_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
 def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed: int) -> None:
     machine, linkage = even_engine(count, seed)
     size, most, least = (angle_of_greatest(machine, linkage, sign) for sign in (0, 1, -1))
-    row = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
+    row = analysis_columns(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))
     together: Any = cylinders.numbers(machine, linkage)
     whole: Any = motor.numbers(machine, linkage)
     torque = next(found for found in curve_extremes(machine, linkage) if found.name == "torque")
@@ -77,7 +77,7 @@ def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed:
 
 def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
     machine, linkage = even_engine(1, 3)
-    expected = columns_of(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))["peak_torque_angle_deg"][0]
+    expected = analysis_columns(machine, np.array([[linkage.crank, linkage.rod, 0.0]]))["peak_torque_angle_deg"][0]
     panel = next(panel for panel in cycle_curves(machine, linkage).panels if panel.title == "drive torque")
     assert panel.lines[1].x == pytest.approx([expected], abs=1e-9)
 

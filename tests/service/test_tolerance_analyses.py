@@ -22,9 +22,9 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.exact import extremes, worst
-from slidercrank.model.tolerance.first_order import first_order, shares
-from slidercrank.model.tolerance.monte_carlo import simulate, variances
+from slidercrank.model.tolerance.exact import position_deviation_extremes, worst_position_error
+from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
+from slidercrank.model.tolerance.monte_carlo import simulate, variance_contributions
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.sensitivity import analysis as sensitivity_analysis
@@ -68,17 +68,17 @@ def test_numbers_of_the_tolerances_are_those_of_the_model(mechanism: Mechanism) 
         peak = find_peaks(mechanism, signal, design, limit=1)
         assert found[f"{key}_mm"] == 1e3 * peak.values[0, 0]
         assert found[f"{key}_angle_deg"] == pytest.approx(np.degrees(peak.angles[0, 0]))
-    exact = worst(mechanism, SUPPORT)
+    exact = worst_position_error(mechanism, SUPPORT)
     assert found["exact_worst_case_mm"] == 1e3 * exact.size
     at = math.radians(found["worst_case_angle_deg"])
-    linear = first_order(mechanism, SUPPORT, at)
+    linear = first_order_position_errors(mechanism, SUPPORT, at)
     rows = found["contributions"]
     assert sum(row["contribution_mm"] for row in rows) == pytest.approx(found["worst_case_mm"], rel=1e-12)
     there = linear.contributions[:, 0] > 0.0
     np.testing.assert_allclose(
         [row["share_of_worst_case_percent"] for row in rows], 100.0 * linear.share_of_worst_case[there, 0], rtol=1e-9
     )
-    of_variance = shares(variances(mechanism, SUPPORT, at))[there, 0]
+    of_variance = fractions_of_sum(variance_contributions(mechanism, SUPPORT, at))[there, 0]
     np.testing.assert_allclose([row["share_of_variance_percent"] for row in rows], 100.0 * of_variance, rtol=1e-9)
     for share in ("worst_case", "variance"):
         assert sum(row[f"share_of_{share}_percent"] for row in rows) == pytest.approx(100.0, rel=1e-12)
@@ -123,7 +123,10 @@ def test_without_tolerances_there_is_nothing_to_analyse() -> None:
 def test_error_bands_are_those_of_the_model() -> None:
     bands = error_bands(GAPPED, SUPPORT, samples=1000, seed=3)
     theta = np.radians(bands.angles)
-    linear, exact = first_order(GAPPED, SUPPORT, theta), extremes(GAPPED, SUPPORT, theta)
+    linear, exact = (
+        first_order_position_errors(GAPPED, SUPPORT, theta),
+        position_deviation_extremes(GAPPED, SUPPORT, theta),
+    )
     np.testing.assert_allclose(bands.worst_case, linear.worst_case, rtol=1e-9)
     np.testing.assert_allclose(bands.root_sum_square, linear.root_sum_square, rtol=1e-9)
     assert bands.least is not None

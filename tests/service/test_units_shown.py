@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.column_keys import key_in, metric_key, split_unit
+from slidercrank.objectives.column_keys import column_key_in_system, metric_key, split_unit
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
-from slidercrank.objectives.units import kind_for, per_si, to_si
+from slidercrank.objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.display_units import convert_record, convert_result, convert_row
 from slidercrank.service.runs.result import result_of, rows_from_csv
@@ -29,12 +29,12 @@ FACES = [face for kind in DISPLAYED_KINDS for face in (kind.metric, kind.inch) i
 
 def reads(symbol: str, unit: str) -> bool:
     """Whether a value in one unit is one of the kind of the other."""
-    return to_si(f"1 {symbol}", replace(kind_for(unit), limit=1e30)) > 0.0
+    return to_si(f"1 {symbol}", replace(kind_of_any_unit(unit), limit=1e30)) > 0.0
 
 
 @pytest.mark.parametrize("face", FACES, ids=lambda face: face.symbol)
 def test_factors_and_symbols_are_those_that_job_files_are_read_with(face: object) -> None:
-    assert face.factor == pytest.approx(per_si(face.symbol), rel=1e-15)  # type: ignore[attr-defined]
+    assert face.factor == pytest.approx(value_of_one_si_unit_in(face.symbol), rel=1e-15)  # type: ignore[attr-defined]
 
 
 def test_both_units_of_a_kind_measure_the_same() -> None:
@@ -66,7 +66,7 @@ def test_keys_carry_the_unit_of_their_values(key: str, shown: str, metric: float
     assert convert_row({key: metric}, "inch") == {shown: pytest.approx(inch, rel=1e-15)}
     assert metric_key(shown) == key
     assert find_column(shown, [shown]).title == find_column(key, [key]).title
-    assert split_unit(shown)[2] / split_unit(key)[2] == pytest.approx(key_in(key, "inch")[1])
+    assert split_unit(shown)[2] / split_unit(key)[2] == pytest.approx(column_key_in_system(key, "inch")[1])
 
 
 def test_what_is_no_number_stays_at_any_depth() -> None:
@@ -111,7 +111,7 @@ def test_trade_offs_tell_the_same_rates_in_readable_steps() -> None:
     for metric, inch in zip(*told, strict=True):
         rates = []
         for sentence in (metric, inch):
-            amounts = [to_si(value, kind_for(value.split(" ", 1)[1])) for value in amounts_of(sentence)]
+            amounts = [to_si(value, kind_of_any_unit(value.split(" ", 1)[1])) for value in amounts_of(sentence)]
             rates.append([amount / amounts[0] for amount in amounts[1:]])
         assert rates[0] == pytest.approx(rates[1], rel=6e-3), "three digits are told"
 
@@ -182,7 +182,7 @@ def test_columns_are_called_as_any_export_writes_them(run: Path, command: Comman
         assert key in head
         metric = metric_key(key)
         middle = sorted(row[metric] for row in rows)[len(rows) // 2]
-        bound = middle * key_in(metric, "inch")[1]
+        bound = middle * column_key_in_system(metric, "inch")[1]
         for units, where in itertools.product(("metric", "inch"), (f"{key} <= {bound!r}", f"{metric} <= {middle!r}")):
             told = command("front", run, "--json", "--units", units, "--where", where, "--sort", key).stdout
             found = json.loads(told)["designs"]

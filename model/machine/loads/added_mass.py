@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import Enters, Entry, Load, Table, built
+from .load import Enters, Entry, Load, Table, load_builder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +56,6 @@ AddedMass.tables = (
         "Fluid or rollers accelerated by the slider: inertia without weight.",
         (Entry("added_mass", "Mass", "mass that moves at the slider's speed", "2 kg"),),
         {"added_mass": "1 kg"},
-        built(AddedMass, added_mass="mass"),
+        load_builder(AddedMass, added_mass="mass"),
     ),
 )

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ...arrays import Array
-from ...checks import keep_tuples
+from ...checks import store_as_tuples
 from ...errors import InputError
 from .cylinder import PRESSURES, Head, piston_forces
 from .load import (
@@ -25,13 +25,13 @@ from .load import (
     Load,
     Passage,
     Table,
-    built,
     has_step,
-    points,
+    increasing_points_entry,
+    load_builder,
     require_table,
     require_word,
 )
-from .load_text import SLIDES, effect_by_direction, range_of_angles, sized, without_steps_from_zero
+from .load_text import SLIDES, effect_by_direction, force_magnitude_text, range_of_angles, without_zeros_before_steps
 
 _ROUNDING = 1e-9  # rad
 _TURN = 2.0 * math.pi
@@ -62,7 +62,7 @@ class AngleTable(Load):
     tabulated: ClassVar = ("forces", "N")
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "angles", "forces")
+        store_as_tuples(self, "angles", "forces")
         require_table("angles", self.angles, self.forces, values=self.tabulated[0])
         require_word("during", self.during, During)
         require_word("datum", self.datum, AngleDatum)
@@ -165,10 +165,10 @@ class AngleTable(Load):
     @property
     def size(self) -> str:
         """The minimum and maximum force."""
-        return sized(without_steps_from_zero(self.angles, self.forces))
+        return force_magnitude_text(without_zeros_before_steps(self.angles, self.forces))
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]] | None:
         """The forces in the stroke in which they act; None over the whole cycle, as angles do not identify strokes."""
         if self.during == "cycle":
             return None
@@ -177,7 +177,11 @@ class AngleTable(Load):
     @property
     def effect(self) -> str:
         """Effect on its stroke or, over the whole cycle, on motion in either direction."""
-        return effect_by_direction(self.forces, SLIDES, "motion") if self.push is None else super().effect
+        return (
+            effect_by_direction(self.forces, SLIDES, "motion")
+            if self.possible_stroke_forces is None
+            else super().effect
+        )
 
     @property
     def range(self) -> str:
@@ -200,14 +204,16 @@ AngleTable.tables = (
         "A force tabulated over the crank angle: linear between the points, periodic; two points at one angle form "
         "a step.",
         (
-            points("crank_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"),
+            increasing_points_entry(
+                "crank_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"
+            ),
             FORCES,
             ANGLE_DATUM,
             CYCLE,
             DURING,
         ),
         {"crank_angles": ["0 deg", "180 deg"], "forces": ["0 N", "-100 N"]},
-        built(AngleTable, crank_angles="angles", measured_from="datum"),
+        load_builder(AngleTable, crank_angles="angles", measured_from="datum"),
     ),
     Table(
         "pressure_angles",
@@ -216,7 +222,7 @@ AngleTable.tables = (
         "Pressure in a cylinder over the crank angle: linear between the points, periodic; two points at one angle "
         "form a step; pressures are absolute.",
         (
-            points(
+            increasing_points_entry(
                 "pressure_angles",
                 "Angle",
                 "increasing crank angles from the dead centre at the head, in the direction of rotation, "

@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 from .angle_table import AngleTable
-from .load import ANGLE_DATUM, CYCLE, Entry, Passage, Table, built, points
-from .load_text import TURNS, effect_by_direction, sized
+from .load import ANGLE_DATUM, CYCLE, Entry, Passage, Table, increasing_points_entry, load_builder
+from .load_text import TURNS, effect_by_direction, force_magnitude_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class CrankTable(AngleTable):
     @property
     def size(self) -> str:
         """The minimum and maximum torque."""
-        return f"{sized(self.forces, 'N m', TURNS)} on the crank"
+        return f"{force_magnitude_text(self.forces, 'N m', TURNS)} on the crank"
 
     @property
     def effect(self) -> str:
@@ -56,7 +56,9 @@ CrankTable.tables = (
         "A torque on the crank tabulated over the crank angle: linear between the points, periodic; two points at "
         "one angle form a step.",
         (
-            points("torque_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"),
+            increasing_points_entry(
+                "torque_angles", "Angle", "increasing crank angles within one cycle", "0 deg", "90 deg"
+            ),
             Entry(
                 "torques",
                 "Torque",
@@ -68,6 +70,6 @@ CrankTable.tables = (
             CYCLE,
         ),
         {"torque_angles": ["0 deg", "180 deg"], "torques": ["0 N m", "-20 N m"]},
-        built(CrankTable, torque_angles="angles", torques="forces", measured_from="datum"),
+        load_builder(CrankTable, torque_angles="angles", torques="forces", measured_from="datum"),
     ),
 )

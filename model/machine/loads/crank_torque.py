@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import Enters, Entry, Load, Table, built
-from .load_text import TURNS, effect_by_direction, sized, spring_effect
+from .load import Enters, Entry, Load, Table, load_builder
+from .load_text import TURNS, effect_by_direction, force_magnitude_text, spring_effect
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ class CrankTorque(Load):
         return (1.0, 1.0, self.torque, self.resistance, self.crank_stiffness, self.free_angle)
 
     @property
-    def winds(self) -> bool:
+    def differs_after_a_turn(self) -> bool:
         """Whether it has a spring."""
         return self.crank_stiffness != 0.0
 
@@ -74,7 +74,7 @@ class CrankTorque(Load):
         """Magnitudes and effects of the torques and the spring."""
         parts = []
         if self.torque:
-            size = f"{sized((self.torque,), 'N m', TURNS)} on the crank"
+            size = f"{force_magnitude_text((self.torque,), 'N m', TURNS)} on the crank"
             parts.append((size, effect_by_direction((self.torque,), TURNS, "rotation")))
         if self.resistance:
             parts.append((f"{self.resistance:.6g} N m on the crank", "resists every motion"))
@@ -93,7 +93,7 @@ CrankTorque.tables = (
         "A constant torque on the crank, in addition to the drive torque.",
         (Entry("crank_torque", "Torque", "positive counter-clockwise", "-50 N m"),),
         {"crank_torque": "-50 N m"},
-        built(CrankTorque, crank_torque="torque"),
+        load_builder(CrankTorque, crank_torque="torque"),
     ),
     Table(
         "crank_resistance",
@@ -102,7 +102,7 @@ CrankTorque.tables = (
         "A torque of constant size on the crank that opposes every motion, such as that of a brake or a seal.",
         (Entry("crank_resistance", "PositiveTorque", "its size", "5 N m"),),
         {"crank_resistance": "5 N m"},
-        built(CrankTorque, crank_resistance="resistance"),
+        load_builder(CrankTorque, crank_resistance="resistance"),
     ),
     Table(
         "torque_per_angle",
@@ -114,7 +114,7 @@ CrankTorque.tables = (
             Entry("free_angle", "Angle", "crank angle at which the spring is relaxed", "45 deg"),
         ),
         {"torque_per_angle": "40 N m/rad", "free_angle": "0 deg"},
-        built(CrankTorque, torque_per_angle="crank_stiffness"),
+        load_builder(CrankTorque, torque_per_angle="crank_stiffness"),
         motion="swing",
     ),
 )

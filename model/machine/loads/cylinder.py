@@ -106,7 +106,7 @@ class Cylinder(Load):
         return (1.0, 1.0, *(getattr(self, name) for name in Cylinder.slots))
 
     @property
-    def by_stroke(self) -> bool:
+    def has_stroke_dependent_formula(self) -> bool:
         """True, because gas expands in one stroke and is compressed in the other."""
         return True
 

@@ -39,7 +39,7 @@ class Drag(Load):
         return (1.0, 1.0, self.drag, 0.0)
 
     @property
-    def by_stroke(self) -> bool:
+    def has_stroke_dependent_formula(self) -> bool:
         """True, because the formula for one stroke is the negative of that for the other."""
         return True
 
@@ -49,7 +49,7 @@ class Drag(Load):
         return f"drag, {self.drag:.6g} N s^2/m^2"
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:
         """Forces at a speed of 1 m/s."""
         return (-self.drag,), (self.drag,)
 

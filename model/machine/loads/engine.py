@@ -17,7 +17,7 @@ _TYPED = 5e-6  # relative rounding error of a pressure written with six digits
 
 
 @analytic
-def burning_share(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
+def burning_stroke_fraction(clearance: Any, low: Any, high: Any, exponent: Any, heat: Any, kappa: Any) -> Any:
     """Return the fraction of the stroke over which gas burns at its peak pressure `high`.
 
     Of the heat q per swept volume, (p_h - p_2) c / (kappa - 1) is added at constant volume, starting from the pressure
@@ -135,7 +135,7 @@ class LimitedPressure(Engine):
     def burning_share(self) -> float:
         """Fraction of the stroke over which it burns at peak pressure."""
         numbers = self.clearance, self.low, self.high, self.compression_exponent, self.heat, self.heat_capacity_ratio
-        return float(burning_share(*numbers))
+        return float(burning_stroke_fraction(*numbers))
 
     @property
     def final_pressure(self) -> float:
@@ -197,7 +197,7 @@ class FourStroke(Engine):
         values = {field.name: getattr(self, field.name) for field in fields(Cylinder)}
         return Cylinder(**values | {"high": self.exhaust, "compression_exponent": 0.0, "expansion_exponent": 0.0})
 
-    def number_on_turn(self, name: str, turn: int) -> str | None:
+    def name_of_number_on_turn(self, name: str, turn: int) -> str | None:
         """Return its name; the exhaust pressure is the `high` of turn 2, which has neither peak nor exponents."""
         if turn == 1:
             return None if name == "exhaust" else name

@@ -124,9 +124,9 @@ class Table:
         unknown = keys - named if len(named) == len(parameters) else set()
         if unknown or needed - keys:
             raise ValueError(
-                f"a load table's build function must take its entries by name; got {_listed(unknown)}, which "
-                f"{self.name} does not take, and no {_listed(needed - keys)}; map entries to fields with "
-                "built(kind, key='field')"
+                f"a load table's build function must take its entries by name; got {_word_list(unknown)}, which "
+                f"{self.name} does not take, and no {_word_list(needed - keys)}; map entries to fields with "
+                "load_builder(kind, key='field')"
             )
 
 
@@ -179,7 +179,7 @@ class Load:
         return False
 
     @property
-    def winds(self) -> bool:
+    def differs_after_a_turn(self) -> bool:
         """Whether the load does not repeat after one crank turn; only a swinging crank can have it."""
         return False
 
@@ -197,7 +197,7 @@ class Load:
         """Zero of a two-turn cycle: zero crank angle or a dead centre."""
         return str(getattr(self, "datum", "zero crank angle"))
 
-    def number_on_turn(self, name: str, turn: int) -> str | None:
+    def name_of_number_on_turn(self, name: str, turn: int) -> str | None:
         """Return the name that one of its numbers has in `on_turn`; None if that turn does not have it."""
         return name
 
@@ -212,7 +212,7 @@ class Load:
         return self.enters is Enters.ADDED_MASS
 
     @property
-    def by_stroke(self) -> bool:
+    def has_stroke_dependent_formula(self) -> bool:
         """Whether the force has different formulas in the two strokes."""
         first, second = self.numbers()[:2]
         return first != second
@@ -243,7 +243,7 @@ class Load:
         raise NotImplementedError
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]] | None:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]] | None:
         """Possible forces in the outward and the inward stroke, N outward.
 
         None if they depend on more than the stroke.
@@ -253,15 +253,15 @@ class Load:
     @property
     def resists(self) -> bool:
         """Whether it certainly does no net work on the machine over a cycle."""
-        if self.push is None:
+        if self.possible_stroke_forces is None:
             return self.is_conservative
-        outward, inward = self.push
+        outward, inward = self.possible_stroke_forces
         return self.is_conservative or (max(outward) <= 0.0 and min(inward) >= 0.0)
 
     @property
     def effect(self) -> str:
         """Effect on the strokes, and whether the net work over a cycle is zero."""
-        parts = [] if self.push is None else [effect_in_strokes(*self.push)]
+        parts = [] if self.possible_stroke_forces is None else [effect_in_strokes(*self.possible_stroke_forces)]
         return ", ".join([*parts, "no net work over a cycle"] if self.is_conservative and self.acts else parts)
 
     @property
@@ -275,11 +275,11 @@ class Load:
         return ", ".join(filter(None, (self.size, self.effect, self.range)))
 
 
-def _listed(names: set[str]) -> str:
+def _word_list(names: set[str]) -> str:
     return " and ".join(sorted(names)) or "other"
 
 
-def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
+def load_builder(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
     """Return the function that builds a load from its table's values. fields: keys whose fields have other names."""
     keys = {field: key for key, field in fields.items()}
 
@@ -291,7 +291,7 @@ def built(kind: Callable[..., Load], **fields: str) -> Callable[..., Load]:
     return build
 
 
-def points(name: str, kind: str, description: str, *example: str) -> Entry:
+def increasing_points_entry(name: str, kind: str, description: str, *example: str) -> Entry:
     """Return the key of a table's increasing coordinates, in which two equal ones are a step."""
     return Entry(name, kind, description, list(example), several=True, increasing=True)
 
@@ -315,7 +315,7 @@ def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *
     require_all_finite(f"a table of {argument} and {values}", (*at, *forces), "throughout")
     n = out_of_order(at)
     if n is not None:
-        raise InputError(f"{argument} of a table {order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
+        raise InputError(f"{argument} of a table {broken_order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
 
 
 def out_of_order(at: Sequence[float]) -> int | None:
@@ -329,7 +329,7 @@ def out_of_order(at: Sequence[float]) -> int | None:
     return None
 
 
-def order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
+def broken_order_rule(n: int, at: Sequence[float], point: str, before: str) -> str:
     """Return the rule that point n in a table breaks, with this point and its predecessor as typed."""
     if at[n] < at[n - 1]:
         return f"must increase; got {point} after {before}; sort the table"

@@ -34,7 +34,7 @@ def range_text(low: str, high: str) -> str:
     return f"{low}; at the other end of the range {high}"
 
 
-def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
+def force_magnitude_text(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
     """Return magnitudes and directions: "350 N outward", "up to 600 N inward".
 
     ways: words for positive and negative.
@@ -49,7 +49,7 @@ def sized(forces: Iterable[float], unit: str = "N", ways: Ways = SLIDES) -> str:
     return f"{start}{greatest:.6g} {unit} {ways[0] if high > 0.0 else ways[1]}"
 
 
-def without_steps_from_zero(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
+def without_zeros_before_steps(at: Sequence[float], forces: Sequence[float]) -> Sequence[float]:
     """Return the forces in a table, without a zero at either end that is followed or preceded by a step."""
     first = int(forces[0] == 0.0 and at[0] == at[1])
     last = int(forces[-1] == 0.0 and at[-1] == at[-2])
@@ -102,7 +102,7 @@ def range_of_positions(positions: Sequence[float], forces: Sequence[float], datu
         place = f"from {low} to {high} after the {datum}" if inner_end else f"from the {datum} to {high} after it"
     if len(set(forces)) == 1 and forces[0]:
         return f"{place}; constant beyond, hence everywhere"
-    near, far = ("zero" if not end else sized((end,)) for end in (forces[0], forces[-1]))
+    near, far = ("zero" if not end else force_magnitude_text((end,)) for end in (forces[0], forces[-1]))
     return f"{place}; {near} nearer and {far} beyond" if inner_end and near != far else f"{place}; {far} beyond"
 
 

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ...checks import keep_tuples
+from ...checks import store_as_tuples
 from ...errors import InputError
 from .cylinder import PRESSURES, Head, piston_forces
 from .load import (
@@ -21,13 +21,13 @@ from .load import (
     Load,
     Passage,
     Table,
-    built,
     has_step,
-    points,
+    increasing_points_entry,
+    load_builder,
     require_table,
     require_word,
 )
-from .load_text import range_of_positions, sized, without_steps_from_zero
+from .load_text import force_magnitude_text, range_of_positions, without_zeros_before_steps
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +48,7 @@ class PositionTable(Load):
     sizes: ClassVar = ("forces",)
 
     def __post_init__(self) -> None:
-        keep_tuples(self, "positions", "forces")
+        store_as_tuples(self, "positions", "forces")
         require_table("positions", self.positions, self.forces)
         require_word("datum", self.datum, Datum)
         require_word("during", self.during, During)
@@ -97,10 +97,10 @@ class PositionTable(Load):
     @property
     def size(self) -> str:
         """The minimum and maximum force."""
-        return sized(without_steps_from_zero(self.positions, self.forces))
+        return force_magnitude_text(without_zeros_before_steps(self.positions, self.forces))
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:
         """The forces in the strokes in which they act."""
         outward, inward = self.numbers()[:2]
         return [outward * force for force in self.forces], [inward * force for force in self.forces]
@@ -124,13 +124,13 @@ PositionTable.tables = (
         "A force tabulated over the slider position: linear between the points, constant beyond them; two points "
         "at one position form a step.",
         (
-            points("positions", "Length", "slider positions, increasing", "0 mm", "20 mm"),
+            increasing_points_entry("positions", "Length", "slider positions, increasing", "0 mm", "20 mm"),
             FORCES,
             DATUM,
             DURING,
         ),
         {"positions": ["0 mm", "50 mm"], "forces": ["0 N", "-100 N"], "measured_from": "inner dead centre"},
-        built(PositionTable, measured_from="datum"),
+        load_builder(PositionTable, measured_from="datum"),
     ),
     Table(
         "pressure_positions",
@@ -139,7 +139,7 @@ PositionTable.tables = (
         "Pressure in a cylinder over the piston's distance from its top: linear between the points, constant "
         "beyond; two points at one distance form a step.",
         (
-            points(
+            increasing_points_entry(
                 "pressure_positions",
                 "Length",
                 "increasing distances of the piston from its top, the dead centre at the head",

@@ -12,7 +12,7 @@ from .load import Enters, Load
 
 
 @cache
-def kinds() -> tuple[type[Load], ...]:
+def load_classes() -> tuple[type[Load], ...]:
     """Return all kinds of load in the order of `Enters`; those with a formula by the name of their module."""
     package = import_module(__package__)
     modules = sorted(module.name for module in pkgutil.iter_modules(package.__path__, f"{__package__}."))
@@ -27,7 +27,7 @@ def kinds() -> tuple[type[Load], ...]:
 
 def code_of(kind: type[Load]) -> int:
     """Return the number that identifies a kind of load in kernels."""
-    return kinds().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
+    return load_classes().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
 
 
 def _combined_formula() -> Any:
@@ -40,7 +40,7 @@ def _combined_formula() -> Any:
     def chosen(code: Any, position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
         return 0.0 * velocity
 
-    for kind in kinds():
+    for kind in load_classes():
         if kind.formula is not None:
             chosen = _choose_formula(code_of(kind), kind.formula, chosen)
     return chosen

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import DATUM, Datum, Enters, Entry, Load, Table, built, require_word
+from .load import DATUM, Datum, Enters, Entry, Load, Table, load_builder, require_word
 from .load_text import spring_effect
 
 
@@ -62,6 +62,6 @@ Spring.tables = (
             DATUM,
         ),
         {"stiffness": "1 N/mm", "free_position": "0 mm", "measured_from": "inner dead centre"},
-        built(Spring, measured_from="datum"),
+        load_builder(Spring, measured_from="datum"),
     ),
 )

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from ...checks import require_numbers
 from ...errors import InputError
 from .load import DURING, During, Enters, Entry, Load, Passage, StrokePart, Table
-from .load_text import sized
+from .load_text import force_magnitude_text
 from .position_table import PositionTable
 
 
@@ -54,11 +54,11 @@ class StrokeForce(Load):
         """The forces, without direction if they are equal along the motion."""
         if self.outward == -self.inward:
             return f"{abs(self.outward):.6g} N"
-        forces = {force: sized((force,)) for force in (self.outward, self.inward) if force}
+        forces = {force: force_magnitude_text((force,)) for force in (self.outward, self.inward) if force}
         return " on the outward and ".join(forces.values()) + (" on the inward stroke" if len(forces) > 1 else "")
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:
         """Both forces."""
         return (self.outward,), (self.inward,)
 

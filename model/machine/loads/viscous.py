@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...checks import require_numbers
-from .load import Enters, Entry, Load, Table, built
+from .load import Enters, Entry, Load, Table, load_builder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ class Viscous(Load):
         return f"viscous, {self.coefficient:.6g} N s/m"
 
     @property
-    def push(self) -> tuple[Sequence[float], Sequence[float]]:
+    def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:
         """Forces at a speed of 1 m/s."""
         return (-self.coefficient,), (self.coefficient,)
 
@@ -56,6 +56,6 @@ Viscous.tables = (
         "A resistance proportional to the slider speed.",
         (Entry("viscous", "Damping", "force per speed", "50 N s/m"),),
         {"viscous": "10 N s/m"},
-        built(Viscous, viscous="coefficient"),
+        load_builder(Viscous, viscous="coefficient"),
     ),
 )

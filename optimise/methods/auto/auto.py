@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....model.arrays import Array, IntArray, Mask, distinct
+from ....model.arrays import Array, IntArray, Mask, sorted_unique
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import ReportProgress, choose_designs
@@ -127,7 +127,7 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     """Return the rows of the designs to polish for the front; a recorded step."""
     best, rows = np.argmin(group.values, axis=0), np.arange(len(group))
     if len(rows) > _POOL:
-        rows = distinct(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
+        rows = sorted_unique(np.concatenate([np.linspace(0, len(rows) - 1, _POOL).astype(int), best]))
     always = tuple(int(np.flatnonzero(rows == row)[0]) for row in dict.fromkeys(best.tolist()))
     values, report = group.values[rows], run.stage_reporter(SELECTING)
 
@@ -245,7 +245,7 @@ def _midpoints_of_gaps(evaluators: list[Evaluator], best: FrontCandidates, count
         return []
     _, nearest = neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
     neighbour_pairs = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
-    pairs = distinct(np.sort(neighbour_pairs), axis=0)
+    pairs = sorted_unique(np.sort(neighbour_pairs), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]
     pairs = pairs[best.branch[pairs[:, 0]] == best.branch[pairs[:, 1]]]
     gap = np.linalg.norm((best.values[pairs[:, 0]] - best.values[pairs[:, 1]]) / best.span, axis=1)

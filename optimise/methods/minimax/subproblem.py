@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ....model.arrays import Array
-from ....model.extras import required
+from ....model.extras import import_extra
 
 _ABSENT = -1e3
 """Value of absent rows: no step within the unit box makes them active."""
@@ -52,7 +52,7 @@ class Subproblem:
     """
 
     def __init__(self, k: int, p: int, q: int) -> None:
-        cp = required("cvxpy", "minimax searches need")
+        cp = import_extra("cvxpy", "minimax searches need")
 
         self.move, self.top, self.slack = cp.Variable(k), cp.Variable(), cp.Variable(nonneg=True)
         self.pieces, self.slopes = cp.Parameter(p), cp.Parameter((p, k))
@@ -79,7 +79,7 @@ class Subproblem:
         weight: float,
     ) -> Step | None:
         """Return the step for values and gradients of pieces and constraints; None if the solver fails."""
-        cp = required("cvxpy", "minimax searches need")
+        cp = import_extra("cvxpy", "minimax searches need")
 
         (pieces, slopes), (rows, normals) = _neutralise_absent(*goals), _neutralise_absent(*limits)
         self.pieces.value, self.slopes.value = pieces, slopes

@@ -11,7 +11,7 @@ from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
-from ....model.tolerance.exact import worst
+from ....model.tolerance.exact import worst_position_error
 from ....objectives.kinds import ANGLE, LENGTH, display_unit
 from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.problem.problem import Problem
@@ -119,7 +119,7 @@ def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, cost
     The exact worst case is None if a linkage within the tolerances does not rotate fully.
     """
     try:
-        exact = 1e3 * worst(allocation.mechanism, linkage).size
+        exact = 1e3 * worst_position_error(allocation.mechanism, linkage).size
     except AssemblyError:
         exact = None
     tolerances: list[Tolerance] = []

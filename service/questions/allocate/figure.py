@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.tolerance.first_order import FirstOrder, first_order
-from ....model.tolerance.sources import SOURCES, counted_angles
+from ....model.tolerance.first_order import FirstOrder, first_order_position_errors
+from ....model.tolerance.sources import SOURCES, angles_where_error_counts
 from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation
@@ -51,16 +51,20 @@ class AllocationCurves:
 def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, before: Mechanism) -> AllocationCurves:
     """Return the data of the figure. before: mechanism with its original tolerances."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
-    now = first_order(allocation.mechanism, linkage, theta)
+    now = first_order_position_errors(allocation.mechanism, linkage, theta)
     share, error = _cumulated_error(now, allocation.kind)
     contributes = now.contributions.max(axis=1) > 0.0
     was = costs_of_tolerances(costs, linkage, before)
-    spans = [(float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in counted_angles(before, linkage)]
+    spans = [
+        (float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in angles_where_error_counts(before, linkage)
+    ]
     return AllocationCurves(
         np.degrees(theta),
         tuple(name for name, adds in zip(SOURCES, contributes, strict=True) if adds),
         (share * error)[contributes],
-        None if was is None else _cumulated_error(first_order(before, linkage, theta), allocation.kind)[1],
+        None
+        if was is None
+        else _cumulated_error(first_order_position_errors(before, linkage, theta), allocation.kind)[1],
         allocation.limit,
         tuple(spans),
         np.degrees(allocation.angles),

@@ -8,7 +8,12 @@ from typing import Annotated
 import numpy as np
 
 from ....model.arrays import Array
-from ....model.classical.comparison import Errors, compare, errors_over_offset, relative_error
+from ....model.classical.comparison import (
+    Errors,
+    approximation_errors_over_offset,
+    compare_approximations,
+    relative_error,
+)
 from ....model.classical.lumped import rotating_and_reciprocating
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -75,7 +80,9 @@ def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> E
     """Return the errors at offsets from zero to the design's. If (rod - crank) / 2 is greater, they end there."""
     offset = float(linkage.offset)
     far = max(abs(offset), 0.5 * (float(linkage.rod) - float(linkage.crank)))
-    return errors_over_offset(mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count))
+    return approximation_errors_over_offset(
+        mechanism, linkage, math.copysign(1.0, offset) * np.linspace(0.0, far, count)
+    )
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
@@ -84,7 +91,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     Errors: maximum difference over the cycle relative to the exact peak, in percent; None if the peak is zero. They
     cover inertia only, at constant speed. Raises `InputError` without a crank speed.
     """
-    comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
+    comparison = compare_approximations(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)
     offsets = _errors_over_offset(mechanism, linkage, _TABULATED)
 
@@ -158,7 +165,7 @@ def _approximation_row(approximation: Approximation, key: str, kind: Kind) -> tu
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return exact and approximate acceleration and inertia torque, and the maximum errors over offset."""
-    comparison = compare(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
+    comparison = compare_approximations(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 721))
     errors = _errors_over_offset(mechanism, linkage, _DRAWN)
     degrees, offsets = np.degrees(comparison.crank_angle), np.abs(errors.offset)
     torques = [(_SHORT.get(name, name), 1 + n, name) for n, name in enumerate(comparison.torques)]

@@ -10,7 +10,7 @@ import numpy as np
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import Member, members, single_cylinder
+from ....model.machine.members import Member, member_machines, single_cylinder
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.panels import Extreme
 from ....model.signals.signals import Signal
@@ -66,7 +66,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     """
     shaft = multi_cylinder_cycle(mechanism, linkage)
     return {
-        "cylinders": [_single_cylinder(member, linkage) for member in members(mechanism)],
+        "cylinders": [_single_cylinder(member, linkage) for member in member_machines(mechanism)],
         "peak_torque_Nm": abs(shaft.peak.value),
         "peak_torque_angle_deg": _degrees(shaft.peak),
         "least_torque_Nm": shaft.least.value,

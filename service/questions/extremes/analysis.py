@@ -14,7 +14,13 @@ from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turns import cycle_turns
 from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.machine_needs import ONE_TIMING
-from ....objectives.tables.curve_extremes import CurveExtremes, Extreme, curve_extremes, cuts_of, defined_curves
+from ....objectives.tables.curve_extremes import (
+    CurveExtremes,
+    Extreme,
+    crank_angles_of_cuts,
+    curve_extremes,
+    defined_curves,
+)
 from ....objectives.tables.cycle_curves import KINDS
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import (
@@ -184,7 +190,9 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     extremes = {extreme_curve.name: extreme_curve for extreme_curve in curve_extremes(mechanism, linkage)}
     marked = [e.crank_angle for name in _PANELS if name in extremes for e in _minimum_and_maximum(extremes[name])]
     theta = sampled_turn(
-        cuts_of(mechanism, linkage), [angle for angle in marked if math.isfinite(angle)], turns=cycle_turns(mechanism)
+        crank_angles_of_cuts(mechanism, linkage),
+        [angle for angle in marked if math.isfinite(angle)],
+        turns=cycle_turns(mechanism),
     )
     curves = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, theta)}
     degrees = np.degrees(theta)

@@ -73,7 +73,7 @@ def _fluctuation_without_flywheel(
     runner, drive = Runner(mechanism, linkage), mechanism.drive
     try:
         if drive is None:
-            least, greatest = runner.speeds(0.0)
+            least, greatest = runner.least_and_greatest_speed(0.0)
             return ((greatest - least) / runner.speed, least), None
         running = runner.running_under(replace(drive, flywheel=0.0))
         return (running.fluctuation, float(abs(running.speed).min())), None
@@ -142,7 +142,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
     def run(flywheel: float) -> SteadyRunning | None:
         try:
             if mechanism.drive is None:
-                return runner.constant(flywheel)
+                return runner.under_constant_torque(flywheel)
             return runner.running_under(replace(mechanism.drive, flywheel=flywheel))
         except InputError:
             return None

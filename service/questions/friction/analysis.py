@@ -9,12 +9,12 @@ from typing import Annotated, Literal
 import numpy as np
 
 from ....model.cycle.cycle import breakpoints, cycle
-from ....model.cycle.efficiency import energies
-from ....model.cycle.locked_angles import verdict
+from ....model.cycle.efficiency import cycle_energies
+from ....model.cycle.locked_angles import locking_verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import is_shaft, single_cylinder
+from ....model.machine.members import is_treated_as_shaft, single_cylinder
 from ....model.machine.two_turns import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
@@ -85,8 +85,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     Undefined values are None: torques and energies of a linkage that locks, and the efficiency if the load does no net
     work.
     """
-    has_several, mechanism = is_shaft(mechanism), single_cylinder(mechanism)
-    friction, locking = mechanism.friction, verdict(mechanism, linkage)
+    has_several, mechanism = is_treated_as_shaft(mechanism), single_cylinder(mechanism)
+    friction, locking = mechanism.friction, locking_verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
     pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
     torque, smooth_torque = (
@@ -98,7 +98,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     guide, smooth_guide = (
         finite_or_none(peak(machine, Signal.GUIDE_FORCE, linkage).value) for machine in (mechanism, smooth)
     )
-    work = None if locking.locks else energies(mechanism, linkage)
+    work = None if locking.locks else cycle_energies(mechanism, linkage)
     return {
         "one_cylinder_at_constant_speed": has_several,
         "verdict": "drives" if locking.holds is None and not locking.locks else _locking_verdict(locking.holds),
@@ -181,7 +181,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """
     mechanism = single_cylinder(mechanism)
     smooth = replace(mechanism, friction=Friction())
-    locking = verdict(mechanism, linkage)
+    locking = locking_verdict(mechanism, linkage)
     ends = [end for span in locking.locked for end in span]
     turns = cycle_turns(mechanism)
     theta = sampled_turn(breakpoints(smooth if locking.locks else mechanism, linkage), ends, turns=turns)

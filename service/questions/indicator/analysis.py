@@ -9,7 +9,7 @@ from typing import Annotated
 import numpy as np
 
 from ....model.cycle.gas_cycle import cylinders
-from ....model.cycle.indicator import burning_ends, indicator, valve_events
+from ....model.cycle.indicator import burning_end_angle, indicator, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
@@ -64,7 +64,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
         curve = indicator(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
-        ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
+        ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
         least, greatest = float(curve.volume.min()), float(curve.volume.max())
         records.append(
@@ -105,7 +105,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     """Return pressure over volume and over the crank angle, with a line for each cylinder."""
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_require_cylinders(mechanism)):
-        ends = *valve_events(mechanism, linkage, load), burning_ends(mechanism, linkage, load)
+        ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
         theta = sampled_turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
         curve = indicator(mechanism, linkage, load, theta)

@@ -14,7 +14,7 @@ from ....model.linkage.from_slider import CrankSolution
 from ....model.linkage.inverse import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
-from ....model.swing.swing import Swing, dead_points, placed, require_swing
+from ....model.swing.swing import Swing, dead_points, require_swing, swing_between_crank_angles
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
@@ -76,7 +76,7 @@ def numbers(
     solutions, notes = every, []
     if swing is not None:
         swinging = require_swing(mechanism, linkage, swing)
-        swing = placed(mechanism, swinging, swing)
+        swing = swing_between_crank_angles(mechanism, swinging, swing)
         solutions = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
         if not solutions:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ....model.cycle.cycle import design_of
+from ....model.cycle.cycle import derived_design
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.design import Design
 from ....model.machine.lever_cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.swing.swing import Swing, placed
+from ....model.swing.swing import Swing, swing_between_crank_angles
 from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
@@ -64,7 +64,7 @@ def lever_request(
         pin_angle=pin_angle,
     )
     sizes.require_swing(lever_swing.start, lever_swing.end)
-    design = design_of(mechanism, linkage)
+    design = derived_design(mechanism, linkage)
     given = {name: inputs[key] for key, name in _CYLINDER.items() if key in inputs}
     cylinder = replace(_cylinder_of_job(mechanism, swing), **given)
     closed = cylinder.closed_length or min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
@@ -116,7 +116,7 @@ def _swing(
     """Return the requested swing; omitted values come from the job."""
     start, end = inputs.get("start"), inputs.get("end")
     if swing is not None and (start is None or end is None):
-        of_job = placed(mechanism, linkage, swing)
+        of_job = swing_between_crank_angles(mechanism, linkage, swing)
         start, end = (given if given is not None else own for given, own in ((start, of_job.start), (end, of_job.end)))
     for name, angle in (("start", start), ("end", end)):
         if angle is None:

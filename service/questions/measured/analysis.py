@@ -14,7 +14,7 @@ from ....model.machine.two_turns import cycle_turns
 from ....objectives.column_keys import kind_of_key
 from ....objectives.count_text import counted
 from ....objectives.kinds import ANGLE
-from ....objectives.tables.curve_extremes import cuts_of, defined_curves
+from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.deviation import Deviation, deviations
 from ....objectives.tables.measured import Measured
@@ -176,7 +176,7 @@ def _computed_curves(mechanism: Mechanism, linkage: Linkage, deviation: Deviatio
 
     def line(style: int, angle: float, value: float) -> Line:
         turns = cycle_turns(mechanism)
-        theta = sampled_turn(cuts_of(mechanism, linkage) - angle, turns=turns)
+        theta = sampled_turn(crank_angles_of_cuts(mechanism, linkage) - angle, turns=turns)
         at = np.mod(theta + angle, turns * 2.0 * np.pi)
         (curve,) = (curve.values for curve in defined_curves(mechanism, linkage, at) if curve.name == deviation.name)
         return Line("", np.degrees(theta), curve - value, style=style)

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from ....model.cycle.crank_speed import crank_speed
+from ....model.cycle.crank_speed import crank_speed_and_acceleration
 from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.multi_cylinder import multi_cylinder_curves
 from ....model.cycle.self_locking import locking_margin
@@ -17,7 +17,7 @@ from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import cylinders_of
+from ....model.machine.members import cylinder_machines
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
@@ -108,7 +108,7 @@ def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float
 def _reflected_inertia(mechanism: Mechanism, linkage: Linkage, angle: Any) -> Any:
     """Return the moving inertia of all cylinders at crank angles (n,), rad."""
     curves = (
-        shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinders_of(mechanism)
+        shaking_curves(cylinder.mechanism, linkage, angle + cylinder.lead) for cylinder in cylinder_machines(mechanism)
     )
     return sum(cylinder.reflected_inertia for cylinder in curves)
 
@@ -144,7 +144,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * mean_speed_ratio(mechanism))
     inertia = Line("inertia", degrees, _reflected_inertia(mechanism, linkage, theta))
     usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
-    power = Line("power", degrees, torque * crank_speed(mechanism, theta)[0])
+    power = Line("power", degrees, torque * crank_speed_and_acceleration(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))
     panels = (
         crank_angle_panel("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ....model.classical.polygons import Polygons, polygons
+from ....model.classical.polygons import Polygons, motion_polygons
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
@@ -55,7 +55,7 @@ def both_branches(
     """Return the polygons of the linkage on each branch at one crank angle, rad."""
     lengths = (linkage.crank, linkage.rod, linkage.offset)
     return {
-        branch: polygons(Linkage(*lengths, branch), crank_angle, speed=speed, acceleration=acceleration)
+        branch: motion_polygons(Linkage(*lengths, branch), crank_angle, speed=speed, acceleration=acceleration)
         for branch in _BRANCHES
     }
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....objectives.dead_centre import DWELL_ANGLE, before_dead_centre
+from ....objectives.dead_centre import DWELL_ANGLE, angle_and_travel_rate_before_dead_centre
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, SPEED
 from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.panel_figure import Line, Panel, PanelFigure
@@ -125,7 +125,7 @@ def _angles_before_dead_centre(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before the dead centre, m."""
     _require_stroke(distances[-1], float(linkage.stroke))
-    return before_dead_centre(mechanism, lengths_row(linkage)[0], distances)
+    return angle_and_travel_rate_before_dead_centre(mechanism, lengths_row(linkage)[0], distances)
 
 
 def _dwell_angle(mechanism: Mechanism, linkage: Linkage, distance: float) -> float:

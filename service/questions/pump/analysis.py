@@ -14,7 +14,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import members
+from ....model.machine.members import member_machines
 from ....objectives.average_torque import MEAN_TORQUE
 from ....objectives.flow import FLOW, FLOW_RIPPLE, pumps_of
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
@@ -73,7 +73,7 @@ def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float
     """Return the flow of each liquid cylinder, m^3/s, at crank angles of the shaft, rad."""
     flows = []
     pumps = [(pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in pumps_of(mechanism).values()]
-    for member in members(mechanism):
+    for member in member_machines(mechanism):
         rate = linkage.at(theta + member.lead, speed=mechanism.speed).slider_velocity * mechanism.sign
         flows.append(sum((area * np.maximum(sign * rate, 0.0) for area, sign in pumps), np.zeros(len(theta))))
     return flows

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.column_keys import key_in, metric_key, split_unit
+from ....objectives.column_keys import column_key_in_system, metric_key, split_unit
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
-from ....objectives.units import kind_of, quote
+from ....objectives.units import kind_of_symbol, quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
@@ -94,7 +94,7 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
     for item in part.mechanism.varying:
         column_key = varying_column(item)[0]
-        kinds[item.name] = kind_of(unit_of(item.paths[0]))
+        kinds[item.name] = kind_of_symbol(unit_of(item.paths[0]))
         names |= {item.name: item.name, column_key: item.name, split_unit(column_key)[0]: item.name}
     steps: dict[str, float] = {}
     for text in texts:
@@ -162,7 +162,7 @@ def _rounding_record(rounded: Rounded) -> dict[str, Any]:
 def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
     """Return the answer in a unit system, with round numbers as entered in that system."""
     converted: dict[str, Any] = convert_record(deepcopy(record), units) | {"message": rounded.message_in(units)}
-    keys = [key_in(rounded.names[name][0], units)[0] for name in rounded.steps]
+    keys = [column_key_in_system(rounded.names[name][0], units)[0] for name in rounded.steps]
     for row in (converted["steps"], *converted["designs"]):
         row.update({key: drop_conversion_rounding(row[key]) for key in keys})
     converted["allowed"] = {key: drop_conversion_rounding(value) for key, value in converted["allowed"].items()}

@@ -111,7 +111,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Start:
         "friction_work_J": float(run.friction_work[-1]),
         "kinetic_energy_gained_J": float(run.kinetic[-1] - run.kinetic[0]),
         "potential_energy_gained_J": float(run.potential[-1] - run.potential[0]),
-        "energy_imbalance": run.imbalance,
+        "energy_imbalance": run.energy_balance_error,
         "steady": None if running is None else steady_numbers(running),
         "why_not_steady": reason or None,
     }

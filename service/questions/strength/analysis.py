@@ -155,7 +155,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
         stress = bar_stress(mechanism, LINKS[name].part, lengths_row(linkage))
         if not len(stress.theta):
             raise InputError("friction locks the design, so its stresses are undefined; reduce its friction")
-        length, worst = float(getattr(linkage, name)), stress.worst
+        length, worst = float(getattr(linkage, name)), stress.index_of_largest_stress
         degrees = np.degrees(stress.theta)
         fibre_lines = [
             Line(label, degrees, stress.stress[n, worst], n) for n, label in enumerate(("one face", "the other"))

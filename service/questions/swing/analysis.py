@@ -22,7 +22,7 @@ from ....objectives.tables.swing_curves import (
     driven_side,
     error_kind,
     force_magnitudes,
-    motion_and_drive,
+    motion_and_drive_curves,
 )
 from ...designs.design_curves import swing_rows
 from ...designs.display_units import convert_rows
@@ -202,7 +202,7 @@ def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, An
     """
     strokes = SwingCycle(mechanism, summary.linkage, summary.swing)
     entries: dict[str, Any] = {}
-    for curve in (*motion_and_drive(summary.swing), *force_magnitudes()):
+    for curve in (*motion_and_drive_curves(summary.swing), *force_magnitudes()):
         least, greatest = strokes.value_range(curve.attribute)
         acts = curve.kind not in (FORCE, TORQUE, POWER) and curve.attribute != "driven_error"
         if curve.name == "crank_angle" or (not acts and least.value == greatest.value == 0.0):

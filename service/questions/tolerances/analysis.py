@@ -13,10 +13,10 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.first_peak import first_peaks
 from ....model.signals.signals import Signal
-from ....model.tolerance.exact import worst
-from ....model.tolerance.first_order import shares
-from ....model.tolerance.monte_carlo import simulate, summarise, variances, yield_within
-from ....model.tolerance.sources import SOURCES, limits, source_influences
+from ....model.tolerance.exact import worst_position_error
+from ....model.tolerance.first_order import fractions_of_sum
+from ....model.tolerance.monte_carlo import simulate, summarise, variance_contributions, yield_within
+from ....model.tolerance.sources import SOURCES, limits_of_sources, source_influences
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words
 from ..peaks import lengths_row
@@ -101,7 +101,7 @@ def numbers(
     worst case is None if a linkage within the tolerances does not rotate fully. The histogram counts machines by
     maximum error, in equal bins from 0. Raises `InputError` without tolerances.
     """
-    source_limits = limits(mechanism, linkage)
+    source_limits = limits_of_sources(mechanism, linkage)
     if not np.any(source_limits):
         raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
     signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
@@ -110,12 +110,12 @@ def numbers(
         for values, angles in (first_peaks(mechanism, signal, lengths_row(linkage)) for signal in signals)
     )
     try:
-        exact = worst(mechanism, linkage)
+        exact = worst_position_error(mechanism, linkage)
     except AssemblyError:
         exact = None
     parts = (np.abs(source_influences(mechanism, linkage, at)) * source_limits[:, None])[:, :1]
-    of_worst = 100.0 * shares(parts)[:, 0]
-    of_variance = 100.0 * shares(variances(mechanism, linkage, at))[:, 0]
+    of_worst = 100.0 * fractions_of_sum(parts)[:, 0]
+    of_variance = 100.0 * fractions_of_sum(variance_contributions(mechanism, linkage, at))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
     spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}

@@ -13,10 +13,10 @@ from ....model.cycle.cycle import cycle
 from ....model.errors import AssemblyError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.tolerance.exact import extremes
-from ....model.tolerance.first_order import shares
-from ....model.tolerance.monte_carlo import simulate, variances
-from ....model.tolerance.sources import SOURCES, limits
+from ....model.tolerance.exact import position_deviation_extremes
+from ....model.tolerance.first_order import fractions_of_sum
+from ....model.tolerance.monte_carlo import simulate, variance_contributions
+from ....model.tolerance.sources import SOURCES, limits_of_sources
 from ....objectives.kinds import LENGTH, System
 from ...figures import style
 from ...render.numerals import with_unit
@@ -51,11 +51,11 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
     theta = np.linspace(0.0, 2.0 * np.pi, ANGLES)
     least = greatest = None
     with contextlib.suppress(AssemblyError):
-        exact = extremes(mechanism, linkage, theta)
+        exact = position_deviation_extremes(mechanism, linkage, theta)
         least, greatest = exact.least, exact.greatest
     linear = cycle(mechanism, linkage, theta)
     simulated = simulate(mechanism, linkage, theta, samples=samples, seed=seed)
-    has_tolerance = limits(mechanism, linkage) > 0.0
+    has_tolerance = limits_of_sources(mechanism, linkage) > 0.0
     return Bands(
         np.degrees(theta),
         linear.position_error,
@@ -64,7 +64,7 @@ def error_bands(mechanism: Mechanism, linkage: Linkage, *, samples: int = SAMPLE
         greatest,
         np.nanpercentile(simulated.errors, PERCENTS, axis=0),
         tuple(name for name, is_toleranced in zip(SOURCES, has_tolerance, strict=True) if is_toleranced),
-        100.0 * shares(variances(mechanism, linkage, theta))[has_tolerance],
+        100.0 * fractions_of_sum(variance_contributions(mechanism, linkage, theta))[has_tolerance],
         simulated.greatest[np.isfinite(simulated.greatest)],
     )
 

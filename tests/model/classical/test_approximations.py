@@ -8,9 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.comparison import TORQUE, compare, errors_over_offset
-from slidercrank.model.classical.lumped import lumped, mass_properties, rotating_and_reciprocating, share_at_crank_pin
-from slidercrank.model.classical.series import series_acceleration, series_torque, tangent_torque
+from slidercrank.model.classical.comparison import TORQUE, approximation_errors_over_offset, compare_approximations
+from slidercrank.model.classical.lumped import (
+    link_mass_properties,
+    lumped,
+    rod_mass_share_at_crank_pin,
+    rotating_and_reciprocating,
+)
+from slidercrank.model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -57,15 +62,15 @@ def test_masses_of_the_feeder_are_lumped_half_and_half() -> None:
 def test_lumping_keeps_mass_and_mass_centre() -> None:
     linkage = Linkage(0.14, 0.31, -0.06)
     two = lumped(SMOOTH, linkage)
-    crank, rod = mass_properties(SMOOTH.crank, 0.14), mass_properties(SMOOTH.rod, 0.31)
-    whole = mass_properties(two.crank, 0.14)
+    crank, rod = link_mass_properties(SMOOTH.crank, 0.14), link_mass_properties(SMOOTH.rod, 0.31)
+    whole = link_mass_properties(two.crank, 0.14)
     assert whole.mass + two.slider_mass == pytest.approx(crank.mass + rod.mass + SMOOTH.slider_mass, rel=1e-14)
     added = (two.slider_mass - SMOOTH.slider_mass) * 0.31
     assert added == pytest.approx(rod.mass * rod.centre, rel=1e-14)
     # About the pivot the crank has gained a point mass at its pin.
     about = whole.inertia + whole.mass * (whole.centre**2 + whole.centre_across**2)
     before = crank.inertia + crank.mass * crank.centre**2
-    assert about == pytest.approx(before + share_at_crank_pin(SMOOTH, linkage) * rod.mass * 0.14**2, rel=1e-14)
+    assert about == pytest.approx(before + rod_mass_share_at_crank_pin(SMOOTH, linkage) * rod.mass * 0.14**2, rel=1e-14)
 
 
 def test_a_mass_centre_beyond_the_pins_cannot_be_lumped() -> None:
@@ -116,7 +121,7 @@ def test_peaks_of_the_published_torque_formula(offset: float, of_s: float, of_eq
     alpha = np.arcsin(lever / c)
     for figure, a_s, flag in ((of_s, -equation_20, False), (of_equation_20, equation_20, True)):
         torque = k * -(m2 * w * w * k * np.cos(t) + m3 * a_s) * np.tan(alpha)
-        found = tangent_torque(
+        found = drive_torque_equation_48(
             Linkage(k, c, -offset), t, speed=w, rotating_mass=m2, reciprocating_mass=m3, as_equation_20=flag
         )
         np.testing.assert_allclose(found, -torque, rtol=0, atol=1e-12 * np.abs(torque).max())
@@ -126,14 +131,16 @@ def test_peaks_of_the_published_torque_formula(offset: float, of_s: float, of_eq
 def test_tangent_formula_mirrors_on_the_crossed_branch() -> None:
     masses = {"speed": 9.0, "rotating_mass": 0.4, "reciprocating_mass": 1.2}
     for flag in (False, True):
-        one = tangent_torque(Linkage(0.05, 0.2, 0.02), THETA, **masses, as_equation_20=flag)
-        other = tangent_torque(Linkage(0.05, 0.2, 0.02, "crossed"), math.pi - THETA, **masses, as_equation_20=flag)
+        one = drive_torque_equation_48(Linkage(0.05, 0.2, 0.02), THETA, **masses, as_equation_20=flag)
+        other = drive_torque_equation_48(
+            Linkage(0.05, 0.2, 0.02, "crossed"), math.pi - THETA, **masses, as_equation_20=flag
+        )
         np.testing.assert_allclose(other, -one, rtol=0, atol=1e-12)
 
 
 def test_comparison_is_of_inertia_alone_at_constant_speed() -> None:
     linkage = Linkage(0.14, 0.31, -0.06)
-    found = compare(SMOOTH, linkage, THETA)
+    found = compare_approximations(SMOOTH, linkage, THETA)
     bare = replace(SMOOTH, loads=(), gravity=(0.0, 0.0), acceleration=0.0)
     exact = cycle(bare, linkage, THETA)
     np.testing.assert_array_equal(found.torque, exact.torque)
@@ -146,22 +153,22 @@ def test_comparison_is_of_inertia_alone_at_constant_speed() -> None:
         rtol=1e-14,
     )
     with pytest.raises(InputError, match="need a crank speed"):
-        compare(Mechanism(), linkage, THETA)
+        compare_approximations(Mechanism(), linkage, THETA)
 
 
 def test_errors_of_the_series_grow_with_the_offset_and_those_of_the_exact_split_do_not() -> None:
     a, b = 0.024, 0.040
     machine = replace(FEEDER, rod=RigidLink(mass=0.5, centre=a, inertia=0.5 * a * b))
-    found = errors_over_offset(machine, Linkage(0.040, 0.064), [0.0, 0.010, 0.020])
+    found = approximation_errors_over_offset(machine, Linkage(0.040, 0.064), [0.0, 0.010, 0.020])
     assert np.all(found.torques[TORQUE[0]] < 1e-12)
     assert np.all(found.torques[TORQUE[1]] > 1e-2)
     assert np.all(np.diff(found.accelerations["series"]) > 0.0)
     assert np.all(np.diff(found.torques["k F tan(alpha)"]) > 0.0)
     with pytest.raises(AssemblyError, match="full rotation"):
-        errors_over_offset(machine, Linkage(0.040, 0.064), [0.030])
+        approximation_errors_over_offset(machine, Linkage(0.040, 0.064), [0.030])
 
 
 def test_error_of_a_torque_that_is_zero_throughout_is_not_defined() -> None:
-    found = errors_over_offset(Mechanism(speed=3.0), Linkage(0.05, 0.2), 0.0)
+    found = approximation_errors_over_offset(Mechanism(speed=3.0), Linkage(0.05, 0.2), 0.0)
     assert np.isnan(found.torques["series"][0])
     assert found.accelerations["series"][0] > 0.0

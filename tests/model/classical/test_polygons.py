@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.polygons import Polygons, polygons
+from slidercrank.model.classical.polygons import Polygons, motion_polygons
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch
@@ -20,7 +20,7 @@ def test_motion_read_off_the_polygons_is_that_of_the_closed_form(branch: Branch)
     theta = np.random.default_rng(52).uniform(-4.0, 9.0, 2000)
     linkage = linkage_of(designs, branch)
     at = linkage.at(theta, speed=-15.0, acceleration=-10.0)
-    found = polygons(linkage, theta, speed=-15.0, acceleration=-10.0)
+    found = motion_polygons(linkage, theta, speed=-15.0, acceleration=-10.0)
     steep = 1.0 / np.abs(np.cos(at.rod_angle))
     slider = found.position[:, 2]
     np.testing.assert_allclose(slider, np.stack([at.slider_position, linkage.offset], axis=1), rtol=1e-12)
@@ -39,7 +39,7 @@ def test_motion_read_off_the_polygons_is_that_of_the_closed_form(branch: Branch)
 def test_sides_have_the_published_lengths_and_directions(branch: Branch) -> None:
     """Boyle and Liu, Fig. 2 and Fig. 6: normal parts lie along the links, tangential ones across."""
     speed, acceleration = -15.0, -10.0
-    found = polygons(Linkage(3.0, 8.0, 2.0, branch), math.radians(-30.0), speed=speed, acceleration=acceleration)
+    found = motion_polygons(Linkage(3.0, 8.0, 2.0, branch), math.radians(-30.0), speed=speed, acceleration=acceleration)
     (origin, pin, slider), (_, a, b) = found.position, found.velocity
     _, a11, a1, b11, b1 = found.acceleration
     np.testing.assert_array_equal(origin, 0.0)
@@ -67,8 +67,8 @@ def test_twenty_two_coordinates_of_which_nine_are_given() -> None:
 
 
 def test_polygons_broadcast_and_refuse_what_cannot_be_assembled() -> None:
-    found = polygons(Linkage(0.1, [[0.3], [0.4]]), np.zeros(5), speed=np.ones(5))
+    found = motion_polygons(Linkage(0.1, [[0.3], [0.4]]), np.zeros(5), speed=np.ones(5))
     assert found.position.shape == found.velocity.shape == (2, 5, 3, 2)
     assert found.acceleration.shape == (2, 5, 5, 2)
     with pytest.raises(AssemblyError, match=r"at 90\.000 deg"):
-        polygons(Linkage(0.1, 0.05), 0.5 * math.pi)
+        motion_polygons(Linkage(0.1, 0.05), 0.5 * math.pi)

@@ -41,7 +41,7 @@ def random_law(seed: int) -> MotionLaw:
     size = float(np.abs(turn.terms.load).max())
     waves = random.uniform(-0.3, 0.3, (2, 3)) * size
     phases = np.arange(1, 4)[:, None] * turn.passed
-    law = MotionLaw.closed(turn, waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0)
+    law = MotionLaw.made_periodic(turn, waves[0] @ np.cos(phases) + waves[1] @ np.sin(phases), 0.0)
     mean = 0.5 * float(turn.terms.inertia.mean()) * machine.speed**2
     return replace(law, start_energy=mean / 3.0 - float(law.node_energies.min()))
 
@@ -73,7 +73,7 @@ def test_the_acceleration_is_the_speed_times_its_slope(law: MotionLaw) -> None:
 def test_the_drive_does_the_work_that_the_loads_take(law: MotionLaw) -> None:
     judged = speed_profile_cycle(law.turn.machine, law.turn.linkage, law.motion)
     scale = TURN * float(np.abs(law.turn.terms.load).max())
-    assert judged.work == pytest.approx(law.turn.work, abs=1e-10 * scale)
+    assert judged.work == pytest.approx(law.turn.load_work, abs=1e-10 * scale)
     assert judged.period == pytest.approx(law.period, rel=1e-10)
     assert judged.rms_torque == pytest.approx(law.rms_torque, rel=1e-8)
     assert judged.peaks["torque"].value == pytest.approx(np.abs(law.torque).max(), rel=1e-9)
@@ -82,7 +82,7 @@ def test_the_drive_does_the_work_that_the_loads_take(law: MotionLaw) -> None:
 def test_forward_dynamics_under_the_torque_of_the_law_give_the_law(law: MotionLaw) -> None:
     equation = CrankEquation(law.turn.machine, law.turn.linkage)
     reached, way = None, law.turn.way
-    for span in equation.turn(way):
+    for span in equation.spans_of_cycle(way):
         first, last = (span.low, span.high) if way > 0.0 else (span.high, span.low)
         reached = float(law.speed(np.array([first]))[0]) ** 2 if reached is None else reached
 
@@ -112,7 +112,7 @@ def test_times_are_integrals_of_the_inverse_speed_and_are_inverted(law: MotionLa
 
 def test_without_loads_a_constant_kinetic_energy_needs_no_torque() -> None:
     turn = LawTurn(replace(BARE, gravity=(0.0, 0.0)), LINKAGE)
-    law = MotionLaw.closed(turn, np.zeros(len(turn.width)), 3.0)
+    law = MotionLaw.made_periodic(turn, np.zeros(len(turn.width)), 3.0)
     judged = speed_profile_cycle(turn.machine, LINKAGE, law.motion)
     assert judged.fluctuation > 0.1
     constant = speed_profile_cycle(turn.machine, LINKAGE).peaks["torque"].value

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from slidercrank.model.cycle.cycle import cycle, design_of
+from slidercrank.model.cycle.cycle import cycle, derived_design
 from slidercrank.model.dynamics.torque import forces
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.strength.section_forces import CRANK, ROD, Stress, at_share, stress_along
+from slidercrank.model.strength.section_forces import CRANK, ROD, Stress, stress_along, stress_at_length_fraction
 from tests.model.cases import STRENGTH, Array, linkage_of, random_machine
 
 
@@ -86,7 +86,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     bar: Any = getattr(mechanism, part)
     load = cycle(mechanism, linkage, theta).load
     masses = tuple(own for own in mechanism.loads if own.inertial)
-    design = design_of(replace(mechanism, loads=masses), linkage)
+    design = derived_design(replace(mechanism, loads=masses), linkage)
     moved = motion(np.sin(theta), np.cos(theta), design.r, design.l, design.e, design.branch)
     c = stress_along(
         ROD if part == "rod" else CRANK,
@@ -99,8 +99,8 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
         (bar.width, bar.depth, bar.density),
     )
     column = Stress(*(np.broadcast_to(each, theta.shape)[:, None] for each in c))
-    axial = at_share(column, 0.0, shares)
-    return axial, at_share(column, 1.0, shares) - axial
+    axial = stress_at_length_fraction(column, 0.0, shares)
+    return axial, stress_at_length_fraction(column, 1.0, shares) - axial
 
 
 def eye_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array) -> Array:

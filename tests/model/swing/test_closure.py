@@ -9,7 +9,7 @@ import numpy as np
 from slidercrank.model.errors import SlidercrankError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.swing.closure import passes
+from slidercrank.model.swing.closure import swings_without_dead_point
 from slidercrank.model.swing.swing import Swing, require_swing
 from slidercrank.model.swing.swing_types import Driver
 
@@ -25,7 +25,7 @@ def test_designs_pass_where_each_alone_is_taken() -> None:
         designs = np.column_stack(
             [random.uniform(0.5, 1.5, 40), random.uniform(0.5, 3.0, 40), random.uniform(-0.8, 0.8, 40)]
         )
-        found = passes(Mechanism(branch=branch), swing, designs)
+        found = swings_without_dead_point(Mechanism(branch=branch), swing, designs)
         for (crank, rod, offset), passed in zip(designs, found.tolist(), strict=True):
             try:
                 require_swing(Mechanism(branch=branch), Linkage(crank, rod, offset, branch), swing)

@@ -14,10 +14,10 @@ from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying import Varying
-from slidercrank.model.swing.law import spline, way
-from slidercrank.model.swing.slider_pin_force import toggle_distance
+from slidercrank.model.swing.law import law_spline_pieces, travel_speed_acceleration
+from slidercrank.model.swing.slider_pin_force import pin_distance_from_crank_line
 from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, placed
+from slidercrank.model.swing.swing import Swing, swing_between_crank_angles
 from slidercrank.objectives.tables.swinging import swing_quantities
 from tests.model.cases import Array
 from tests.model.swing.swings import Case, random_points, random_swings
@@ -32,7 +32,7 @@ def by_places(case: Case) -> Case | None:
     theta = np.array([swing.start, swing.end])
     sine, cosine = np.sin(theta), np.cos(theta)
     m = motion(sine, cosine, linkage.crank, linkage.rod, linkage.offset, linkage.sign)
-    side = np.sign(toggle_distance(sine, cosine, m))
+    side = np.sign(pin_distance_from_crank_line(sine, cosine, m))
     middle = 0.5 * (swing.start + swing.end)
     if side[0] != side[1] or abs(m.x[1] - m.x[0]) < 1e-3 or abs(middle) > 1.5:
         return None
@@ -66,7 +66,7 @@ def test_places_of_the_slider_state_the_same_swing() -> None:
     """Both drivers, both sides, both branches; whole turns of the crank do not count."""
     seen = set()
     for (machine, linkage, angles), (_, _, places) in cases(30, seed=21):
-        made = placed(machine, linkage, places)
+        made = swing_between_crank_angles(machine, linkage, places)
         off = [math.remainder(a - b, 2.0 * math.pi) for a, b in ((made.start, angles.start), (made.end, angles.end))]
         assert np.abs(off).max() < 1e-9
         if abs(made.start - angles.start) > 1.0:
@@ -136,7 +136,7 @@ def test_a_table_of_motion_is_the_complete_cubic_spline() -> None:
         points = random_points(random)
         t, s = np.array(points).T
         peer, share = CubicSpline(t, s, bc_type="clamped"), np.linspace(0.0, 1.0, 301)
-        for order, found in enumerate(way("table", share, spline(points))):
+        for order, found in enumerate(travel_speed_acceleration("table", share, law_spline_pieces(points))):
             assert found == pytest.approx(peer(share, order), abs=1e-11)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.swing.peaks import SwingPeaks, least_drives, swing_peaks
+from slidercrank.model.swing.peaks import SwingPeaks, negated_least_drive_peaks, swing_peaks
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_states import DRIVE, ERROR, POWER
 from tests.model.cases import Array
@@ -19,7 +19,9 @@ SEARCHES: dict[str, Search] = {
     "drive": lambda machine, swing, designs: swing_peaks(machine, swing, DRIVE, designs, gradients=True),
     "power": lambda machine, swing, designs: swing_peaks(machine, swing, POWER, designs, limit=1),
     "error": lambda machine, swing, designs: swing_peaks(machine, swing, ERROR, designs, gradients=True),
-    "least": lambda machine, swing, designs: least_drives(machine, swing, designs, back=True, gradients=True),
+    "least": lambda machine, swing, designs: negated_least_drive_peaks(
+        machine, swing, designs, back=True, gradients=True
+    ),
 }
 
 

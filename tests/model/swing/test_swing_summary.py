@@ -22,7 +22,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, dead_points, require_swing, slowly
+from slidercrank.model.swing.swing import Swing, dead_points, require_swing, without_inertia
 from slidercrank.model.swing.swing_types import Law
 from tests.model.bodies import bodies
 from tests.model.swing.swings import random_swings
@@ -118,11 +118,11 @@ def test_energy_with_every_load_is_that_of_a_fine_sum() -> None:
 def test_friction_costs_the_energy_that_both_ways_do_not_give_back() -> None:
     for machine, linkage, swing in random_swings(25, seed=23, friction=True):
         still = replace(machine, loads=())
-        found = summarise(still, linkage, slowly(swing))
+        found = summarise(still, linkage, without_inertia(swing))
         if found.locked is not None:
             continue
         assert found.energy_forward + found.energy_back > 0.0
-        free = summarise(replace(still, friction=Friction()), linkage, slowly(swing))
+        free = summarise(replace(still, friction=Friction()), linkage, without_inertia(swing))
         assert free.energy_forward + free.energy_back == pytest.approx(0.0, abs=1e-9 * abs(free.energy_forward) + 1e-12)
         assert free.stored == found.stored
         if found.efficiency is not None:

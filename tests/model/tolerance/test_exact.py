@@ -15,9 +15,9 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.exact import extremes, worst
-from slidercrank.model.tolerance.first_order import first_order
-from slidercrank.model.tolerance.sources import counted_angles, limit_box
+from slidercrank.model.tolerance.exact import position_deviation_extremes, worst_position_error
+from slidercrank.model.tolerance.first_order import first_order_position_errors
+from slidercrank.model.tolerance.sources import angles_where_error_counts, limit_box
 from tests.model.cases import Array
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
@@ -67,7 +67,7 @@ def test_extremes_are_those_of_a_search_through_the_box(cases: list[tuple[Mechan
     for mechanism, linkage in cases:
         inner, outer = linkage.dead_centre_angles
         angles = np.array([random.uniform(0.0, 7.0), inner + 0.03, outer - 0.02, random.choice(SPECIAL)])
-        found = extremes(mechanism, linkage, angles)
+        found = position_deviation_extremes(mechanism, linkage, angles)
         for n, angle in enumerate(angles):
             expected = [searched(mechanism, linkage, angle, sign) for sign in (-1.0, 1.0)]
             size = max(np.abs(expected))
@@ -80,7 +80,7 @@ def test_no_machine_within_the_limits_is_beyond_the_extremes() -> None:
     random = np.random.default_rng(74)
     for mechanism, linkage in WIDE:
         box = limit_box(mechanism, linkage)
-        found = extremes(mechanism, linkage, TURN)
+        found = position_deviation_extremes(mechanism, linkage, TURN)
         for n, angle in enumerate(TURN):
             points = random.uniform(box[:, 0], box[:, 1], (500, 4))
             moved = deviation(points, linkage, angle)
@@ -96,7 +96,7 @@ def test_extremes_within_the_box_are_beyond_its_corners() -> None:
         (Linkage(0.05, 0.2, 0.0), Tolerances(crank_angle=Tolerance(absolute=0.1)), 0.0, 0.0),
         (Linkage(0.05, 0.2, 0.05), Tolerances(crank=Tolerance(absolute=0.01)), 0.5 * math.pi, 0.0),
     ):
-        found = extremes(Mechanism(tolerances=tolerances), linkage, angle)
+        found = position_deviation_extremes(Mechanism(tolerances=tolerances), linkage, angle)
         assert found.greatest[0] == pytest.approx(within, abs=1e-16)
         assert found.least[0] < -1e-5
 
@@ -105,7 +105,10 @@ def test_crossed_branch_is_the_mirror_image() -> None:
     for mechanism, linkage in CASES[:10]:
         other: Branch = "open" if linkage.branch == "crossed" else "crossed"
         mirrored, image = dataclasses.replace(mechanism, branch=other), dataclasses.replace(linkage, branch=other)
-        one, two = extremes(mechanism, linkage, TURN), extremes(mirrored, image, math.pi - TURN)
+        one, two = (
+            position_deviation_extremes(mechanism, linkage, TURN),
+            position_deviation_extremes(mirrored, image, math.pi - TURN),
+        )
         np.testing.assert_allclose(one.least, -two.greatest, rtol=1e-9, atol=1e-15)
         np.testing.assert_allclose(one.greatest, -two.least, rtol=1e-9, atol=1e-15)
 
@@ -113,7 +116,10 @@ def test_crossed_branch_is_the_mirror_image() -> None:
 @pytest.mark.parametrize("cases", [[(PUBLISHED, SUPPORT)], CASES], ids=["case 4", "random"])
 def test_exact_worst_case_is_the_first_order_within_its_remainder(cases: list[tuple[Mechanism, Linkage]]) -> None:
     for mechanism, linkage in cases:
-        one, exact = first_order(mechanism, linkage, TURN), extremes(mechanism, linkage, TURN)
+        one, exact = (
+            first_order_position_errors(mechanism, linkage, TURN),
+            position_deviation_extremes(mechanism, linkage, TURN),
+        )
         for size in (exact.greatest, -exact.least):
             assert np.all(np.abs(size - one.worst_case) <= one.remainder + 1e-15)
 
@@ -130,7 +136,10 @@ def test_exact_worst_case_tends_to_the_first_order_as_the_square_of_the_toleranc
                 clearances=Clearances(guide=part * t.clearances.guide, crank_pin=part * t.clearances.crank_pin),
             )
             machine = dataclasses.replace(mechanism, tolerances=small)
-            exact = extremes(machine, linkage, TURN).size - first_order(machine, linkage, TURN).worst_case
+            exact = (
+                position_deviation_extremes(machine, linkage, TURN).size
+                - first_order_position_errors(machine, linkage, TURN).worst_case
+            )
             gaps.append(np.abs(exact).max())
         assert gaps[1] == pytest.approx(1e-2 * gaps[0], rel=0.05)
 
@@ -153,27 +162,29 @@ def test_worst_over_the_cycle_is_the_greatest_of_a_dense_sweep_of_the_window(
         counts = (share >= part[0]) & (share <= part[1])
         if during != "cycle":
             counts &= (linkage.sign * at.slider_velocity > 0.0) == (during == "outward stroke")
-        dense = extremes(machine, linkage, theta[counts]).size.max()
-        found = worst(machine, linkage)
+        dense = position_deviation_extremes(machine, linkage, theta[counts]).size.max()
+        found = worst_position_error(machine, linkage)
         # The sweep misses a smooth top by the square of its spacing, an end of the window by its slope.
         assert found.size >= dense * (1.0 - 1e-12)
         assert found.size == pytest.approx(dense, rel=2e-3)
-        assert extremes(machine, linkage, found.crank_angle).size[0] == pytest.approx(found.size, rel=1e-12)
+        assert position_deviation_extremes(machine, linkage, found.crank_angle).size[0] == pytest.approx(
+            found.size, rel=1e-12
+        )
 
 
 def test_worst_over_the_whole_cycle_is_exact() -> None:
     for mechanism, linkage in [(PUBLISHED, SUPPORT), *CASES[:6]]:
-        found = worst(mechanism, linkage)
+        found = worst_position_error(mechanism, linkage)
         near = found.crank_angle + np.linspace(-1e-3, 1e-3, 2001)
-        assert extremes(mechanism, linkage, near).size.max() <= found.size * (1.0 + 1e-12)
-        everywhere = np.concatenate(counted_angles(mechanism, linkage, count=4096))
-        assert extremes(mechanism, linkage, everywhere).size.max() <= found.size * (1.0 + 1e-12)
+        assert position_deviation_extremes(mechanism, linkage, near).size.max() <= found.size * (1.0 + 1e-12)
+        everywhere = np.concatenate(angles_where_error_counts(mechanism, linkage, count=4096))
+        assert position_deviation_extremes(mechanism, linkage, everywhere).size.max() <= found.size * (1.0 + 1e-12)
 
 
 def test_worst_case_of_case_four_is_just_beyond_its_first_order() -> None:
     first = find_peaks(PUBLISHED, Signal.POSITION_ERROR, np.array([[1.4, 1.8, -0.05]]), limit=1)
-    exact = worst(PUBLISHED, SUPPORT)
-    remainder = first_order(PUBLISHED, SUPPORT, first.angles[0]).remainder[0]
+    exact = worst_position_error(PUBLISHED, SUPPORT)
+    remainder = first_order_position_errors(PUBLISHED, SUPPORT, first.angles[0]).remainder[0]
     assert first.values[0, 0] < exact.size < first.values[0, 0] + remainder
 
 
@@ -181,8 +192,8 @@ def test_linkages_within_the_limits_must_turn() -> None:
     close = Linkage(0.04, 0.0601, 0.02)
     mechanism = Mechanism(tolerances=Tolerances(rod=Tolerance(absolute=6e-5), crank=Tolerance(absolute=6e-5)))
     with pytest.raises(AssemblyError, match=r"got at worst rod 60\.04 mm, crank .* tighten the tolerances"):
-        extremes(mechanism, close, 0.0)
+        position_deviation_extremes(mechanism, close, 0.0)
     with pytest.raises(InputError, match="below 180 deg"):
-        extremes(Mechanism(tolerances=Tolerances(crank_angle=Tolerance(absolute=4.0))), SUPPORT, 0.0)
+        position_deviation_extremes(Mechanism(tolerances=Tolerances(crank_angle=Tolerance(absolute=4.0))), SUPPORT, 0.0)
     with pytest.raises(InputError, match=r"one linkage is possible at a time; got an array of shape \(2,\)"):
-        extremes(PUBLISHED, Linkage([1.4, 1.5], 1.8), 0.0)
+        position_deviation_extremes(PUBLISHED, Linkage([1.4, 1.5], 1.8), 0.0)

@@ -13,10 +13,10 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screen, screens
+from slidercrank.model.signals.screening import is_supported, screened_maxima
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.first_order import first_order, remainder
-from slidercrank.model.tolerance.sources import limits
+from slidercrank.model.tolerance.first_order import first_order_position_errors, higher_order_bound
+from slidercrank.model.tolerance.sources import limits_of_sources
 from tests.model.cases import SMOOTH, random_designs
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
@@ -31,20 +31,20 @@ def with_gaps(mechanism: Mechanism, gaps: Clearances = GAPS) -> Mechanism:
 
 def test_contributions_add_up_to_the_worst_case_and_the_root_sum_square() -> None:
     for mechanism, linkage in CASES:
-        found = first_order(mechanism, linkage, TURN)
+        found = first_order_position_errors(mechanism, linkage, TURN)
         np.testing.assert_allclose(found.contributions.sum(axis=0), found.worst_case, rtol=1e-13)
         np.testing.assert_allclose(np.hypot.reduce(found.contributions), found.root_sum_square, rtol=1e-13)
 
 
 def test_shares_sum_to_one() -> None:
     for mechanism, linkage in CASES:
-        found = first_order(mechanism, linkage, TURN)
+        found = first_order_position_errors(mechanism, linkage, TURN)
         np.testing.assert_allclose(found.share_of_worst_case.sum(axis=0), 1.0, rtol=1e-14)
         np.testing.assert_allclose(found.share_of_variance.sum(axis=0), 1.0, rtol=1e-14)
 
 
 def test_shares_of_nothing_are_not_defined() -> None:
-    found = first_order(Mechanism(), SUPPORT, [0.3])
+    found = first_order_position_errors(Mechanism(), SUPPORT, [0.3])
     assert np.all(found.worst_case == 0.0)
     assert np.all(np.isnan(found.share_of_variance))
     assert np.all(np.isnan(found.share_of_worst_case))
@@ -73,7 +73,7 @@ def test_pin_displaced_by_its_clearance_moves_the_slider_by_the_influence_of_the
     for mechanism, linkage in CASES:
         r, l, e, sign = linkage.crank, linkage.rod, linkage.offset, linkage.sign
         only = with_gaps(Mechanism(branch=mechanism.branch), Clearances(crank_pin=c))
-        expected = first_order(only, linkage, TURN).worst_case
+        expected = first_order_position_errors(only, linkage, TURN).worst_case
         direction = np.linspace(0.0, 2.0 * math.pi, 5000)[:, None]
         a = r * np.cos(TURN) + c * np.cos(direction)
         b = r * np.sin(TURN) + c * np.sin(direction)
@@ -87,7 +87,9 @@ def test_root_sum_square_counts_each_clearance_by_itself() -> None:
     i = SUPPORT.error_influences(TURN)
     squares = GAPS.crank_pivot**2 + GAPS.crank_pin**2 + GAPS.slider_pin**2
     expected = np.sqrt(i.rod**2 * squares + i.offset**2 * GAPS.guide**2)
-    np.testing.assert_allclose(first_order(mechanism, SUPPORT, TURN).root_sum_square, expected, rtol=1e-13)
+    np.testing.assert_allclose(
+        first_order_position_errors(mechanism, SUPPORT, TURN).root_sum_square, expected, rtol=1e-13
+    )
 
 
 @pytest.mark.parametrize("signal", [Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS])
@@ -107,31 +109,31 @@ def test_gradients_with_clearances_are_those_of_differences(signal: Signal) -> N
 
 def test_screening_is_consistent_with_clearances() -> None:
     designs, machine = random_designs(500, seed=84), with_gaps(SMOOTH)
-    assert screens(machine, Signal.POSITION_ERROR)
-    fast = screen(machine, (Signal.POSITION_ERROR,), designs)[0]
+    assert is_supported(machine, Signal.POSITION_ERROR)
+    fast = screened_maxima(machine, (Signal.POSITION_ERROR,), designs)[0]
     exact = find_peaks(machine, Signal.POSITION_ERROR, designs, limit=1)
     np.testing.assert_allclose(fast.values, exact.values[:, 0], rtol=1e-12)
-    assert not screens(machine, Signal.POSITION_ERROR_RSS)
-    assert screens(SMOOTH, Signal.POSITION_ERROR_RSS)
+    assert not is_supported(machine, Signal.POSITION_ERROR_RSS)
+    assert is_supported(SMOOTH, Signal.POSITION_ERROR_RSS)
 
 
 def test_limits_are_absolute_plus_share_of_the_size_of_the_dimension() -> None:
     mechanism = with_gaps(PUBLISHED)
     expected = [1.4e-3, 1.8e-3, 5e-5, math.radians(0.1), 2e-5, 3e-5, 4e-5, 5e-5]
-    np.testing.assert_allclose(limits(mechanism, SUPPORT), expected, rtol=1e-14)
+    np.testing.assert_allclose(limits_of_sources(mechanism, SUPPORT), expected, rtol=1e-14)
 
 
 def test_remainder_holds_for_every_deviation_within_the_limits() -> None:
     random = np.random.default_rng(85)
     for mechanism, linkage in CASES:
-        reach = limits(mechanism, linkage)
+        reach = limits_of_sources(mechanism, linkage)
         reach[4:] = 0.0
         u = random.uniform(-1.0, 1.0, (200, 4)) * reach[:4]
         i = linkage.error_influences(TURN)
         linear = u[:, :1] * i.crank + u[:, 1:2] * i.rod + u[:, 2:3] * i.offset + u[:, 3:] * i.crank_angle
         other = Linkage(linkage.crank + u[:, :1], linkage.rod + u[:, 1:2], linkage.offset + u[:, 2:3], linkage.branch)
         true = other.at(TURN + u[:, 3:]).slider_position - linkage.at(TURN).slider_position
-        bound = remainder(mechanism, linkage, TURN)
+        bound = higher_order_bound(mechanism, linkage, TURN)
         assert np.all(np.abs(true - linear) <= bound + 1e-15)
         # A bound that is never within reach would say nothing.
         assert np.any(np.abs(true - linear) > 0.02 * bound)
@@ -154,7 +156,7 @@ def test_two_sources_at_their_limits_come_near_the_remainder(pair: tuple[int, in
             limit[[*pair]] = 1e-4 * np.array([ratio**-0.5, ratio**0.5]) * np.where(np.array(pair) < 3, size, 1.0)
             crank, rod, offset, angle = (Tolerance(absolute=each) for each in limit.tolist())
             tolerances = Tolerances(crank=crank, rod=rod, offset=offset, crank_angle=angle)
-            bound = remainder(Mechanism(branch=linkage.branch, tolerances=tolerances), linkage, TURN)
+            bound = higher_order_bound(Mechanism(branch=linkage.branch, tolerances=tolerances), linkage, TURN)
             for signs in itertools.product((-1.0, 1.0), repeat=2):
                 u = np.zeros(4)
                 u[[*pair]] = limit[[*pair]] * signs

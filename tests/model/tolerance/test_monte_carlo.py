@@ -13,9 +13,9 @@ from scipy import stats
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.tolerance.exact import extremes, worst
-from slidercrank.model.tolerance.first_order import first_order, shares
-from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variances, yield_within
+from slidercrank.model.tolerance.exact import position_deviation_extremes, worst_position_error
+from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
+from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variance_contributions, yield_within
 from slidercrank.model.tolerance.spreads import Contact, Shape, Spreads, error_distribution
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
@@ -33,7 +33,7 @@ def test_standard_deviation_is_a_third_of_the_root_sum_square_for_limits_of_thre
             mechanism, tolerances=dataclasses.replace(mechanism.tolerances, clearances=Clearances())
         )
         found = simulate(plain, linkage, TURN, samples=SAMPLES, seed=2)
-        expected = first_order(plain, linkage, TURN)
+        expected = first_order_position_errors(plain, linkage, TURN)
         # A sample's standard deviation scatters by 1 / sqrt(2 n), 0.5 %; five of them. The second order adds to it by
         # its own size, at three limits' width.
         slack = 5.0 / math.sqrt(2.0 * SAMPLES) * expected.root_sum_square / 3.0 + expected.remainder
@@ -48,15 +48,17 @@ def test_variance_is_the_sum_of_those_of_the_sources(shape: Shape, contact: Cont
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in ((PUBLISHED, SUPPORT), CASES[3], (GAPPED, Linkage(0.14, 0.31, 0.06))):
         found = simulate(mechanism, linkage, TURN, samples=SAMPLES, seed=3, spreads=spreads)
-        expected = variances(mechanism, linkage, TURN, spreads=spreads).sum(axis=0)
-        remainder = first_order(mechanism, linkage, TURN).remainder
+        expected = variance_contributions(mechanism, linkage, TURN, spreads=spreads).sum(axis=0)
+        remainder = first_order_position_errors(mechanism, linkage, TURN).remainder
         slack = 5.0 / math.sqrt(2.0 * SAMPLES) * np.sqrt(expected) + remainder
         assert np.all(np.abs(found.errors.std(axis=0) - np.sqrt(expected)) < slack)
 
 
 def test_shares_of_the_variance_sum_to_one() -> None:
     for mechanism, linkage in CASES:
-        parts = shares(variances(mechanism, linkage, TURN, spreads=Spreads(rod=error_distribution("uniform"))))
+        parts = fractions_of_sum(
+            variance_contributions(mechanism, linkage, TURN, spreads=Spreads(rod=error_distribution("uniform")))
+        )
         np.testing.assert_allclose(parts.sum(axis=0), 1.0, rtol=1e-14)
 
 
@@ -67,11 +69,11 @@ def test_errors_within_limits_stay_within_the_exact_extremes(shape: Shape, conta
     spreads = Spreads(crank=of, rod=of, offset=of, crank_angle=of, contact=contact)
     for mechanism, linkage in random_cases(2, seed=92, coarse=1.0):
         found = simulate(mechanism, linkage, TURN, samples=2000, seed=4, spreads=spreads)
-        bounds = extremes(mechanism, linkage, TURN)
+        bounds = position_deviation_extremes(mechanism, linkage, TURN)
         assert found.stuck == 0
         assert np.all(found.errors <= bounds.greatest + 1e-15)
         assert np.all(found.errors >= bounds.least - 1e-15)
-        assert found.greatest.max() <= worst(mechanism, linkage).size + 1e-15
+        assert found.greatest.max() <= worst_position_error(mechanism, linkage).size + 1e-15
         # Samples that never come near the limits would meet any bound.
         assert np.all(np.ptp(found.errors, axis=0) > 0.3 * (bounds.greatest - bounds.least))
 
@@ -109,7 +111,10 @@ def test_first_order_exact_and_simulation_agree_on_case_four() -> None:
     """With normal errors cut at the limits: the exact worst case bounds all, the first order within its remainder."""
     of = error_distribution("truncated normal")
     found = simulate(PUBLISHED, SUPPORT, TURN, seed=7, spreads=Spreads(crank=of, rod=of, offset=of, crank_angle=of))
-    one, exact = first_order(PUBLISHED, SUPPORT, TURN), extremes(PUBLISHED, SUPPORT, TURN)
+    one, exact = (
+        first_order_position_errors(PUBLISHED, SUPPORT, TURN),
+        position_deviation_extremes(PUBLISHED, SUPPORT, TURN),
+    )
     assert np.all(np.abs(found.errors).max(axis=0) <= exact.size)
     assert np.all(np.abs(exact.size - one.worst_case) <= one.remainder)
     # Normal but for the remainder: the share within a root-sum-square, three standard deviations, cut at three.

@@ -46,7 +46,7 @@ def test_energy_gained_is_the_work_done_over_three_seconds_from_rest_under_const
     assert found.time[-1] == 3.0
     assert abs(found.turns) > 10.0
     assert found.kinetic[-1] > 1000.0
-    assert found.imbalance < 1e-8
+    assert found.energy_balance_error < 1e-8
     # The motor's work has a closed form; the kinetic energy is that of bodies, not of the equation of motion.
     assert found.motor_work[-1] == pytest.approx(40.0 * abs(found.angle[-1] - found.angle[0]), rel=1e-10)
 
@@ -163,7 +163,7 @@ def test_a_motor_too_weak_to_start_gives_a_verdict_and_no_motion() -> None:
     assert stuck.verdict == "stands still"
     assert stuck.time.tolist() == [0.0]
     assert stuck.speed.tolist() == stuck.acceleration.tolist() == [0.0]
-    assert stuck.imbalance == 0.0
+    assert stuck.energy_balance_error == 0.0
     # Beside a dead centre the same motor starts, and gets stuck where the load has its lever.
     away = simulate(BRAKED, LINKAGE, drive, duration=10.0, start=State(angle=float(LINKAGE.dead_centre_angles[1])))
     assert away.verdict == "stands still"
@@ -179,7 +179,7 @@ def test_a_load_stronger_than_the_motor_drives_it_backwards() -> None:
     assert len(found.turned_back) == 1
     assert found.speed[0] == 3.0
     assert found.speed[-1] < 0.0
-    assert found.imbalance < 1e-9
+    assert found.energy_balance_error < 1e-9
 
 
 def test_speed_beyond_the_torque_table_ends_the_simulation() -> None:

@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import members
+from slidercrank.model.machine.members import member_machines
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward import State, simulate
@@ -59,7 +59,7 @@ def needed(machine: Mechanism, running: SteadyRunning) -> np.ndarray:
     """Return the torque that the inverse dynamics of each cylinder needs for the motion, N m."""
     own = machine if machine.arrangement is not None else replace(machine, arrangement=Arrangement(phases=(0.0,)))
     linkage, total = replace(LINKAGE, branch=machine.branch), np.zeros(len(running.time))
-    for member in members(own):
+    for member in member_machines(own):
         at = running.crank_angle + member.lead
         found = cycle(member.mechanism, linkage, at, speed=running.speed, acceleration=running.acceleration)
         total += found.torque
@@ -69,7 +69,7 @@ def needed(machine: Mechanism, running: SteadyRunning) -> np.ndarray:
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism) -> None:
     linkage = replace(LINKAGE, branch=machine.branch)
-    running = Runner(machine, linkage).constant(0.4)
+    running = Runner(machine, linkage).under_constant_torque(0.4)
     assert running.mean_speed == pytest.approx(machine.speed, rel=1e-11)
     span = np.ptp(running.crank_angle)
     assert span == pytest.approx(running.turns * 2.0 * math.pi, rel=1e-14)
@@ -85,7 +85,7 @@ def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism
 def test_two_cylinders_at_one_phase_are_one_with_half_the_flywheel() -> None:
     pair = replace(BARE, loads=(ENGINE,), arrangement=Arrangement(phases=(0.0, 0.0), places=(0.0, 0.1)))
     one, two = (
-        Runner(machine, LINKAGE).constant(inertia)
+        Runner(machine, LINKAGE).under_constant_torque(inertia)
         for machine, inertia in ((replace(pair, arrangement=None), 0.3), (pair, 0.6))
     )
     assert two.fluctuation == pytest.approx(one.fluctuation, rel=1e-10)
@@ -131,7 +131,7 @@ def test_a_motion_under_a_motor_settles_into_steady_running(name: str) -> None:
     start = State(speed=0.98 * machine.speed)
     run = simulate(machine, LINKAGE, motor, duration=20.0, steady=1e-7, tolerance=1e-9, start=start)
     assert run.verdict == "steady"
-    assert run.imbalance < 1e-7
+    assert run.energy_balance_error < 1e-7
     running = steady_running(machine, LINKAGE, motor)
     period = 2.0 * math.pi * running.turns
     ends = np.mod(run.angle[-200:], period), np.mod(running.crank_angle, period)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.model.cycle.crank_speed import crank_speed
+from slidercrank.model.cycle.crank_speed import crank_speed_and_acceleration
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
 from slidercrank.model.cycle.shaking import shaking_curves
@@ -68,7 +68,7 @@ def test_power_in_is_energy_gained_and_work_done_at_every_angle(seed: int) -> No
     theta = np.random.default_rng(seed).uniform(0.0, TURN, 40)
 
     def energy(angle: NDArray[np.float64]) -> NDArray[np.float64]:
-        speed, _ = crank_speed(machine, angle)
+        speed, _ = crank_speed_and_acceleration(machine, angle)
         return 0.5 * equation.inertia(angle) * speed**2 + equation.height_energy(angle)
 
     h = 1e-4
@@ -87,11 +87,13 @@ def test_viscous_work_is_its_integral() -> None:
     linkage = Linkage(0.05, 0.2, 0.03)
     theta = np.linspace(0.0, TURN, 400, endpoint=False)
     rate = np.asarray(linkage.at(theta, speed=1.0).slider_velocity)
-    wanted = 30.0 * np.mean(rate**2 * np.abs(crank_speed(machine, theta)[0])) * TURN
+    wanted = 30.0 * np.mean(rate**2 * np.abs(crank_speed_and_acceleration(machine, theta)[0])) * TURN
     found = speed_profile_cycle(machine, linkage)
     assert found.work == pytest.approx(wanted, rel=1e-12)
     # 1 / (20 (1 + 0.1 sin + 0.2 sin 2)) likewise.
-    assert found.period == pytest.approx(np.mean(1.0 / np.abs(crank_speed(machine, theta)[0])) * TURN, rel=1e-12)
+    assert found.period == pytest.approx(
+        np.mean(1.0 / np.abs(crank_speed_and_acceleration(machine, theta)[0])) * TURN, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -151,7 +153,7 @@ def test_several_cylinders_share_the_speed_of_the_shaft() -> None:
     arrangement = Arrangement(phases=(0.3, 2.0), banks=(0.0, 0.7))
     both = replace(machine, arrangement=arrangement)
     theta = np.linspace(0.1, 6.0, 20)
-    speed, rise = crank_speed(machine, theta)
+    speed, rise = crank_speed_and_acceleration(machine, theta)
     torque, moment = np.zeros(20), np.zeros(20)
     for k in range(2):
         c = np.exp(-1j * arrangement.bank(k)) * complex(*machine.gravity)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from slidercrank.model.cycle.efficiency import energies
+from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
@@ -88,13 +88,13 @@ def test_the_flywheel_of_a_press_is_that_of_its_energies_on_few_panels(
 def test_without_any_inertia_there_are_no_speeds_and_it_is_said_why() -> None:
     for slider in (0.0, 50.0):  # that stands still at the dead centres
         with pytest.raises(InputError, match="the crank needs inertia at every angle"):
-            Runner(replace(PRESS, slider_mass=slider), LINKAGE).speeds(0.0)
+            Runner(replace(PRESS, slider_mass=slider), LINKAGE).least_and_greatest_speed(0.0)
 
 
 def test_more_panels_than_a_bound_end_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(turn, "_MOST", 0)
     with pytest.raises(InputError, match=r"that 4\d panels do not resolve, for example at a crank angle of"):
-        Runner(replace(PRESS, slider_mass=50.0), LINKAGE).constant(700.0)
+        Runner(replace(PRESS, slider_mass=50.0), LINKAGE).under_constant_torque(700.0)
 
 
 def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> None:
@@ -102,7 +102,7 @@ def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> N
         PRESS, slider_mass=50.0, friction=Friction(guide=0.1, crank_pin=Pin(radius=0.02, coefficient=0.05))
     )
     before = time.process_time()
-    found = energies(machine, LINKAGE)
+    found = cycle_energies(machine, LINKAGE)
     mean = average_torque(machine, DESIGN, gradients=True)
     several = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.0, math.pi))), LINKAGE)
     uneven = speed_profile_cycle(machine, LINKAGE)

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.quadrature import gauss
-from slidercrank.model.swing.law import way
+from slidercrank.model.swing.law import travel_speed_acceleration
 from slidercrank.model.turning_cylinder.forces import (
     LeverBody,
     LeverMachine,
@@ -39,7 +39,7 @@ def test_forces_of_300_machines_are_those_of_free_bodies_with_constraints() -> N
         curves = lever_curves(machine, swing, share)
         rate = 0.0 if swing.duration is None else 1.0 / swing.duration
         first, last = (float(machine.sizes.length(angle)) for angle in (swing.start, swing.end))
-        s, s_1, s_2 = (float(part[0]) for part in way(swing.law, share))
+        s, s_1, s_2 = (float(part[0]) for part in travel_speed_acceleration(swing.law, share))
         angle, gamma = float(curves.lever_angle[0]), float(curves.cylinder_angle[0])
         guess = np.array([0.0, 0.0, angle, 0.0, 0.0, gamma, 0.0, 0.0, gamma]) + random.normal(0.0, 0.01, 9)
         travel = last - first
