@@ -88,7 +88,10 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
 
 
 def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close over the whole swing without a dead point."""
+    """Return which designs (n, 3 + k) close over the whole swing without a dead point, with a cylinder that can exist.
+
+    Where they vary, the bore must exceed the piston rod, and the closed length the stroke, in each design.
+    """
     return _passes(mechanism, np.ascontiguousarray(designs, dtype=np.float64), swing).copy()
 
 
@@ -104,5 +107,6 @@ def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
     off = np.minimum(*(np.abs(np.sin(angle)) for angle in (first, last))) > _MARGIN
     with np.errstate(invalid="ignore"):
         closing = np.minimum(*c.ends) > 0.0
-    passing[rows] = between & off & closing & (np.abs(last - first) < np.pi)
+        unbuildable = (c.annular_area <= 0.0) | (c.stroke >= c.closed_length)  # NaN where it is not known
+    passing[rows] = between & off & closing & ~unbuildable & (np.abs(last - first) < np.pi)
     return passing

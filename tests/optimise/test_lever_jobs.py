@@ -86,6 +86,26 @@ def test_numbers_of_the_cylinder_and_the_frame_may_vary_and_be_chosen() -> None:
     assert set(front.columns) >= {"choice_cylinder_bore", "frame_angle_deg", "peak_cylinder_force_N"}
 
 
+def test_a_varying_cylinder_keeps_its_bore_above_the_piston_rod_and_its_stroke_below_the_closed_length() -> None:
+    """Without limits the search would take a rod as thick as the bore, which no pressure loads."""
+    ranges = {
+        "cylinder.bore": ["25 mm", "60 mm"],
+        "cylinder.rod": ["12 mm", "36 mm"],
+        "cylinder.closed_length": ["500 mm", "800 mm"],
+        "cylinder.stroke": ["200 mm", "600 mm"],
+    }
+    small = {"bore": "40 mm", "rod": "22 mm", "closed_length": "640 mm", "stroke": "300 mm"}
+    tables = lever(cylinder=small, variables=ranges, objectives={"peak_cylinder_force": "minimise"})
+    problem = sc.problem(tables, require_feasible=False)
+    designs = designs_within(problem, np.random.default_rng(7), 4000)
+    bore, rod, closed, stroke = (designs[:, list(problem.ranges).index(f"cylinder.{name}")] for name in small)
+    rejected = np.isnan(problem.evaluate(designs, ["peak_cylinder_force"])[:, 0])
+    can_exist = (bore > rod) & (stroke < closed)
+    assert rejected[~can_exist].all()
+    assert 400 < (~can_exist).sum() < 3600
+    assert not rejected[can_exist].all()
+
+
 def random_job(random: np.random.Generator) -> Problem:
     """Return a random job of a lever that some design meets."""
     while True:
