@@ -78,7 +78,7 @@ def test_nothing_is_kept_beside_the_sources_that_an_uninstallation_would_leave(f
 
 def test_a_damaged_kernel_is_compiled_anew(first_use: FirstUse) -> None:
     copy, printed, _ = first_use
-    kernels = [file for file in (copy.parent.parent / "home").rglob("*kernels/*._evaluate.*") if file.stat().st_size]
+    kernels = [file for file in (copy.parent.parent / "home").rglob("*kernels/*.closed_forms.*") if file.stat().st_size]
     assert kernels
     for file in kernels:
         file.write_bytes(file.read_bytes()[:100])

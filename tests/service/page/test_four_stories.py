@@ -137,7 +137,7 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         with theirs.expect_response("**/kept"):
             theirs.keyboard.press("Tab")
         theirs.get_by_label("Choose Design 2").press("Space")
-        expect(theirs.locator(".decision")).to_contain_text(": fits the old frame", timeout=PATIENCE)
+        expect(theirs.locator(".decision")).to_contain_text("(fits the old frame)", timeout=PATIENCE)
         expect(mine.locator(".decision")).to_contain_text("Chosen: Design 2 (fits the old frame)", timeout=PATIENCE)
         expect(mine.get_by_role("button", name="Star of Design 2")).to_have_attribute("aria-pressed", "true")
     assert wrong == []
