@@ -1,4 +1,4 @@
-"""The pictures of docs/loads.md: the force of each example on the slider, over its position."""
+"""The pictures of docs/loads.md: the force of each example on the slider, against its position."""
 
 from __future__ import annotations
 

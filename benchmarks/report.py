@@ -23,7 +23,7 @@ class Row:
     worst: bool = False
 
     def kept(self) -> bool | None:
-        """Whether the limit is kept; None without one."""
+        """Whether the limit is met; None if there is none."""
         if self.at_least is not None:
             return median(self.figures) >= self.at_least
         if self.at_most is not None:

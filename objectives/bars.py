@@ -40,7 +40,7 @@ LINKS = {
     "crank": Link(CRANK, Raw.CRANK, Raw.CRANK_WIDTH, Raw.CRANK_WIDTH + 1, "crank_pivot", 0.25),
 }
 NEAR = "crank_pin"
-"""The pin that crank and rod share."""
+"""The pin that the crank and the rod share."""
 FORCE = {
     "crank_pivot": Signal.PIVOT_FORCE,
     "crank_pin": Signal.CRANK_PIN_FORCE,
@@ -92,7 +92,7 @@ class BarPieces(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class BarQuantity(Quantity):
-    """A quantity that is the maximum or minimum over several parts of crank and rod."""
+    """A quantity that is the maximum or minimum over several parts of the crank and the rod."""
 
     group: Group = fact(Group.STRENGTH)
     section: str = fact("22. Strength of crank and rod")

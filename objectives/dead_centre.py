@@ -43,7 +43,8 @@ class NearDeadCentre(GreatestOfFormulas):
 def _distances_near_dead_centre(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 near a dead centre.
 
-    B: distance between slider pin and crank pivot. The results are products, so nothing cancels near the dead centre.
+    B: distance between the slider pin and the crank pivot. The results are products, so nothing cancels near the dead
+    centre.
     """
     lengths = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     far, near = outer_dead_centre(*lengths), inner_dead_centre(*lengths)

@@ -27,7 +27,7 @@ from .proportions import FOOTPRINT
 from .quantity import Formula, Group
 
 Extent = Callable[[Any, Any, Any, Any, Any], Any]
-"""A smooth extent, m, as a function of crank, rod, |offset|, and half the widths of crank and rod."""
+"""A smooth extent, m, as a function of crank, rod, |offset|, and half the widths of both links."""
 
 
 @dataclass(frozen=True, kw_only=True)

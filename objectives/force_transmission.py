@@ -19,8 +19,8 @@ class ForceTransmission(Quantity):
     For a massless rod under a constant force, this is the minimum of |B_x| / |B| over the cycle: the sine of the
     minimum transmission angle. In general that minimum would be 0 for nearly every machine: inertia reverses B_x during
     the turn while the rod's own mass maintains B_y. The ratio of the peaks is always the useful fraction of the force
-    for which rod and pin are sized. Each peak is exact over the continuous crank angle; -inf where friction locks the
-    linkage.
+    for which the rod and its pin are sized. Each peak is exact over the continuous crank angle; -inf where friction
+    locks the linkage.
     """
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:

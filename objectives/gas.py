@@ -22,7 +22,7 @@ class GasQuantity(Quantity):
     closed_form: Callable[[GasCycle], Any] = field(repr=False)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
-        """Return the quantity for designs (n, 3 + k); NaN without a suitable cylinder; see `Quantity`."""
+        """Return the quantity for designs (n, 3 + k); NaN if there is no suitable cylinder; see `Quantity`."""
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         return Values(*gas_cycle_number(mechanism, dimensions, self.closed_form, gradients=gradients))

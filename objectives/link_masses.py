@@ -1,4 +1,4 @@
-"""Masses of crank and rod, and of all moving parts."""
+"""Masses of the crank and the rod, and of all moving parts."""
 
 from __future__ import annotations
 

@@ -161,7 +161,7 @@ DRIVE_TRAIN = _defining(
 MOTOR_LOADED = Need(
     lambda machine: needs_drive_torque(machine.with_largest_variables) or _rotates_unevenly(machine), _LOADS
 )
-"""Loads on the motor: anything that requires drive torque, or the inertia of flywheel and rotor."""
+"""Loads on the motor: anything that requires drive torque, or the inertia of a flywheel or a rotor."""
 ROTOR = _defining(
     lambda machine: machine.drive is not None and machine.drive.motor_inertia > 0.0,
     'an inertia ratio needs the inertia of the rotor; got none; add for example [drive] motor_inertia = "5 kg cm^2"',

@@ -65,7 +65,7 @@ HOLDING_FORCE_WITHOUT_FRICTION = _peak(
     driver="slider",
     instead="holding_torque_without_friction",
     place=317,
-    sentence="The greater force on the slider at the two ends of the swing that balances the loads, without friction.",
+    sentence="The greater of the two slider forces that balance the loads at the ends of the swing, without friction.",
     formula="max of |P| at both ends, mu = 0, x' w and alpha towards 0",
     example="20 kN",
 )
@@ -79,7 +79,7 @@ HOLDING_TORQUE_WITHOUT_FRICTION = _peak(
     driver="crank",
     instead="holding_force_without_friction",
     place=318,
-    sentence="The greater torque on the crank at the two ends of the swing that balances the loads, without friction.",
+    sentence="The greater of the two crank torques that balance the loads at the ends of the swing, without friction.",
     formula="max of |T| at both ends, mu = 0, w and alpha towards 0",
 )
 PEAK_ACTUATOR_POWER = _peak(

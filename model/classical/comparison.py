@@ -44,7 +44,7 @@ def compare_approximations(mechanism: Mechanism, linkage: Linkage, crank_angle: 
     """Return the curves of one fully rotating linkage at crank angles (n,), rad: inertia alone, at constant speed.
 
     Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass at its mass centre.
-    Raises `InputError` if the crank speed is zero, and for a mass centre that is not between the pins.
+    Raises `InputError` if the crank speed is zero, or if a mass centre is not between the pins.
     """
     linkage = single_rotating_linkage(mechanism, linkage)
     inert = _with_inertia_alone(mechanism)

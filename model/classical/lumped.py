@@ -53,7 +53,7 @@ def rod_mass_share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float
 
 
 def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None) -> Mechanism:
-    """Return one linkage's mechanism with a massless rod, the rod's mass being lumped at crank pin and slider.
+    """Return one linkage's mechanism with a massless rod, its mass being lumped at the crank pin and the slider.
 
     crank_pin_share: fraction of the rod's mass lumped at the crank pin; b / l if None. The distance of the mass centre
     from the rod axis is lost.

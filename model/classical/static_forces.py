@@ -1,6 +1,7 @@
 """Static forces of the massless linkage under a load on the slider, without friction.
 
-Equilibrium of slider, rod and crank under a load P along the slider line, positive outward as for all loads:
+Equilibrium of the slider, the rod and the crank under a load P along the slider line, positive outward as for all
+loads:
 
     rod force (compression)      F = -P / |cos(phi)|
     guide on the slider (+y)     N = P tan(phi) on the open branch, -P tan(phi) on the crossed one

@@ -15,7 +15,8 @@ differ. The mass centre of each body is k (x + i e) + a exp(i phi) + b exp(i the
     crank pin        k 0, a 0,  b c         k 1, a s - l, b 0     k 1, a 0, b 0
     slider pin       k 0, a 0,  b c         k 0, a s,     b r     k 1, a 0, b 0
 
-where c and s are the mass centres of crank and rod in their own axes. Lagrange's equations follow from these sums.
+where c and s are the mass centres of the crank and the rod in their own axes. Lagrange's equations follow from these
+sums.
 
 The state of the integration is the gap and its velocity rather than x and phi, because the penetration is a millionth
 of x. Three integrals are included: the work of the drive, the work of the loads on the slider, and the energy

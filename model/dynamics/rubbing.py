@@ -40,7 +40,7 @@ _CONVERGED = 1e-15
 
 
 class Sides(NamedTuple):
-    """Signs, each +1 or -1, constant within a segment of the cycle; all 0 without friction.
+    """Signs, each +1 or -1, constant within a segment of the cycle; all 0 if there is no friction.
 
     turn: sign of the crank speed (+1 at rest). slide: sign of the slider velocity along x. swing: sign of the rod's
     angular velocity. press: sign of B_y + W, opposite to the guide force. grip: sign of the crank's angular velocity

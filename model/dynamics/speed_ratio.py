@@ -31,7 +31,7 @@ class SpeedRatio(NamedTuple):
 
 @memoise_by_machine
 def speed_ratio_of(mechanism: Mechanism) -> SpeedRatio:
-    """Return the profile of a machine; without one it is 1 throughout."""
+    """Return the profile of a machine; if it has none, 1 throughout."""
     profile, empty = mechanism.speed_profile, np.zeros(0)
     if profile is None:
         return SpeedRatio(empty, empty, empty, np.zeros((4, 0)))

@@ -28,9 +28,10 @@ double.
 class CrankSolution:
     """A crank motion that produces a slider motion.
 
-    crank_angle: rad in [0, 2 pi). speed: rad/s; None without a slider velocity, and at a dead centre, where any crank
-    speed leaves the slider at rest. acceleration: rad/s^2; None where the speed is None, and without a slider
-    acceleration. stroke: the slider's stroke at that angle if the crank turns counter-clockwise; None at a dead centre.
+    crank_angle: rad in [0, 2 pi). speed: rad/s; None if no slider velocity is given, and at a dead centre, where any
+    crank speed leaves the slider at rest. acceleration: rad/s^2; None where the speed is None, and if no slider
+    acceleration is given. stroke: the slider's stroke at that angle if the crank turns counter-clockwise; None at a
+    dead centre.
     """
 
     crank_angle: float

@@ -15,7 +15,7 @@ _WIDTH, _HEIGHT, _MARGIN = 320.0, 180.0, 18.0  # px in the SVG
 
 @dataclass(frozen=True)
 class Pose:
-    """Pins at a crank angle, and ends of the stroke on the slider line, m; NaN without a stroke."""
+    """Pins at a crank angle, and ends of the stroke on the slider line, m; NaN if there are none."""
 
     pin: tuple[float, float]
     slider: tuple[float, float]

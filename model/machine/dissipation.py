@@ -70,7 +70,7 @@ def has_friction_under_load(mechanism: Mechanism) -> bool:
 
 
 def carries_linkage_forces(machine: Mechanism) -> bool:
-    """Return whether forces act on rod or slider: loads, or weight and inertia of moving parts."""
+    """Return whether forces act on the rod or the slider: loads, or weight and inertia of moving parts."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
     return (has_rod_or_slider_mass(machine) and driven) or has_slider_loads(machine)
 
@@ -83,7 +83,7 @@ def has_slider_loads(machine: Mechanism) -> bool:
 def needs_drive_torque(machine: Mechanism) -> bool:
     """Return whether the drive needs a torque: for the linkage, for loads on the crank, or for the crank itself.
 
-    At constant speed and without gravity, crank and counterweight load the pivot but need no torque.
+    At constant speed and without gravity, the crank and the counterweight load the pivot but need no torque.
     """
     turned = any(load.on_crank for load in _acting_loads(machine))
     lifted = crank_weighs(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
@@ -107,7 +107,7 @@ def carries_pivot_force(machine: Mechanism) -> bool:
 
 
 def has_rod_or_slider_mass(machine: Mechanism) -> bool:
-    """Return whether rod or slider has a mass or an inertia."""
+    """Return whether the rod or the slider has a mass or an inertia."""
     return machine.slider_mass > 0.0 or _has_weight(machine.rod)
 
 

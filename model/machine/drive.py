@@ -127,9 +127,9 @@ Motor = ConstantTorque | LinearMotor | TorqueTable
 class Drive:
     """A motor, a gear, and the parts that turn with them.
 
-    motor: torque over speed; None if only the loads on the motor matter. flywheel: inertia on the crankshaft, kg m^2.
-    motor_inertia: inertia of the rotor and all parts at motor speed, kg m^2. gear_ratio: motor turns per crank turn; at
-    the crank the motor torque is multiplied by the ratio, its inertia by the square of the ratio.
+    motor: torque against speed; None if only the loads on the motor matter. flywheel: inertia on the crankshaft, kg
+    m^2. motor_inertia: inertia of the rotor and all parts at motor speed, kg m^2. gear_ratio: motor turns per crank
+    turn; at the crank the motor torque is multiplied by the ratio, its inertia by the square of the ratio.
 
     gear_efficiency: output power of the gear divided by input power while the motor drives. braking_efficiency: the
     same while the crank drives the motor; None if both are equal. greatest_torque, rated_torque: torque that the motor
@@ -177,7 +177,7 @@ class Drive:
 
     @property
     def torque_law(self) -> Motor:
-        """The motor's torque over its speed. Raises `InputError` without a motor, and for a gear with losses."""
+        """The motor's torque against its speed. Raises `InputError` if there is no motor, or if the gear has losses."""
         if self.motor is None:
             raise InputError(
                 "a machine driven by its motor needs a motor torque; got a drive without one; add for example "

@@ -46,7 +46,7 @@ def single_cylinder(mechanism: Mechanism) -> Mechanism:
 
 @memoise_by_machine
 def member_machines(mechanism: Mechanism) -> tuple[Member, ...]:
-    """Return the cylinders of a machine, each as a separate machine. Raises `InputError` without an arrangement.
+    """Return the cylinders of a machine, each as a separate machine. Raises `InputError` if it has no arrangement.
 
     Gravity is rotated into the axes of each bank; varying gravity keeps its values.
     """

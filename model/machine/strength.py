@@ -1,4 +1,4 @@
-"""Material and pins of crank and rod, for judging their strength."""
+"""Material and pins of the crank and the rod, for judging their strength."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Criterion = Literal["goodman", "soderberg"]
 
 @dataclass(frozen=True, kw_only=True)
 class Material:
-    """Material of crank and rod, SI.
+    """Material of the crank and the rod, SI.
 
     endurance: fully reversed strength of the finished bar, with all corrections except stress concentration in the eyes
     (Shigley eq. 6-18). bearing_pressure: allowable pressure at the pins, on the projected area.

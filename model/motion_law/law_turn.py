@@ -29,7 +29,7 @@ from ..transient.turn import PeriodicTurn
 
 
 def with_drive_inertia(mechanism: Mechanism) -> Mechanism:
-    """Return the machine at constant speed whose crank also has the inertia of flywheel and rotor."""
+    """Return the machine at constant speed, with the inertia of the flywheel and the rotor added to the crank."""
     added = 0.0 if mechanism.drive is None else mechanism.drive.inertia
     weight = mechanism.counterweight
     heavy = replace(weight, inertia=weight.inertia + added) if added else weight

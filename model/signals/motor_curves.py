@@ -169,7 +169,7 @@ def _required_drive(mechanism: Mechanism) -> Drive:
 
 
 def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
-    """Return the numbers of the drive train for designs (n, 3 + k)."""
+    """Return the drive-train values for designs (n, 3 + k)."""
 
     def stepped(slot: int, otherwise: float | None) -> _Stepped:
         values, slopes = raw_number_at_slot(mechanism, slot, designs, otherwise=0.0 if otherwise is None else otherwise)

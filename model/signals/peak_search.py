@@ -34,7 +34,7 @@ class Curve(Protocol):
 
     @property
     def numbers(self) -> int:
-        """Number of design variables for derivatives, 0 for none."""
+        """Number of design variables for derivatives, 0 if there are none."""
         ...
 
     def evaluate(

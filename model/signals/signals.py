@@ -120,7 +120,7 @@ def signal_in_segment(
 ) -> Any:
     """Return the value of a `Signal` at a crank angle within a segment.
 
-    sides: signs of the sliding there, all 0 without friction.
+    sides: signs of the sliding there, all 0 if there is no friction.
     """
     load = load_on_slider(m, d, theta, segment)
     if kind <= _LINE:

@@ -241,7 +241,7 @@ def _add_segment(
 ) -> int:
     """Add a segment between crank angles to the means of design n.
 
-    points: nodes of a panel. left: halvings that remain, -1 for none at all; return how many are left.
+    points: nodes of a panel. left: halvings that remain, -1 if there are none at all; return how many are left.
     """
     low, high = crowded_from_crank_angle(a, curve.kappa), crowded_from_crank_angle(b, curve.kappa)
     panels = math.ceil(max(1.0, _EVEN / curve.kappa))

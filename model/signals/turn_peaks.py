@@ -66,7 +66,7 @@ class TurnTask(NamedTuple):
 
 
 class _Tops(NamedTuple):
-    """Lists of peaks, highest first. pin: the breakpoint at which a peak lies, -1 for none."""
+    """Lists of peaks, highest first. pin: the breakpoint at which a peak lies, -1 if there is none."""
 
     value: Row
     angle: Row

@@ -99,7 +99,7 @@ class StressLocations:
     def slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return the derivatives with respect to the numbers of the design, (p, 3 + k, WIDE / 2).
 
-        cut: (p,), the breakpoint with which the angle moves, -1 for none.
+        cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
         """
         stress, numbers = self.field.slopes(self._design(bars), segment, angle, cut), self.field.numbers
         values = stress[:, 0]

@@ -52,7 +52,7 @@ class Points(NamedTuple):
 
     design: index of the design. probe: an angle within the segment, which identifies its pieces. angle: rad. column:
     column of the design number for the derivatives, -1 for derivatives with respect to the crank angle. cut: breakpoint
-    at which the angle lies, -1 for none.
+    at which the angle lies, -1 if there is none.
     """
 
     design: Integers
@@ -223,7 +223,7 @@ class Field:
     def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return stress and its derivatives with respect to the raw numbers in `numbers`, (p, c, 2 WIDE).
 
-        cut: (p,), the breakpoint with which the angle moves, -1 for none.
+        cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
         """
         begin, end = self.ends(design, segment)
         columns = self.numbers.columns

@@ -74,7 +74,7 @@ class Ends:
         return [self.start, self.end, self.wrap_into_swing(0.5 * np.pi), self.wrap_into_swing(1.5 * np.pi)]
 
     def largest_pin_distance_from_line(self, designs: Array) -> Array:
-        """Return the maximum distance (n,) between crank pin and slider line over the swings, m."""
+        """Return the maximum distance (n,) between the crank pin and the slider line over the swings, m."""
         return greatest_pin_distance(designs, self.extreme_angles())
 
     def stepped(self, columns: int, column: int | None) -> Complexes:

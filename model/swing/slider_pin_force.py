@@ -16,7 +16,7 @@ _NOTHING = 1e-300
 
 
 class PinRows(NamedTuple):
-    """Residual moments of rod and crank, N m, and their slopes by B_x and B_y, m."""
+    """Residual moments of the rod and the crank, N m, and their slopes by B_x and B_y, m."""
 
     rod: Any
     crank: Any

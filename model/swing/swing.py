@@ -240,7 +240,7 @@ def _require_swing_without_dead_point(mechanism: Mechanism, linkage: Linkage, sw
 
 
 def _has_overlapping_links(linkage: Linkage, swing: Swing) -> bool:
-    """Return whether crank and rod overlap over a whole swing that has no single dead point."""
+    """Return whether the crank and the rod overlap over a whole swing that has no single dead point."""
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     return r == l and e == 0.0 and linkage.sign * math.cos(0.5 * (swing.start + swing.end)) < 0.0
 

@@ -40,9 +40,9 @@ def resolve_swing(
 ) -> tuple[Mechanism, Swing]:
     """Return the requested swing, and the machine without its own start.
 
-    motion: the job's swing, from the start that the machine of one design has; None without one. By default the crank
-    drives, slowly. A start requested alone moves the end along if the job states the angle or the travel. field_names:
-    names of the fields of `SwingRequest` in messages, if they differ from Python's.
+    motion: the job's swing, from the start that the machine of one design has; None if it has none. By default the
+    crank drives, slowly. A start requested alone moves the end along if the job states the angle or the travel.
+    field_names: names of the fields of `SwingRequest` in messages, if they differ from Python's.
 
     Raises `InputError` for ends of two kinds, missing ends, and a tabulated motion if the job has no table.
     """
@@ -78,7 +78,7 @@ def resolve_swing(
 
 
 def _requested_ends(request: SwingRequest, motion: Swing | None, names: Mapping[str, str]) -> dict[str, Any]:
-    """Return the requested start and end, and whether they refer to crank or slider."""
+    """Return the requested start and end, and whether they refer to the crank or the slider."""
     stated = {name: getattr(request, name) for name in (*_ANGLES, *_POSITIONS) if getattr(request, name) is not None}
     if not stated:
         return {}

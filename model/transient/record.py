@@ -33,9 +33,9 @@ class Transient:
 
     verdict: reason for the end. turned_back: times at which the crank reversed, s. angle: crank angle including full
     turns, rad. motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism
-    absorbs; flywheel and rotor absorb the rest. power: motor power, W. kinetic, potential: energies of mechanism and
-    drive, and of gravity, J. motor_work, load_work: work since the start by the motor and on the loads, springs
-    included, J. friction_work: heat from the joints since the start, J.
+    absorbs; the flywheel and the rotor absorb the rest. power: motor power, W. kinetic, potential: energies of
+    mechanism and drive, and of gravity, J. motor_work, load_work: work since the start by the motor and on the loads,
+    springs included, J. friction_work: heat from the joints since the start, J.
     """
 
     verdict: Verdict

@@ -181,7 +181,7 @@ class LeverMotion(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Motion of lever and cylinder as `LeverMotion` has it; vectors by their components x and y."""
+    """Motion of the lever and the cylinder as `LeverMotion` has it; vectors by their components x and y."""
 
     radial: tuple[Any, Any]
     span: tuple[Any, Any]

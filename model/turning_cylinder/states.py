@@ -20,9 +20,8 @@ class LeverNumbers(NamedTuple):
     """Numbers of one lever or of many, SI and radians; see `lever`, `forces` and `machine.lever_cylinder`.
 
     rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
-    annular area; NaN without a bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN without one.
-    supply: pressure; NaN without one, as closed_length and
-    stroke.
+    annular area; NaN if there is no bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN if
+    there is none. supply: pressure; NaN if there is none, as closed_length and stroke.
     """
 
     crank: Any

@@ -42,7 +42,7 @@ _INSET = 1e-8
 _TOLERATED_STEPS = 4.0
 """Rise of a curve above a sample, in differences between neighbouring samples: one at a cusp, less where it is
 smooth."""
-_CANDIDATES = 60  # maximum per curve and side; only samples equal to rounding would give more
+_CANDIDATES = 60  # maximum per curve and side; only samples that agree to within rounding would give more
 _SECTIONS = 64  # 0.618^64 = 4e-14 of a bracket
 _GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 _EQUAL = 1e-14  # of the curve's magnitude: within it, an end of a piece counts as high as its neighbourhood
@@ -170,7 +170,7 @@ def _smooth_pieces(mechanism: Mechanism, linkage: Linkage) -> list[Array]:
     pieces = []
     for start, end in zip(cuts, [*cuts[1:], cuts[0] + cycle_turns(mechanism) * _TURN], strict=True):
         if end - start < 8.0 * _INSET:
-            continue  # cuts that are equal to rounding
+            continue  # cuts that agree to within rounding
         low, high = crowded_from_crank_angle(start, kappa), crowded_from_crank_angle(end, kappa)
         count = max(_LEAST_SAMPLES, math.ceil((high - low) / _TURN * _SAMPLES))
         inner = [crank_angle_from_crowded(tau, kappa) for tau in np.linspace(low, high, count)[1:-1]]

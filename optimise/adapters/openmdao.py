@@ -23,9 +23,9 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     """Return an `ExplicitComponent` that maps the numbers of one design to quantities in SI units.
 
     Inputs: crank, rod, offset, and the extra variables with underscores in place of dots (mechanism_slider_mass).
-    Outputs: quantities by name; By default, the objectives and the constrained quantities. Partials are exact. A design
+    Outputs: quantities by name; by default, the objectives and the constrained quantities. Partials are exact. A design
     that does not rotate fully has NaN outputs, which some line searches do not survive: bound the model so that rod
-    exceeds crank + |offset|. Raises `InputError` without OpenMDAO.
+    exceeds crank + |offset|. Raises `InputError` if OpenMDAO is not installed.
     """
     require_problem(problem, "openmdao_component")
     try:

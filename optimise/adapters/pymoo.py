@@ -24,7 +24,7 @@ def pymoo_problem(problem: Problem, *, eliminate: bool = True, elimination_branc
 
     eliminate: whether to eliminate equalities, see `standard_form`; genetic algorithms rarely meet them otherwise. The
     variables then range from 0 to 1; `found.form.designs(X)` gives the designs. elimination_branch: index of the
-    solution branch if the equalities have several. Raises `InputError` without pymoo.
+    solution branch if the equalities have several. Raises `InputError` if pymoo is not installed.
     """
     try:
         from pymoo.core.problem import Problem as PymooProblem

@@ -22,7 +22,7 @@ def torch_function(problem: Problem, quantities: Sequence[str] | None = None) ->
     """Return a function from a tensor of designs (..., 3 + k) to quantities (..., q), SI, for `backward`.
 
     quantities: names; by default, the objectives. Supports first derivatives, those of `Problem.evaluate`. Tensors must
-    have double precision and be on the CPU. Raises `InputError` without PyTorch, or for any other tensor.
+    have double precision and be on the CPU. Raises `InputError` for any other tensor, or if PyTorch is not installed.
     """
     require_problem(problem, "torch_function")
     try:

@@ -48,9 +48,9 @@ def certify_designs(
     dimensions: (n, 3 + v), crank, rod, offset, m, and the extra variables, SI, of designs that meet the job's
     requirements. variants: the variant of each in a problem with choices. epsilon: requested epsilon, as a fraction of
     the objectives' ranges over these designs. seconds: time limit, s; returns what is proven so far. progress,
-    cancelled: called between rounds. Each combination of listed values is a separate variant. Raises `InputError`
-    without designs, for too many combinations, and for objectives that cannot be bounded over a range of designs
-    (`boundable.unbounded_reason`).
+    cancelled: called between rounds. Each combination of listed values is a separate variant. Raises `InputError` if
+    there are no designs, if there are too many combinations, or if an objective cannot be bounded over a range of
+    designs (`boundable.unbounded_reason`).
     """
     if not len(dimensions):
         raise InputError("a certificate needs a front with designs; this one is empty; its message says why")

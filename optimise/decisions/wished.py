@@ -26,7 +26,7 @@ class Outcome:
     allowed value, value reached by the new design, and value of the design to which classes refer, SI; None if there is
     none.
     short: shortfall from the desired or allowed value, in the objective as minimised, SI; negative if the design is
-    better; None without such a value. changed: the same difference from the value before. range_: range of the
+    better; None if there is no such value. changed: the same difference from the value before. range_: range of the
     objective over the front.
     """
 
@@ -96,8 +96,9 @@ class Wished:
 
     found: the design, as a separate front with all columns of a front's table, its stationarity residual and trade-off
     rates; empty if no design stays within the allowed values. row: row of the design to which classes refer. wishes:
-    wish for each objective. value: the achievement function at the design, as `wish` defines it; NaN without a design.
-    outcomes: outcome of each objective; empty without a design. message: reason for a missing design, or empty.
+    wish for each objective. value: the achievement function at the design, as `wish` defines it; NaN if there is no
+    design. outcomes: outcome of each objective; empty if there is no design. message: reason for a missing design, or
+    empty.
     """
 
     found: ParetoFront

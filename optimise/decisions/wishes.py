@@ -2,7 +2,7 @@
 
 A value, "110 N m", is an aspiration level, not a bound: the design comes as close as possible. The classes are those of
 NIMBUS (K. Miettinen and M. M. Mäkelä, "Synchronous approach in interactive multiobjective optimization", Eur. J. Oper.
-Res. 170(3), 2006): an objective must improve on the design's value, must keep it or better, may worsen to a value, or
+Res. 170(3), 2006): an objective must improve on the design's value, must not be worse, may worsen to a given value, or
 is free. Objectives that are not named are free.
 """
 

@@ -92,8 +92,8 @@ def relaxations(
 ) -> Iterator[Relaxation | Array]:
     """Yield the reachable value for each unreachable side of a constraint, if dropping that side is enough.
 
-    If a side can be met after all, yields the design (3 + v,) that meets it and all else instead. best: returns the
-    best design of a problem with one objective, None if no design meets its requirements.
+    If a side can be met after all, yields instead the design (3 + v,) that meets it and all other requirements. best:
+    returns the best design for a problem with one objective, or None if no design meets its requirements.
     """
     for word, bound in constraint.sides:
         sense = _SENSES[word]

@@ -17,7 +17,7 @@ greater.
 
 
 def is_constant(values: ArrayLike, *, size: ArrayLike = 0.0) -> Mask:
-    """Return whether the numbers in each column are equal to rounding: () or (m,) of values (n,) or (n, m).
+    """Return whether each column's numbers agree to within rounding: () or (m,) for values (n,) or (n, m).
 
     The spread is compared with the greatest magnitude, or with `size` if that is greater: the target, if the numbers
     are distances from one. NaN and infinity are ignored; a column without numbers is constant. Zero needs a size

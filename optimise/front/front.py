@@ -60,12 +60,13 @@ class ParetoFront:
     `slack_<field>` for every constraint (distance to the nearer bound in the quantity's display unit; zero where
     active), `residual` (stationarity) and `status` ("stationary" or "best found"). Sorted by the first objective, best
     first. dimensions: (n, 3 + v) crank, rod, offset, m, and the exact values of the extra variables, SI.
-    variants: index of each design's variant in the problem; empty without choices.
+    variants: index of each design's variant in the problem; empty if there are no choices.
     values: (n, m) minimised objectives (maximised ones negated, targets as distances), SI. goals: for each design,
     objective index and gradient of every active piece; active: gradients of its active constraints; both with respect
     to the free unknowns scaled to the unit box. hypervolume: dominated fraction of the box between the front's ideal
     and 1.1 times nadir, see `hypervolume.py`. history: rounds, with hypervolumes in the same box. versions: versions of
-    this software and its numerical libraries. discrete: extent of the search among discrete values; None without any.
+    this software and its numerical libraries. discrete: extent of the search among discrete values; None if there are
+    none.
     """
 
     problem: Problem
@@ -239,7 +240,7 @@ class ParetoFront:
 
     @property
     def _objective_targets(self) -> list[float]:
-        """The objectives' targets, SI, 0 for an objective without one: the scale for rounding distances from them."""
+        """The objectives' targets, SI, 0 if an objective has none: the scale for rounding distances from them."""
         return [abs(objective.target or 0.0) for objective in self.objectives]
 
     def column_of(self, name: str) -> int:

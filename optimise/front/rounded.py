@@ -124,7 +124,7 @@ class Rounded:
         return np.stack(columns, axis=1) if columns else np.zeros((len(self), 0))
 
     def tightest(self, row: int) -> str | None:
-        """Return the quantity with the relatively tightest requirement, equalities first; None without requirements."""
+        """Return the quantity with the relatively tightest requirement, equalities first; None if there are none."""
         rest = [(item.equality, self.violations[row, j], item.quantity) for j, item in enumerate(self.constraints)]
         return max(rest)[2] if rest else None
 

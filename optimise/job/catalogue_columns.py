@@ -182,7 +182,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
     near = [peak] if peak in _quantity_names() else difflib.get_close_matches(key, _quantity_names(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
-            f"{column_name}: must be the name of a quantity, or a name unlike any; did you mean "
+            f"{column_name}: must be the name of a quantity, or a name that resembles none; did you mean "
             f"{_quantity_names()[near[0]]}? "
             "rename it, or let it begin with # to skip it"
         )

@@ -18,7 +18,7 @@ Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
 """Keys that state how fast the crank turns; a job has one of them."""
 TIME_KEYS = SPEED_KEYS[1:]
-"""Keys that state a time, with which a profile gives only the shape."""
+"""Keys that state a time; if a job has one, a profile defines only the shape."""
 _RPM = 30.0 / math.pi
 
 

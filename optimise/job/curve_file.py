@@ -246,7 +246,7 @@ def first_cycle(curve: Curve, turns: int | None) -> tuple[Curve, int]:
 def drop_closing_point(curve: Curve) -> Curve:
     """Return a curve over one turn without a last point that repeats the first.
 
-    Raises `InputError` if the two differ by more than a thousandth of the curve's range, or for two points at the same
+    Raises `InputError` if the two differ by more than a thousandth of the curve's range, or if two points have the same
     argument.
     """
     twice = np.flatnonzero(np.diff(curve.arguments) == 0.0)

@@ -54,7 +54,7 @@ def crossed_ends_remedy(lower: object, upper: object) -> str:
 
 
 def states_values(value: object) -> bool:
-    """Return whether a value in a job has a key of a table of values."""
+    """Return whether a value in a job contains a key that is used in a table of values."""
     return isinstance(value, Mapping) and not KEYS.isdisjoint(value)
 
 

@@ -23,7 +23,7 @@ class CylinderPart(Checked[Cylinder]):
     closed_length: PositiveLength | None = optional("least length between its pins; with it the stroke", "650 mm")
     stroke: PositiveLength | None = optional("stroke of the cylinder; with it the closed length", "430 mm")
     bore: PositiveLength | None = optional("bore, for pressures and flow", "40 mm")
-    rod: PositiveLength | None = optional("diameter of the piston rod, for its pull and buckling", "25 mm")
+    rod: PositiveLength | None = optional("diameter of the piston rod, for the pulling force and buckling", "25 mm")
     supply_pressure: Pressure | None = optional("greatest pressure above that of the other side", "160 bar")
     seal_friction: Force = optional("force of the seal against the motion", "50 N", default=0.0)
     barrel_mass: Mass = optional("of the barrel, a uniform bar as long as the closed cylinder", "8 kg", default=0.0)

@@ -1,4 +1,4 @@
-"""The table [sections] of a job file: material, pins and safety factors of crank and rod as bars."""
+"""The table [sections] of a job file: material, pins and safety factors of the crank and the rod as bars."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ _Bearing = Annotated[
 
 
 class MaterialPart(Checked[Material]):
-    """Material of crank and rod."""
+    """Material of the crank and the rod."""
 
     makes = Material
 

@@ -31,7 +31,7 @@ def suggested_bounds(value: str | float, kind: Kind | None) -> list[dict[str, An
 
 
 def _with_unit(value: str | float, kind: Kind) -> str | float:
-    """Return a number with its unit, or unchanged without one; other text stays unchanged."""
+    """Return a number with its unit, or unchanged if it has none; other text stays unchanged."""
     parts = number_and_unit(str(value))
     if parts is None or parts[1]:
         return value

@@ -138,7 +138,7 @@ def are_numbers(cells: Sequence[str]) -> bool:
 
 
 def names_in_comment(text: str, separator: str, width: int) -> list[str] | None:
-    """Return the column names in the last comment before the numbers that has as many; None without one."""
+    """Return the column names in the last comment before the numbers that has as many; None if there is none."""
     names = None
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
@@ -151,7 +151,7 @@ def names_in_comment(text: str, separator: str, width: int) -> list[str] | None:
 
 
 def names_in_line(line: str, separator: str, width: int) -> list[str] | None:
-    """Return the names of `width` columns in a line; names may have several words. None without them."""
+    """Return the names of `width` columns in a line; names may have several words. None if there are none."""
     ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
     if separator == " ":
         ways += [re.split(pattern, line.strip()) for pattern in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]

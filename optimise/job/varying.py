@@ -292,7 +292,7 @@ def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
     if not isinstance(given, list | tuple) or len(given) != 2:
         raise JobError(
             f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {quote(given)}; "
-            "what does not vary is given in its own place alone"
+            "give a fixed value in its own place only"
         )
     jobs = [with_values(job, {path: end}, key) for end in given]
     _require_fixed_time_keys(path, key, jobs)

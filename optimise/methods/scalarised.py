@@ -86,12 +86,12 @@ def chebyshev(front: _Front) -> Aims:
 def nbi(front: _Front) -> Aims:
     """Return aims by normal-boundary intersection.
 
-    From points Phi beta spread over the plane through the optima of the single objectives, the columns of Phi, designs
-    move as far as possible along its quasi-normal n = -Phi e (Das and Dennis 1998, see `simplex_weights`). Where the
-    front is not met, some design is better than the point reached, so F <= Phi beta + t n is required rather than
-    equality (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA 42(4), 1984): every result
-    is Pareto-optimal, even on a folded front. With three or more objectives, the plane's triangle does not cover the
-    whole front, so points outside it are used as well.
+    Points Phi beta are spread over the plane through the optima of the single objectives, the columns of Phi. From
+    each, a design moves as far as possible along the plane's quasi-normal n = -Phi e (Das and Dennis 1998, see
+    `simplex_weights`). Where the front is not met, some design is better than the point reached, so F <= Phi beta + t n
+    is required rather than equality (A. Pascoletti and P. Serafini, "Scalarizing vector optimization problems", JOTA
+    42(4), 1984): every result is Pareto-optimal, even on a folded front. With three or more objectives, the plane's
+    triangle does not cover the whole front, so points outside it are used as well.
     """
     m = len(front.payoff)
     payoff = front.scaled(front.payoff)

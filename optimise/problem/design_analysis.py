@@ -59,7 +59,7 @@ class Analysis(Mapping[str, float]):
     It maps the quantities' names in job files to their values. It excludes quantities that the machine does not define:
     accessing one raises `InputError` with the reason, and `undefined` has the reasons for all. mechanism: the machine
     of this design.
-    linkage: its dimensions. quantity_values: the mapping itself. title: title of the problem, "" without one. swing:
+    linkage: its dimensions. quantity_values: the mapping itself. title: title of the problem, "" if it has none. swing:
     motion of its crank instead of a full turn.
     """
 

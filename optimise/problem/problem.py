@@ -128,17 +128,17 @@ class Problem:
     """A complete optimisation problem.
 
     mechanism: the machine with its extra variables. crank, rod, offset: ranges of the three dimensions, m. choices:
-    names of the discrete choices. variants: every combination of them; empty without choices. left_out: combinations
-    whose limits the constraints exclude, label and reason, to be reported. With variants, use the mechanism and ranges
-    of `parts`: those here belong to no particular variant. catalogue: combinations that may be the least sufficient
-    option for a design, see `search.cheapest_sufficient`; some are not searched. costs: costs of the tolerances, for
-    their allocation. sections: limits within which bars are sized, in the material of the mechanism. own: quantities
-    besides those that every problem has; objectives and constraints may name them too. slow_stroke: the stroke that
-    must be slow, if one is required. The time ratio is then above 1, see `violation.constraints_of`, and the offset has
-    only one sign, see `slow_side`, unless the speed follows a profile. discrete: the numbers of a design with discrete
-    values; their ranges are the hulls of these. motion: a swing of the crank, which then need not rotate fully. Its
-    quantities are among the own ones; quantities of a rotating crank raise an error. warnings: sentences on statements
-    in the job that are probably not intended.
+    names of the discrete choices. variants: every combination of them; empty if there are no choices. left_out:
+    combinations whose limits the constraints exclude, label and reason, to be reported. With variants, use the
+    mechanism and ranges of `parts`: those here belong to no particular variant. catalogue: combinations that may be the
+    least sufficient option for a design, see `search.cheapest_sufficient`; some are not searched. costs: costs of the
+    tolerances, for their allocation. sections: limits within which bars are sized, in the material of the mechanism.
+    own: quantities besides those that every problem has; objectives and constraints may name them too. slow_stroke: the
+    stroke that must be slow, if one is required. The time ratio is then above 1, see `violation.constraints_of`, and
+    the offset has only one sign, see `slow_side`, unless the speed follows a profile. discrete: the numbers of a design
+    with discrete values; their ranges are the hulls of these. motion: a swing of the crank, which then need not rotate
+    fully. Its quantities are among the own ones; quantities of a rotating crank raise an error. warnings: sentences on
+    statements in the job that are probably not intended.
     """
 
     name: str
@@ -344,7 +344,7 @@ class Problem:
     ) -> SwingSummary:
         """Return the summary of a crank swing for a design (3 + k,), which need not rotate fully.
 
-        Omitted arguments are those of the problem's own motion; without one, the crank drives, slowly. start, end:
+        Omitted arguments are those of the problem's own motion; if it has none, the crank drives slowly. start, end:
         crank angles, rad. slider_start, slider_end: slider positions instead, m, with the crank pin on the `crank_side`
         of the line to the slider pin. driver: "crank", by a torque, or "slider", by a force. law: motion law of the
         driver, see `model.swing.swing_types`. duration: time from end to end, s, for all laws except "slow".

@@ -143,7 +143,8 @@ def balance(
     arm: lever arm, m; the shaking moment counts as moment / arm, and is ignored if None. It needs a rod balance,
     because no counterweight changes it. radius: radius of the counterweight, m; by default, that of the mechanism's
     counterweight, or the crank. greatest_moment: greatest moment of the counterweight, kg m. rod: space for a rod
-    balance; None for none. Raises `InputError` if the crank is at rest or accelerates, or if no moving part has a mass.
+    balance; None if there is none. Raises `InputError` if the crank is at rest or accelerates, or if no moving part has
+    a mass.
     """
     require_word("measure", measure, Measure)
     require_single_cylinder_at_constant_speed(mechanism, "the balance of a counterweight")

@@ -73,8 +73,9 @@ def identity(expression: Any) -> Any:
 class BarLoads:
     """Loads on one bar, as numbers or posynomials in the sections. N, N m, and Pa^-1 N for fatigue.
 
-    axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. Own mass is
-    included. pins: force and diameter by name. bent_eye: name of the pin whose eye carries the moment, "" for none.
+    axial, compression, moment: peaks. fatigue_axial, fatigue_moment: amplitude / S_e + mean / S_m. The bar's own mass
+    is included. pins: force and diameter by name. bent_eye: name of the pin whose eye carries the moment, or "" if
+    there is none.
     """
 
     axial: Any

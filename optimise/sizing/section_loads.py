@@ -1,4 +1,4 @@
-"""Loads on crank and rod over the cycle, from the joints and from their own mass. Frictionless pins, rigid links.
+"""Loads on the crank and the rod over the cycle, from joints and own mass. Frictionless pins, rigid links.
 
 Joint forces come from the inverse dynamics of the whole machine with these sections, so they increase with the
 sections. The rod's moment comes from its own mass alone (inertia whip and weight), because pins without friction carry
@@ -84,7 +84,7 @@ class Whip:
 
 
 def joint_loads(mechanism: Mechanism, linkage: Linkage) -> JointLoads:
-    """Return the joints' loads on crank and rod; pin forces are exact to machine precision, the others sampled."""
+    """Return the joints' loads on the links; pin forces are exact to machine precision, the others sampled."""
     cuts = breakpoints(mechanism, linkage)
     even = np.arange(_ANGLES * cycle_turns(mechanism)) * (2.0 * np.pi / _ANGLES)
     angles = np.concatenate([even, cuts - _ASIDE, cuts + _ASIDE])

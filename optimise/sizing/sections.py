@@ -1,4 +1,4 @@
-"""Widths and depths of crank and rod for least mass, by geometric programming coupled to the dynamics.
+"""Widths and depths of the crank and the rod for least mass, by geometric programming coupled to the dynamics.
 
 Mass and limit states (`limit_states`) are posynomials in the four section sizes once the joints' loads are known; the
 loads in turn grow with the masses. Each iteration computes the loads of the current sections from the dynamics of the
@@ -68,9 +68,9 @@ class Sections:
 
 
 def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, limits: SectionLimits) -> Sections:
-    """Return the sections of crank and rod with the least mass that carry a machine's loads.
+    """Return the sections of the crank and the rod with the least mass that carry a machine's loads.
 
-    They replace crank and rod of the mechanism. Raises `InfeasibleError`, naming the limit that fails, if no section
+    They replace those of the mechanism. Raises `InfeasibleError`, naming the limit that fails, if no section
     within the ranges carries the loads; also raises it for arrays of linkages, and for friction, which would bend the
     bars at their pins.
     """
@@ -129,7 +129,7 @@ class _Task:
     whip: Whip
 
     def bars(self, sizes: Array) -> tuple[Bar, Bar]:
-        """Return crank and rod."""
+        """Return the crank and the rod."""
         w, d, v, e = np.exp(sizes).tolist()
         density = self.material.density
         return Bar(width=w, depth=d, density=density), Bar(width=v, depth=e, density=density)

@@ -134,7 +134,7 @@ class Design:
         return self._machine_of_job(call) if self.run is None else self._machine_of_run(call, self.run)
 
     def problem(self, call: Call) -> Problem:
-        """Return the problem of the job. Raises `InputError` without a job."""
+        """Return the problem of the job. Raises `InputError` if there is no job."""
         if self.job is None or self.run is not None:
             raise InputError("this topic needs a job; got none; give a job, without a run")
         return call.problem(tables_of(self.job, self.files), feasible=False)
@@ -145,7 +145,7 @@ class Design:
         return {name: length for name in DIMENSIONS if (length := getattr(self, name)) is not None}
 
     def folder_front_and_row(self, call: Call) -> tuple[Path, ParetoFront, int | None]:
-        """Return the folder of the run, its front and the row of the design. Raises `InputError` without a run."""
+        """Return the run's folder, its front and the row of the design. Raises `InputError` if there is no run."""
         if self.run is None or self.job is not None:
             received = "a job" if self.job is not None else "none"
             raise InputError(f"this topic needs the front of a run; got {received}; name a run, without a job")

@@ -62,8 +62,8 @@ TopicName = Annotated[
 class BlockModel(BaseModel):
     """Sentence, or a table if there are rows.
 
-    heading: whether the sentence is the heading of the next blocks. heads: column headings, empty without any. right:
-    whether a column is right-aligned. rows: cell texts.
+    heading: whether the sentence is the heading of the next blocks. heads: column headings, empty if there are none.
+    right: whether a column is right-aligned. rows: cell texts.
     """
 
     sentence: str = Field(examples=["Motor"])

@@ -53,7 +53,7 @@ class FrontProgress(ResponseModel):
 
     columns: list[str] = Field(description="columns of the objectives, as the designs will have them")
     points: list[list[float | None]] = Field(
-        description="values by column of at most 64 designs; for an objective with a target its distance from that"
+        description="values for at most 64 designs, by column; for an objective with a target, the distance from it"
     )
 
 
@@ -96,7 +96,7 @@ class JobSummary(RowSummary):
     evaluations: Count
     seconds: float | None
     axes: list[str] = Field(description="the columns of the points")
-    points: list[list[float | str | None]] = Field(description="values by column of at most 64 designs of the front")
+    points: list[list[float | str | None]] = Field(description="values for at most 64 designs of the front, by column")
 
 
 class JobRow(ResponseModel):
@@ -152,7 +152,8 @@ class FrontPoints(ResponseModel):
         description="columns of the first two objectives, or of the only one", examples=[["time_ratio"]]
     )
     points: list[list[float | str | None]] = Field(
-        description="values by column of at most 64 designs; those of its progress while it runs", examples=[[[1.25]]]
+        description="values for at most 64 designs, by column; while a job runs, those of its progress",
+        examples=[[[1.25]]],
     )
 
 

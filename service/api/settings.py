@@ -19,9 +19,9 @@ class Settings:
 
     token: token required in every request; None admits anyone who can reach the service. hosts: host names of the
     service, without ports; "*" is any. most_body: maximum size of a request, bytes. most_depth: maximum nesting of
-    tables in a JSON body. submissions_per_minute: maximum for all clients together; 0 is no limit. allowed_quantities:
-    functions that jobs may name as custom quantities, as "module:function"; they run on the workers with all their
-    permissions. limits: maximum limits of a job, also the default. figures: whether figures are drawn.
+    tables in a JSON body. submissions_per_minute: maximum for all clients together; 0 means no limit.
+    allowed_quantities: functions that jobs may name as custom quantities, as "module:function"; they run on the workers
+    with all their permissions. limits: maximum limits of a job, also the default. figures: whether figures are drawn.
     """
 
     token: str | None = None

@@ -122,7 +122,7 @@ class StoredFronts:
         self._reading = threading.Lock()
 
     def get(self, number: int) -> StoredFront:
-        """Return the front of a job. Raises `NotFound` for a missing job, `RunError` without a result."""
+        """Return the front of a job. Raises `NotFound` for a missing job, `RunError` if it has no result."""
         job = self._store.job(number)
         key = (job.id, job.finished)
         with self._reading:  # simultaneous requests for the same front wait for it instead of reading it again

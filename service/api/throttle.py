@@ -52,7 +52,7 @@ class RateLimit:
     """Rate limiter: admits a burst of a given number, and as many again over every minute. For one thread."""
 
     def __init__(self, per_minute: int, clock: Callable[[], float] = time.monotonic) -> None:
-        """Create a limiter. per_minute: number per minute; 0 is no limit. clock: clock in s."""
+        """Create a limiter. per_minute: number per minute; 0 means no limit. clock: clock in s."""
         self.per_minute = per_minute
         self._clock = clock
         self._left = float(per_minute)

@@ -1,4 +1,4 @@
-"""Case 1: Mechanism in Norton's row c by Boyle and Liu, with lengths taken as metres."""
+"""Case 1: Mechanism in row c of Norton's table, as analysed by Boyle and Liu, with lengths taken as metres."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class Connection:
         self._http.close()
 
     def request(self, method: str, path: str, *, again: bool, **content: Any) -> httpx.Response:
-        """Return the answer to a request. Raises the errors of `refusal`, and `ServiceError` without an answer.
+        """Return the answer to a request. Raises the errors of `refusal`, and `ServiceError` if there is no answer.
 
         again: whether the request may be sent twice. A request that cannot have reached the service is always retried.
         """

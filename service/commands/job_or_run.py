@@ -76,7 +76,7 @@ def rotating_problem(job: Path, command: str) -> Problem:
 
 
 def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Problem | None:
-    """Return the problem of a job file after "PATH=VALUE" replacements of numbers; None without a job.
+    """Return the problem of a job file after "PATH=VALUE" replacements of numbers; None if there is no job.
 
     The job need not be feasible, as the design to analyse is given.
     """
@@ -101,7 +101,7 @@ def problem_of_job(job: Path | None, replaced_values: Sequence[str] = ()) -> Pro
 def design_of_run(
     command: str, run: Path | None, design: int, place: Path | None, options: Mapping[str, object]
 ) -> StoredDesign:
-    """Return a design of a run. Raises `InputError` without a run, or if dimensions are given too.
+    """Return a design of a run. Raises `InputError` if there is no run, or if dimensions are given too.
 
     command: name of the command, for messages. place: folder of runs. options: options that conflict with the design.
     """

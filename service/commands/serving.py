@@ -238,6 +238,6 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
 
 def _exit_despite_input() -> None:
-    """Exit immediately, although a thread still reads standard input."""
+    """Exit immediately, even if a thread is still reading standard input."""
     print_message("slidercrank: interrupted")
     os._exit(INTERRUPTED)

@@ -31,7 +31,7 @@ def require_single_choice(design: int, result: Result, *, has_other_choice: bool
 def chosen_row(
     result: Result, rows: Sequence[int], *, knee: bool, topsis: str | None, lexicographic: str | None
 ) -> int | None:
-    """Return the index of the row that the options select, or None without such an option.
+    """Return the index of the row that the options select, or None if there is no such option.
 
     Raises `InputError` for two selection options.
     """

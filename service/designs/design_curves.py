@@ -90,8 +90,8 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 class DesignCurves:
     """Curves of a design at evenly spaced points over its cycle. turns: crank revolutions per cycle; 0 for a swing.
 
-    seconds: duration of the cycle; None without a speed, and for a quasi-static swing. centres: crank angles of the
-    inner and outer dead centres, deg; None for a swing. slider_ends: slider positions there, or at both ends of a
+    seconds: duration of the cycle; None if there is no speed, and for a quasi-static swing. centres: crank angles of
+    the inner and outer dead centres, deg; None for a swing. slider_ends: slider positions there, or at both ends of a
     swing, mm.
     """
 

@@ -47,7 +47,7 @@ def convert_record(record: Any, system: System) -> Any:
 def convert_result(result: Result, system: System, problem: Problem | None = None) -> Result:
     """Return the result of a run in a unit system. The order of designs and all selections are unchanged.
 
-    problem: problem of the run; recomputes the trade-offs at the knee, which are stored in metric units; without it
+    problem: problem of the run; recomputes the trade-offs at the knee, which are stored in metric units; if None,
     they are omitted.
     """
     if system == "metric":

@@ -38,7 +38,7 @@ class Requirement:
         return f"slack_{self.column}"
 
     def missed_by(self, row: Row) -> float | None:
-        """Return the amount by which a design misses the requirement, zero if met, None without the quantity."""
+        """Return the amount by which a design misses the requirement: zero if met, None if it lacks the quantity."""
         value = _number_or_none(row.get(self.column))
         if value is None:
             return None
@@ -53,7 +53,7 @@ class JudgedRule:
     """Rule of a job evaluated at one design, in the display unit of its quantity.
 
     lower, upper: None leaves a side open. value: None if the design does not have the quantity. missed_by: zero if the
-    rule is met, None without a value.
+    rule is met, None if there is no value.
     """
 
     quantity: str

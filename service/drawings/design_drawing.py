@@ -176,7 +176,7 @@ def _dimensions(
 
 
 def _outer_side(pin: Point, slider: Point) -> float:
-    """Return the side of crank and rod, 1 for the left, that lies outside the bend between them."""
+    """Return the side of the crank and the rod, 1 for the left, that lies outside the bend between them."""
     return -1.0 if pin[0] * (slider[1] - pin[1]) - pin[1] * (slider[0] - pin[0]) > 0.0 else 1.0
 
 

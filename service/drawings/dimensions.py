@@ -39,8 +39,8 @@ def dimension(
 ) -> Dimension:
     """Return the dimension between two points along `angle`, deg, with its line through a given point.
 
-    tolerance: tolerance, mm; it sets the digits of the text, seven without one. If arrows and text do not fit between
-    the points, they are drawn outside, with the text beyond the end.
+    tolerance: tolerance, mm; it sets the digits of the text, seven if there is none. If arrows and text do not fit
+    between the points, they are drawn outside, with the text beyond the end.
     """
     turn, height = math.radians(angle), look.height
     direction, normal = (math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))

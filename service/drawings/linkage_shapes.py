@@ -143,7 +143,7 @@ def pin_positions(linkage: Linkage, angle: float) -> tuple[Point, Point]:
 
 
 def moving_shapes(pin: Point, slider: Point, look: LinkageSizes) -> list[Shape]:
-    """Return slider, rod and crank with their pins, for given positions of crank pin and slider pin."""
+    """Return slider, rod and crank with their pins, for given positions of the crank pin and the slider pin."""
     drawn = link_shapes((on.SLIDER, on.ROD, on.CRANK), pin, slider, look)
     return [*drawn, *(Circle(on.PINS, point, look.pin) for point in ((0.0, 0.0), pin, slider))]
 

@@ -79,7 +79,7 @@ def comparison_matrix(
 def robustness_figure(front: ParetoFront) -> Figure | None:
     """Return nominal and robust front in one scatter matrix, with the cost of robustness below.
 
-    Returns None without a nominal front to compare with.
+    Returns None if there is no nominal front to compare with.
     """
     comparison = robust_cost(front)
     if comparison is None:

@@ -1,4 +1,4 @@
-"""Figure of a lever with its pivoting cylinder: a scale drawing above force, length and angle over the lever angle."""
+"""Figure of a lever with its pivoting cylinder: scale drawing above force, length and angle against lever angle."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class PanelFigure:
 def crank_angle_panel(
     title: Text, *lines: Line, kind: Kind | None = None, level: tuple[str, float] | None = None, note: Text = ""
 ) -> Panel:
-    """Return a panel of lines over the crank angle, deg. kind: kind of the numbers y, in SI; see `Panel`."""
+    """Return a panel of lines against the crank angle, deg. kind: kind of the numbers y, in SI; see `Panel`."""
     return Panel(title, CRANK_ANGLE, lines, kind, turns=True, level=level, note=note)
 
 

@@ -1,4 +1,4 @@
-"""Figure of a swing: the machine to scale, and drive, slider, angles and error over the crank angle, both strokes."""
+"""Figure of a swing: the machine to scale, and drive, slider, angles and error against crank angle, both strokes."""
 
 from __future__ import annotations
 

@@ -212,7 +212,7 @@ def _points_at_limit(problem: Problem, branch: EliminationBranch) -> Iterator[Ar
 
 
 def _closed_form_values(problem: Problem, name: str, designs: Array) -> Array:
-    """Return a closed-form quantity of designs (n, 3); NaN without full rotation or with a violated dimension."""
+    """Return a closed-form quantity of designs (n, 3); NaN if one does not rotate fully or violates a dimension."""
     values = np.full(len(designs), np.nan)
     rows = np.flatnonzero(_rotates_fully(designs) & _is_within_ranges(problem, designs))
     for constraint in problem.constraints:

@@ -30,8 +30,8 @@ def show_analysis(
 ) -> None:
     """Write all numbers of a design, its rules as met or missed, and its topics.
 
-    judgement: its job, evaluated at the design; None without a job. custom: custom quantities of its job. hint: line
-    before the topics, or "".
+    judgement: its job, evaluated at the design; None if there is no job. custom: custom quantities of its job. hint:
+    line before the topics, or "".
     """
     row, reasons = analysis.row, (analysis.undefined or {}).items()
     show_design(screen, convert_row({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)

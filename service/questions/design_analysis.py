@@ -30,7 +30,7 @@ class Analysis:
     """Analysis of a design. row: all its numbers. found: numbers of its topics. notes: omissions with reasons.
 
     refused: topics that do not apply to the design, each with the reason. undefined: reasons for undefined quantities,
-    by column; None without a job, where most are undefined. violated: excess over allowable values, by column.
+    by column; None if there is no job, as most are then undefined. violated: excess over allowable values, by column.
     """
 
     row: Row
@@ -44,7 +44,7 @@ class Analysis:
     def record(self, units: System = "metric", judgement: Judgement | None = None) -> dict[str, Any]:
         """Return all numbers of the design and of its topics, ready for JSON, with undefined and violated quantities.
 
-        judgement: its job, evaluated at the design; None without a job.
+        judgement: its job, evaluated at the design; None if there is no job.
         """
         topics = {topic.name: topic.numbers_in_units(self.topic_numbers[topic.name], units) for topic in self.topics}
         undefined = {} if self.undefined is None else {"undefined": convert_record(self.undefined, units)}

@@ -17,7 +17,7 @@ _LEAST_DIGITS = 4  # minimum significant digits in the inch system: 0.7 mm is 0.
 class PlainBlock:
     """Sentence, or a table if there are rows, as text in one unit system.
 
-    heading: whether the sentence is a heading. heads: column headings, empty for columns without one. right: whether
+    heading: whether the sentence is a heading. heads: column headings, empty for columns that have none. right: whether
     each column is right-aligned, as numbers are. rows: cell texts.
     """
 

@@ -35,7 +35,7 @@ _NO_BREAK = "\u00a0"  # non-breaking space
 
 
 def pdf_file(report: Report) -> bytes:
-    """Return the report as the content of a PDF file. Raises `MissingExtra` without typst."""
+    """Return the report as the content of a PDF file. Raises `MissingExtra` if typst is not installed."""
     with TemporaryDirectory(prefix="slidercrank-") as name:
         folder = Path(name)
         shutil.copy(_TEMPLATE, folder)

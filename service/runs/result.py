@@ -49,7 +49,7 @@ class StoredObjective:
 class Exact:
     """Designs of a front as the search left them: dimensions and derivatives, SI; fields as in `ParetoFront`.
 
-    dimensions: (n, 3 + v). variants: (n,), empty without choices. goals: for each design, objective index (p,)
+    dimensions: (n, 3 + v). variants: (n,), empty if there are no choices. goals: for each design, objective index (p,)
     and gradient (p, f) of every active piece. active: gradients (a, f) of its active constraints.
     """
 
@@ -83,7 +83,7 @@ class Result:
     designs. trade_offs: trade-offs at the knee, in words. warnings: warnings about possibly unintended input. violated:
     per column, the excess of each design over an allowable value, zero if it is met. exact: the designs as the search
     left them; None for a run read from its files or from a store of an early version. discrete: how designs with
-    discrete values were found, see `discrete_record`; None without such values.
+    discrete values were found, see `discrete_record`; None if there are no such values.
     """
 
     run: str

@@ -63,7 +63,7 @@ class Bookmark:
         return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
 
     def decision(self, faults: Sequence[str]) -> str:
-        """Return the decision for this design in words, with its reason and faults; empty without a decision."""
+        """Return the decision for this design in words, with its reason and faults; empty if there is none."""
         reason = f" ({self.reason})" if self.reason else ""
         return "; ".join((f"Chosen: {self.name}{reason}", *faults)) * self.decided
 

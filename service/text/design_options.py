@@ -78,5 +78,5 @@ class Pick:
         return self.knee or self.topsis is not None or self.lexicographic is not None
 
     def row(self, result: Result, rows: Sequence[int]) -> int | None:
-        """Return the index of the row selected by its values, or None without such an option or without rows."""
+        """Return the index of the row selected by its values, or None if there is no option or no row."""
         return chosen_row(result, rows, knee=self.knee, topsis=self.topsis, lexicographic=self.lexicographic)

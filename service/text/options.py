@@ -180,5 +180,5 @@ def require_ending(option: str, file: Path | None, *endings: str) -> None:
 
 
 def option_value(option: str, text: str | None, kind: Kind, *, sign: Any = "any") -> float | None:
-    """Return an option's value as by `value_of`, or None if it is omitted."""
+    """Return an option's value as `parse_value` does, or None if the option is omitted."""
     return None if text is None else parse_value(option, text, kind, sign=sign)

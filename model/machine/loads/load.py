@@ -1,4 +1,4 @@
-"""A load on slider or crank: everything that kernels, job files, the page and summaries need to know about it.
+"""A load on the slider or the crank: everything that kernels, job files, the page and summaries need.
 
 A kind of load is a module in this package with a frozen dataclass that derives from `Load`. It declares how it enters
 the kernels: in one of the forms that are summed before a sweep (`Enters`), or through its own `formula`.

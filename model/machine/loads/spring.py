@@ -1,4 +1,4 @@
-"""A linear spring between slider and frame."""
+"""A linear spring between the slider and the frame."""
 
 from __future__ import annotations
 

@@ -86,10 +86,10 @@ def _errors_over_offset(mechanism: Mechanism, linkage: Linkage, count: int) -> E
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
-    """Return for each approximation its peak, its error for this design, and its error over offset.
+    """Return for each approximation its peak, its error for this design, and its error as a function of offset.
 
     Errors: maximum difference over the cycle relative to the exact peak, in percent; None if the peak is zero. They
-    cover inertia only, at constant speed. Raises `InputError` without a crank speed.
+    cover inertia only, at constant speed. Raises `InputError` if the crank has no speed.
     """
     comparison = compare_approximations(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
     rotating, reciprocating = rotating_and_reciprocating(mechanism, linkage)

@@ -58,7 +58,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage, with and without counterweight.
 
     Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.inertia`).
-    Values without counterweight are None if the machine has none. Raises `InputError` for a crank without a speed.
+    Values without counterweight are None if the machine has none. Raises `InputError` if the crank has no speed.
     """
     if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)

@@ -42,8 +42,10 @@ ROWS = (
 )
 
 
-_Counted = Annotated[float | None, Note("mean over the turns that count; null without one")]
-_Uncertain = Annotated[float | None, Note("half the width of the 99 % confidence interval; null without two turns")]
+_Counted = Annotated[float | None, Note("mean over the turns that count; null if there are none")]
+_Uncertain = Annotated[
+    float | None, Note("half the width of the 99 % confidence interval; null if fewer than two turns count")
+]
 Impacts = Annotated[
     dict[str, Any],
     Keys(
@@ -61,9 +63,9 @@ Impacts = Annotated[
             "turns_discarded": int,
             **{f"{key}{unit}": _Counted for _, key, unit, *_ in ROWS},
             **{f"{key}_uncertainty{unit}": _Uncertain for _, key, unit, *_ in ROWS},
-            "fastest_impact_m_s": Annotated[float | None, Note("null without an impact")],
+            "fastest_impact_m_s": Annotated[float | None, Note("null if there is no impact")],
             "energy_residual_J": Annotated[
-                float | None, Note("greatest error of the balance in a turn; null without one")
+                float | None, Note("greatest error of the energy balance in a turn; null if no turn counts")
             ],
         },
     ),

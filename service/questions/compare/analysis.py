@@ -38,8 +38,8 @@ _MOST_NAMES = 8
 def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -> Answer:
     """Return measures of the fronts, sentences, and differences between the jobs.
 
-    Runs with other objectives, or with undefined ones, have no measures; with other objectives the answer is not
-    satisfied. Raises `InputError` for fewer than two runs and for a repeated run.
+    Runs with different objectives, or with undefined ones, have no measures; `is_satisfied` is False if the objectives
+    differ. Raises `InputError` for fewer than two runs and for a repeated run.
     """
     if len(runs) < 2:
         raise InputError("a comparison needs at least two runs; got one; name another")

@@ -2,4 +2,4 @@
 
 from ..design_question import DesignQuestion
 
-QUESTION = DesignQuestion(__name__, 45, "cylinder pressure over volume and crank angle, valve events")
+QUESTION = DesignQuestion(__name__, 45, "cylinder pressure against volume and crank angle, valve events")

@@ -1,4 +1,4 @@
-"""Indicator diagram of one design: pressure over volume for each cylinder, valve events, work."""
+"""Indicator diagram of one design: pressure against volume for each cylinder, valve events, work."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def blocks(numbers: Indicator) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
-    """Return pressure over volume and over the crank angle, with a line for each cylinder."""
+    """Return plots of pressure against volume and crank angle, with a line for each cylinder."""
     over_volume, over_angle = [], []
     for style, (place, load) in enumerate(_require_cylinders(mechanism)):
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)

@@ -179,7 +179,7 @@ def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **o
 
 
 def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Problem, **options: Any) -> PanelFigure:
-    """Return speed, torque and slider speed over the crank angle, for the law and for constant speed."""
+    """Return plots of speed, torque and slider speed against crank angle, for the law and for constant speed."""
     law = optimum.law
     theta = sampled_turn(law.turn.low)
     now = speed_profile_curves(law.turn.machine, linkage, theta, law.motion)

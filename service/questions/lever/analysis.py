@@ -243,7 +243,7 @@ def curves(
 def figure(
     mechanism: Mechanism, linkage: Linkage, *, units: System = "metric", request: LeverRequest, **_: Any
 ) -> Figure:
-    """Return force, length and transmission angle over the lever angle, below the lever at both ends."""
+    """Return plots of force, length and transmission angle against lever angle, below the lever at both ends."""
     from ...figures.lever import lever_figure
 
     return lever_figure(request.machine, request.swing, request.cylinder, units)

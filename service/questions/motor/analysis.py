@@ -60,7 +60,8 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     """Return peak, RMS and mean torque, peak and mean power, and the range of the reflected inertia of one linkage.
 
     RMS torque and mean power are over time, mean torque and mean inertia over the crank angle. Torque and power are
-    None if friction locks the linkage; power is also None without a speed. For several cylinders the values are totals.
+    None if friction locks the linkage; power is also None if there is no speed. For several cylinders the values are
+    totals.
     """
     design = lengths_row(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)

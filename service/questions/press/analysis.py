@@ -65,9 +65,9 @@ def numbers(
     """Return force, speed and work before the dead centre, and the dwell, ready for JSON.
 
     touch_distance, dwell_distance: distances to the dead centre, m; None for those of the machine. rated_torque: rated
-    torque, N m; None for the peak torque of the design. None: speeds and times without a constant crank speed, and
-    dwell values without a dwell distance. Raises `InputError` without a touch distance or a torque, and for distances
-    beyond the stroke.
+    torque, N m; None for the peak torque of the design. Speeds and times are None if the crank speed is not constant,
+    dwell values if there is no dwell distance. Raises `InputError` if the touch distance or the torque is missing, or
+    if a distance exceeds the stroke.
     """
     touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS

@@ -40,7 +40,7 @@ class Delivery(Record):
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     """Return flow, ripple and pressure torque of all cylinders together, ready for JSON.
 
-    flow_ripple: None for gas, and with a speed profile. Raises `InputError` without a pump or compressor, or without a
+    flow_ripple: None for gas, and with a speed profile. Raises `InputError` if there is no pump or compressor, or no
     speed.
     """
     reason = FLOW.undefined_because([mechanism])

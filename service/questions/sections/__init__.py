@@ -1,4 +1,4 @@
-"""Minimum-mass sections of crank and rod: numbers and text."""
+"""Minimum-mass sections of the crank and the rod: numbers and text."""
 
 from ..design_question import DesignQuestion, QuestionCommand
 

@@ -1,4 +1,4 @@
-"""Widths and depths of crank and rod for minimum mass of one design: numbers and text."""
+"""Widths and depths of the crank and the rod for minimum mass of one design: numbers and text."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _ACTIVE = 1e-3  # percent of mass per percent of a limit, from which a remark is
 def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, **_: Any) -> Sections:
     """Return the minimum-mass sections, ready for JSON; the pins are those of the design.
 
-    Raises `InputError` without limits, and the errors of `size_sections`.
+    Raises `InputError` if the job has no limits, and the errors of `size_sections`.
     """
     if problem is None or problem.sections is None or mechanism.strength is None:
         raise InputError(

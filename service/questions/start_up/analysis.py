@@ -169,7 +169,7 @@ def blocks(numbers: Start) -> list[Block]:
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, **options: Any) -> PanelFigure:
-    """Return speed and torque over time, and over a cycle of steady running if there is any.
+    """Return plots of speed and torque against time, and over a cycle of steady running if there is any.
 
     options: those of `simulate`. Raises `InputError` if the mechanism has no drive.
     """

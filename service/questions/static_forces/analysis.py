@@ -92,7 +92,7 @@ def _slider_loads(mechanism: Mechanism) -> tuple[Load, ...]:
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:
     """Return peaks over the continuous cycle, and the forces every 30 deg.
 
-    load: load on the slider, N outward; None for the loads of the mechanism or, without any, 1 N towards the crank.
+    load: load on the slider, N outward; None for the loads of the mechanism or, if it has none, 1 N towards the crank.
     """
     machine = massless(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)

@@ -1,4 +1,4 @@
-"""Strength of crank and rod: numbers, text and figure."""
+"""Strength of the crank and the rod: numbers, text and figure."""
 
 from ..design_question import DesignQuestion
 

@@ -1,4 +1,4 @@
-"""Strength of crank and rod of one design: stresses, safety factors, pins, wear, location of the maximum stress."""
+"""Strength of one design's crank and rod: stresses, safety factors, pins, wear, location of the maximum stress."""
 
 from __future__ import annotations
 

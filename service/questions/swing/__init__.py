@@ -45,7 +45,7 @@ QUESTION = DesignQuestion(
     The linkage need not rotate fully, but it must close over the whole swing and, if the slider drives, must not pass
     a dead point. Drive forces are positive along +x, drive torques counter-clockwise; peaks are found over the
     continuous crank angle. Loads on the slider come from the job; its crank speed is ignored. Inputs that are not
-    given come from [motion] in the job; without it the crank drives slowly.""",
+    given are taken from [motion] in the job; if it has none, the crank drives slowly.""",
         endpoint="analyse_swing",
         job="Job file that supplies masses, loads, friction, tolerances and the swing in [motion]; with --design, a "
         "run.",

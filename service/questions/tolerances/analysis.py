@@ -99,7 +99,7 @@ def numbers(
     limit: position tolerance for the yield, m; None gives the yields at the root-sum-square and at the worst case.
     Contributions are fractions of the simulated variance, at the crank angle of the first-order worst case. The exact
     worst case is None if a linkage within the tolerances does not rotate fully. The histogram counts machines by
-    maximum error, in equal bins from 0. Raises `InputError` without tolerances.
+    maximum error, in equal bins from 0. Raises `InputError` if there are no tolerances.
     """
     source_limits = limits_of_sources(mechanism, linkage)
     if not np.any(source_limits):
@@ -165,7 +165,7 @@ def numbers(
 
 
 def _error_histogram(greatest: np.ndarray) -> Histogram | None:
-    """Return bin edges, mm, and counts of the machines that rotate fully; None without any."""
+    """Return bin edges, mm, and counts of the machines that rotate fully; None if there are none."""
     turning = 1e3 * greatest[np.isfinite(greatest)]
     if not len(turning) or not turning.max() > 0.0:
         return None

@@ -72,7 +72,7 @@ def _require_profile(mechanism: Mechanism) -> None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> UnevenSpeed:
     """Return speeds, period and peaks with the profile, and the peaks at constant speed.
 
-    Raises `InputError` without a profile.
+    Raises `InputError` if the machine has no profile.
     """
     _require_profile(mechanism)
     profile, even = (

@@ -114,7 +114,7 @@ export function speed(form) {
       [...TABLE, "speed", "direction"],
       "direction",
       [way],
-      "At constant speed, direction and sign of the offset decide which stroke is slow: with counter-clockwise rotation and a positive offset it is the inward stroke.",
+      "At constant speed, the direction of rotation and the sign of the offset determine which stroke is slow: with counter-clockwise rotation and a positive offset, it is the inward stroke.",
       { register: false },
     ),
   ];
