@@ -217,12 +217,12 @@ import os, pathlib, signal, sys, threading, time
 import numpy as np
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.worker import Worker
-from slidercrank.service.workers.heartbeat import leave
+from slidercrank.service.workers.heartbeat import end_process_tree
 
 def leave_in_the_middle():
     while not pathlib.Path(sys.argv[1], "begun").exists():
         time.sleep(0.01)
-    leave(3)
+    end_process_tree(3)
 
 signal.signal(signal.SIGINT, signal.default_int_handler)  # these tests may run where it is ignored
 os.environ["GUARDED"] = sys.argv[1]
