@@ -152,8 +152,8 @@ def test_no_design_of_a_front_is_beaten_by_random_designs() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30))
-def test_no_design_of_30_fronts_is_beaten_by_50_000_designs(seed: int) -> None:
+@pytest.mark.parametrize("seed", range(2))  # more of them take half a minute each
+def test_no_design_of_a_front_is_beaten_by_50_000_designs(seed: int) -> None:
     random = np.random.default_rng(100 + seed)
     assert_unbeaten(random_job(random), random, 50_000)
 
