@@ -155,7 +155,7 @@ def test_forgotten_gravity_is_told(gravity: str | None, told: bool, tmp_path: Pa
 
 
 @pytest.mark.parametrize(
-    ("module", "said"), [(None, "no module mine is there"), ("x = 1", "has no jerk"), ("def jerk(d): ...", None)]
+    ("module", "said"), [(None, "no module mine was found"), ("x = 1", "has no jerk"), ("def jerk(d): ...", None)]
 )
 def test_a_missing_function_is_found_without_running_anything(
     module: str | None, said: str | None, tmp_path: Path, command: Command
