@@ -88,7 +88,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
 
 
 def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) close over the whole swing without a dead point, with a cylinder that can exist.
+    """Return which designs (n, 3 + k) make the whole swing without a dead point, with a possible cylinder.
 
     Where they vary, the bore must exceed the piston rod, and the closed length the stroke, in each design.
     """

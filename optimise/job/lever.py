@@ -10,7 +10,7 @@ from ...model.machine.lever_cylinder import Cylinder
 from ...model.swing.swing import Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart
-from .values import Checked, Clearance, Force, Mass, PositiveLength, Pressure, optional
+from .values import Checked, Clearance, Mass, NonNegativeForce, PositiveLength, Pressure, optional
 
 TURNING_CYLINDER = "turning cylinder"
 
@@ -25,7 +25,7 @@ class CylinderPart(Checked[Cylinder]):
     bore: PositiveLength | None = optional("bore, for pressures and flow", "40 mm")
     rod: PositiveLength | None = optional("diameter of the piston rod, for the pulling force and buckling", "25 mm")
     supply_pressure: Pressure | None = optional("greatest pressure above that of the other side", "160 bar")
-    seal_friction: Force = optional("force of the seal against the motion", "50 N", default=0.0)
+    seal_friction: NonNegativeForce = optional("force of the seal against the motion", "50 N", default=0.0)
     barrel_mass: Mass = optional("of the barrel, a uniform bar as long as the closed cylinder", "8 kg", default=0.0)
     piston_rod_mass: Mass = optional("of the piston rod, a uniform bar as long as the barrel", "3 kg", default=0.0)
     length_tolerance: Clearance = optional("of the length of the cylinder", "1 mm", default=0.0)

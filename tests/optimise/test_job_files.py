@@ -103,7 +103,7 @@ def test_a_file_of_100_megabytes_is_refused_by_its_size(tmp_path: Path) -> None:
     file = tmp_path / "large.toml"
     with file.open("wb") as stream:
         stream.truncate(100_000_000)  # a hole: nothing is written to disk
-    assert "at most 1 MB; got 100.0 MB" in refusal(file)
+    assert "at most 1 MB in size; got 100.0 MB" in refusal(file)
 
 
 def test_a_path_that_no_file_can_have_is_refused() -> None:

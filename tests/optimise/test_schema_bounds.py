@@ -36,6 +36,7 @@ GIVEN: dict[str, Node] = {
 """What a table needs besides the examples of its required keys."""
 CYLINDERS = ("Compressor", "Engine", "PressureAngle", "PressurePosition")
 TOGETHER = {
+    *(("CylinderPart", key) for key in ("closed_length", "stroke", "bore", "rod", "supply_pressure")),
     ("ClearancePart", "radial_clearance"),
     ("ClearancePart", "journal_radius"),
     *(("CompressorLoad", key) for key in ("suction", "discharge", "clearance", "clearance_volume")),

@@ -23,7 +23,9 @@ def test_every_request_is_listed_and_can_be_tried(open_page: Open, store: Store)
     service = page.url.split("/?")[0].rstrip("/#")
     page.goto(f"{service}/?token={TOKEN}")
     page.goto(service + PLACE)
-    described = httpx.get(f"{service}/api/v1/openapi.json", headers={"Authorization": f"Bearer {TOKEN}"}).json()
+    described = httpx.get(
+        f"{service}/api/v1/openapi.json", headers={"Authorization": f"Bearer {TOKEN}"}, timeout=60.0
+    ).json()
     operations = [method for path in described["paths"].values() for method in path]
     expect(page.locator(".opblock")).to_have_count(len(operations))
     block = page.locator(".opblock", has_text=re.compile(r"^GET\s*/api/v1/quantities"))
