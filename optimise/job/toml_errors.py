@@ -42,7 +42,7 @@ _PASSED = rf"({_TEXT}|#.*)|"
 """Complete texts and comments, which an edit leaves unchanged."""
 _COMMENT = re.compile(rf"{_TEXT}|(\s*#.*)")
 _SEPARATORS = r"=,;:\[\]{}()#\"'"
-_FORMULA = r"[^\"'#=<>]*[^\W\d][^\"'#=<>]*"
+_FORMULA = r"(?=[^\"'#=<>]{0,200}[^\W\d])[^\"'#=<>]{1,200}"
 _VALUE = re.compile(
     rf"{_PASSED}(?<=[=\[,;{{])(\s*)([+-]?\d+,\d+(?![\d,])[^{_SEPARATORS}]*?|[^\s{_SEPARATORS}][^{_SEPARATORS}]*?)"
     r"(?=\s*(?:[,;\]})]|//|--|/\*|$))"
