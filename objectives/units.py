@@ -314,8 +314,7 @@ def closest(word: str, words: Iterable[str]) -> str | None:
     """Return the word that a misspelt one probably means; None if none is close."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     typed = word.casefold()[:_LONGEST]
-    ratios = {folded: difflib.SequenceMatcher(None, typed, folded).ratio() for folded in by_fold}
-    near = [folded for folded, ratio in ratios.items() if ratio >= max(0.6, *ratios.values())]
+    near = difflib.get_close_matches(typed, by_fold, n=1, cutoff=0.6)
     near = near or sorted((folded for folded in by_fold if typed in folded.split("_")), key=len)
     near = near or [folded for folded in by_fold if len(typed) > 2 and folded.startswith(typed)]
     return by_fold[near[0]] if near else None
