@@ -33,7 +33,7 @@ _PATH = rf"{_WORD}(?:\s*\.\s*{_WORD})*"
 _KEY = re.compile(rf"\s*({_PATH})\s*[=:]")
 _BARE = re.compile(rf"\s*{_PATH}\s*[=:]?\s*")
 _HEADER = re.compile(rf"\s*(\[\[?)\s*({_PATH})\s*\]\]?\s*(?:#.*)?")
-_NAMES = re.compile(r"[\s(<{]*(\[*)\s*([^\W\d][\w-]*(?:[\s.,/]*[^\W\d][\w-]*)*)\s*(\]*)[\s)>}]*[=:;,]?\s*")
+_NAMES = re.compile(r"[\s(<{]*(\[*)\s*([^\W\d][\w-]*(?:[\s.,/]+[^\W\d][\w-]*)*)\s*(\]*)[\s)>}]*[=:;,]?\s*")
 """A heading in any spelling."""
 _INNER = re.compile(r"([\w-]+)\s*=\s*\[?\s*$")
 _TEXT = r"""(?:"(?:[^"\\]|\\.)*"|'[^']*')"""

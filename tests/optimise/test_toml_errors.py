@@ -280,6 +280,12 @@ def test_a_mistake_is_told_with_key_rule_line_and_remedy(text: str, message: str
     assert refusal(text) == message
 
 
+@pytest.mark.parametrize("line", ["word " * 200 + "!", "[" + "word " * 200 + "=!", "word" * 300 + "!"])
+def test_a_line_of_many_words_is_answered(line: str) -> None:
+    """An expression that may split a word anywhere would take years for one of twenty words."""
+    assert refusal(f'name = "x"\n{line}\n').startswith("line 2")
+
+
 def odd(line: str) -> str:
     return re.sub(r'"([^"]*)"', r"“\1”", line)
 
