@@ -83,6 +83,8 @@ def store_file_exists(file: Path) -> bool:
     Raises `StoreError` if it cannot be such a file, or was deleted or emptied while its write-ahead log remains. SQLite
     would delete the log too, with the latest jobs in it.
     """
+    log = Path(f"{file}-wal")
+    logged = log.exists()  # before the size: SQLite writes a new file first, then creates its log
     try:
         size = file.stat().st_size
     except FileNotFoundError:
@@ -95,12 +97,10 @@ def store_file_exists(file: Path) -> bool:
     if file.exists() and not file.is_file():
         kind = "a folder" if file.is_dir() else "no regular file"
         raise StoreError(f"a store must be a file; {path_text(file)} is {kind}; name a file")
-    log = Path(f"{file}-wal")
-    if log.exists() and not size:
+    if logged and not size:
         raise StoreError(
             f"a write-ahead log must have its store beside it; {path_text(log)} belongs to one that was deleted or "
-            "truncated; "
-            f"put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
+            f"truncated; put {path_text(file)} back, restore a backup, see docs/service.md, or move the log away"
         )
     return file.is_file()
 
@@ -114,7 +114,6 @@ def has_content(file: Path) -> bool:
     if exists and not file.stat().st_size:
         raise StoreError(
             f"a store to inspect must have tables; {path_text(file)} is an empty file; submit a job to it, or restore "
-            "a "
-            "backup if it had jobs, see docs/service.md"
+            "a backup if it had jobs, see docs/service.md"
         )
     return exists

@@ -24,7 +24,7 @@ from sqlalchemy import Connection, create_engine, text
 
 from slidercrank.model.errors import InputError, LeaseLost, MissingExtra, StoreError
 from slidercrank.service.store import Artefact, Store
-from slidercrank.service.store.address import without_secrets
+from slidercrank.service.store.address import store_file_exists, without_secrets
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
@@ -66,6 +66,29 @@ def test_many_may_open_a_new_store_at_the_same_moment(address: str) -> None:
 
     with ThreadPoolExecutor(6) as pool:
         assert sorted(pool.map(open_and_add, range(6))) == [1, 2, 3, 4, 5, 6]
+
+
+@pytest.mark.parametrize("step", range(4))
+def test_another_may_create_the_store_at_every_step_of_the_check(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: int
+) -> None:
+    file = tmp_path / "store.db"
+    stat = Path.stat
+    calls = 0
+    others: list[Store] = []
+
+    def stat_after_another_created_it(path: Path, **options: bool) -> os.stat_result:
+        nonlocal calls
+        calls += 1
+        if calls == step + 1:
+            with monkeypatch.context() as undisturbed:
+                undisturbed.setattr(Path, "stat", stat)
+                others.append(Store(file))
+        return stat(path, **options)
+
+    monkeypatch.setattr(Path, "stat", stat_after_another_created_it)
+    assert store_file_exists(file)
+    others[0].close()
 
 
 def test_commits_of_sqlite_are_on_the_disk_and_writers_take_turns_from_the_beginning(tmp_path: Path) -> None:
