@@ -24,6 +24,7 @@ from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks, require_full_rotation
+from ..linkage.linkage import Linkage
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
 from ..machine.members import cylinder_count
@@ -183,6 +184,18 @@ def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
     kept = {name: numbers[name] for name in _Numbers._fields if name in numbers}
     motion = stepped(Raw.SPEED, mechanism.speed), stepped(Raw.ACCELERATION, mechanism.acceleration)
     return _Numbers(*motion, **kept, resistance=resistance)
+
+
+def motor_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array, curve: MotorCurve) -> Array:
+    """Return a curve of the motor for one fully rotating linkage at crank angles (n,), rad, in the sense of rotation.
+
+    NaN where friction locks the linkage. Raises `InputError` without a drive.
+    """
+    shaft = MotorShaft(mechanism, curve, np.array([[linkage.crank, linkage.rod, linkage.offset]]))
+    if not shaft.drives[0]:
+        return np.full(len(crank_angle), np.nan)
+    row = np.zeros(len(crank_angle), dtype=np.int64)
+    return shaft.evaluate(row, crank_angle, crank_angle[:, None])[0][:, 0, 0]
 
 
 @memoise_by_batch

@@ -18,9 +18,11 @@ from ...model.linkage.linkage_values import direction_angle, numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.members import cylinder_count
 from ...model.machine.two_turns import cycle_turns
+from ...model.signals.motor_curves import MotorCurve, motor_curve
 from ..kinds import (
     ACCELERATION,
     ANGLE,
+    ANGULAR_SPEED,
     FORCE,
     JERK,
     LENGTH,
@@ -40,7 +42,7 @@ if TYPE_CHECKING:
 LEAST, MOST = 4, 100_000
 _RATES = SPEED, ACCELERATION, JERK
 _RATES_PER_ANGLE = PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE
-KINDS = (ANGLE, LENGTH, *_RATES, TORQUE, POWER, FORCE)
+KINDS = (ANGLE, ANGULAR_SPEED, LENGTH, *_RATES, TORQUE, POWER, FORCE)
 """Kinds of curves for a machine with a crank speed."""
 _FORCES = ("pivot_x", "pivot_y", "crank_pin_x", "crank_pin_y", "slider_pin_x", "slider_pin_y")
 
@@ -70,8 +72,9 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
     (slider pin), and from the guide on the slider along +y. Torque and power refer to the drive. With several
     cylinders, torque and power are over the shaft angle; all other curves belong to one cylinder, over its own crank
     angle. Without a crank speed, velocity, acceleration and jerk are for one radian per second, that is, derivatives
-    with respect to the crank angle, and power is NaN. Position errors are NaN without tolerances. For values at load
-    jumps and for errors raised, see `model.cycle.cycle`.
+    with respect to the crank angle, and power is NaN. Position errors are NaN without tolerances. A drive adds the
+    motor's torque, speed and power, positive in the direction of rotation. For values at load jumps and for errors
+    raised, see `model.cycle.cycle`.
     """
     acting = cycle(mechanism, linkage, crank_angle)
     moving = acting if mechanism.speed else cycle(replace(mechanism, speed=1.0), linkage, crank_angle)
@@ -112,6 +115,21 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
         Curve("guide", "guide force", acting.guide, FORCE),
         Curve("position_error", "position error, worst case", acting.position_error, LENGTH),
         Curve("position_error_rss", "position error, root-sum-square", acting.position_error_rss, LENGTH),
+        *(_motor_curves(mechanism, linkage, theta) if mechanism.drive else ()),
+    ]
+
+
+def _motor_curves(mechanism: Mechanism, linkage: Linkage, theta: Array) -> list[Curve]:
+    """Return the curves upstream of the gear; speed and power need a crank speed."""
+    assert mechanism.drive is not None
+    torque = Curve("motor_torque", "motor torque", motor_curve(mechanism, linkage, theta, MotorCurve.TORQUE), TORQUE)
+    if not mechanism.speed:
+        return [torque]
+    speed = mechanism.drive.gear_ratio * np.abs(crank_speed_and_acceleration(mechanism, theta)[0])
+    return [
+        torque,
+        Curve("motor_speed", "motor speed", speed, ANGULAR_SPEED),
+        Curve("motor_power", "motor power", torque.values * speed, POWER),
     ]
 
 

@@ -13,6 +13,7 @@ import pytest
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive
+from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
@@ -21,6 +22,7 @@ from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.machine.varying import Varying
 from slidercrank.model.transient.forward import simulate
 from slidercrank.objectives.registry import QUANTITIES
+from slidercrank.objectives.tables.cycle_curves import cycle_curves
 from slidercrank.optimise.job import parse_job
 from tests.model.cases import Array, random_designs
 from tests.model.quadrature import integrals
@@ -123,6 +125,27 @@ def test_the_motor_is_that_of_an_independent_model_with_rotor_and_lossy_gear(see
     assert value("motor_peak_torque", machine, design) == pytest.approx(made.peak(power=False), rel=1e-8)
     assert value("motor_power", machine, design) == pytest.approx(made.peak(power=True), rel=1e-8)
     assert value("thermal_use", machine, design) == pytest.approx(rms / 5.0, rel=1e-8)
+    theta = np.sort(np.random.default_rng(seed).uniform(0.0, made.period, 200))
+    curves = {
+        curve.field: curve.values
+        for curve in cycle_curves(machine, Linkage(*case.design, branch=machine.branch), theta)
+    }
+    torque, speed = made.torque_and_speed(theta)
+    assert curves["motor_torque_Nm"] == pytest.approx(torque, rel=1e-9, abs=1e-9 * float(np.abs(torque).max()))
+    assert curves["motor_speed_rpm"] == pytest.approx(speed, rel=1e-12)
+    assert curves["motor_power_W"] == pytest.approx(
+        torque * speed, rel=1e-9, abs=1e-9 * float(np.abs(torque * speed).max())
+    )
+
+
+def test_curves_of_a_motor_need_a_speed_for_power_and_a_moving_linkage_for_torque() -> None:
+    linkage, load = Linkage(0.05, 0.2, 0.02), CrankTorque(torque=-20.0)
+    resting = cycle_curves(Mechanism(loads=(load,), drive=LOSSY), linkage, [1.0, 2.0])
+    assert [curve.name for curve in resting if curve.name.startswith("motor")] == ["motor_torque"]
+    assert resting[-1].values == pytest.approx([20.0 / 7.0 / 0.9] * 2, rel=1e-12)
+    locked = Mechanism(speed=10.0, loads=(load,), drive=LOSSY, friction=Friction(guide=9.0))
+    assert all(np.isnan(curve.values).all() for curve in cycle_curves(locked, linkage, [1.0])[-1:])
+    assert not [curve for curve in cycle_curves(Mechanism(), linkage, [1.0]) if curve.name.startswith("motor")]
 
 
 def test_a_steady_torque_on_the_crank_is_that_of_the_gear_by_hand() -> None:

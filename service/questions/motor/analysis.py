@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from ....model.arrays import Array
 from ....model.cycle.crank_speed import crank_speed_and_acceleration
 from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.multi_cylinder import multi_cylinder_curves
@@ -21,11 +22,12 @@ from ....model.machine.members import cylinder_machines
 from ....model.machine.two_turns import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
 from ....model.signals.first_greatest import angle_in_cycle, first_greatest
+from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE
 from ....objectives.machine_needs import SPEED
-from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none
 from ..peaks import lengths_row, peak
@@ -151,5 +153,12 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
         crank_angle_panel("drive torque", Line("torque", degrees, torque), kind=TORQUE, level=levels[0]),
         crank_angle_panel("power", power, kind=POWER, level=levels[1]),
         crank_angle_panel("reflected inertia", inertia, kind=INERTIA, level=("mean", usual)),
+        *([_motor_torque_panel(mechanism, linkage, theta)] if mechanism.drive and not locks else []),
     )
     return PanelFigure("Motor torque and power over the cycle", "", panels, width=6.4, height=2.25, stacked=True)
+
+
+def _motor_torque_panel(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Panel:
+    line = Line("motor torque", np.degrees(theta), motor_curve(mechanism, linkage, theta, MotorCurve.TORQUE))
+    rms = float(motor_averages(mechanism, lengths_row(linkage), MotorCurve.TORQUE, False).rms[0])
+    return crank_angle_panel("motor torque", line, kind=TORQUE, level=("RMS over time", rms))

@@ -15,6 +15,8 @@ const ORDER = [
   "drive_",
   "power_W",
   "torque",
+  "motor_torque",
+  "motor_power",
   "transmission_angle",
   "load_N",
   "pivot_N",
