@@ -39,11 +39,25 @@ class BodyModel(BaseModel):
     side_mm: float = Field(examples=[420.0])
 
 
+class LeverModel(BaseModel):
+    """Lever moved by a cylinder: direction from its pivot to the cylinder's, angle from the lever to its pin.
+
+    start_deg, end_deg: lever angles at both ends of the swing. barrel_mm: length of the barrel, schematic.
+    """
+
+    frame_angle_deg: float = Field(examples=[-60.0])
+    pin_angle_deg: float = Field(examples=[0.0])
+    start_deg: float = Field(examples=[-20.0])
+    end_deg: float = Field(examples=[50.0])
+    barrel_mm: float = Field(examples=[620.0])
+
+
 class OutlinesModel(BaseModel):
     """Sizes of the drawn parts, mm; bore, clearance and mass centre are true to scale, the rest is schematic.
 
     extent_mm: left, bottom, right and top of all parts over the cycle. slider_height_mm: the bore if the slider is a
-    piston. actuator, body: null if the machine has none.
+    piston. actuator, body: null if the machine has none. lever: null for a crank with rod and slider; a lever has no
+    slider, and its body lies along and across the line to its pin.
     """
 
     extent_mm: tuple[float, float, float, float] = Field(examples=[(-43.0, -40.0, 150.0, 52.0)])
@@ -52,6 +66,7 @@ class OutlinesModel(BaseModel):
     cylinders: list[BarrelModel]
     actuator: ActuatorModel | None
     body: BodyModel | None
+    lever: LeverModel | None
 
 
 class CycleModel(BaseModel):
@@ -61,8 +76,8 @@ class CycleModel(BaseModel):
     undetermined. Samples are at even crank angles from 0 deg; for a swing at even times, half of them forward and half
     return. turns: crank revolutions; 0 for a swing, which has no dead centres. seconds: cycle duration; null without a
     speed and for a quasi-static swing. slider_ends_mm: slider positions at the inner and outer dead centres, or at the
-    start and end of a swing. slow_stroke: outward, inward or equal; differs if cylinders differ. outlines: outlines of
-    the moving parts.
+    start and end of a swing; for a lever, lengths of its cylinder. slow_stroke: outward, inward or equal; differs if
+    cylinders differ. outlines: outlines of the moving parts.
     """
 
     turns: int = Field(examples=[1])
@@ -103,7 +118,7 @@ def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
 def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> OutlinesModel:
     """Return the outlines of a design as its drawings show them."""
     drawn = outlines(mechanism, linkage, swing)
-    actuator, body = drawn.actuator, drawn.body
+    actuator, body, lever = drawn.actuator, drawn.body, drawn.lever
     return OutlinesModel(
         extent_mm=drawn.extent,
         slider_length_mm=drawn.slider[0],
@@ -115,4 +130,13 @@ def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
         if actuator is None
         else ActuatorModel(face_mm=actuator.near_end, foot_mm=actuator.foot, width_mm=actuator.width),
         body=None if body is None else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=drawn.body_side),
+        lever=None
+        if lever is None
+        else LeverModel(
+            frame_angle_deg=lever.frame_angle,
+            pin_angle_deg=lever.pin_angle,
+            start_deg=lever.start,
+            end_deg=lever.end,
+            barrel_mm=lever.barrel,
+        ),
     )

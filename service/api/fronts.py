@@ -15,6 +15,7 @@ from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import to_json
 
 from ...model.errors import InfeasibleError, InputError
+from ...optimise.job.raw_tables import table_in
 from ..designs.choice_options import chosen_row
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.selection import chosen_rows, no_match_message, result_part
@@ -123,6 +124,9 @@ class FrontModel(BaseModel):
         "continuous ones",
         examples=[{"how": "exact", "combinations": 9720, "judged": 9720, "values": {"crank": "multiples of 0.5 mm"}}],
     )
+    extent_mm: tuple[float, float, float, float] | None = Field(
+        None, description="left, bottom, right and top of all levers over their swings; null for other mechanisms"
+    )
 
 
 class OfDesign(BaseModel):
@@ -188,7 +192,9 @@ def show_front(number: JobNumber, store: StoreDep, fronts: FrontsDep) -> FrontMo
     record = json_ready(store.result_record(number))
     columns = column_models(all_columns(record.pop("columns")))
     sentences = front_violations_in_words(fronts.get(number).result) if record.get("violated") else []
-    return FrontModel(**record, job=number, columns=columns, violations=sentences)
+    is_lever = table_in(store.tables(number), "mechanism").get("inversion") is not None
+    extent = fronts.get(number).extent_of_levers if is_lever and columns else None
+    return FrontModel(**record, job=number, columns=columns, violations=sentences, extent_mm=extent)
 
 
 @router.get("/jobs/{number}/pick")

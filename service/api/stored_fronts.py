@@ -34,6 +34,7 @@ from .settings import StoreDep, state_dependency
 if TYPE_CHECKING:
     from ...optimise.decisions.wish import Wishes
     from ...optimise.front.front import ParetoFront
+    from ..drawings.lever_parts import Extent
 
 MOST_DESIGNS = 40_000
 """Maximum number of cached designs, over all fronts; 140 MB."""
@@ -69,6 +70,13 @@ class StoredFront:
     def front(self) -> ParetoFront:
         """Front data in the form that figures need."""
         return front_of(self.problem, self.result)
+
+    @cached_property
+    def extent_of_levers(self) -> Extent | None:
+        """Left, bottom, right and top of all levers over their swings, mm; None for other mechanisms."""
+        from ..drawings.lever_parts import extent_of_front
+
+        return extent_of_front(self.front)
 
     @cached_property
     def wish_starts(self) -> Wishes:

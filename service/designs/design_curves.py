@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.machine.two_turns import cycle_turns
 from ...model.swing.swing import require_swing, swing_between_crank_angles
-from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
-from ...model.turning_cylinder.machine import lever_machine, lever_swing
+from ...model.turning_cylinder.forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
+from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import (
     POINTS,
@@ -116,6 +117,8 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
         columns = cycle_table(design.mechanism, design.linkage, angles=count, turns=turns)
         at_inner, at_outer = (1e3 * float(x) for x in design.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
+    if design.mechanism.lever is not None:
+        return _lever_design_curves(design, design.part.motion, require_even_point_count(count, MOST))
     linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
     swing = swing_between_crank_angles(design.mechanism, linkage, design.part.motion)
     ways = curves_at_even_times(design.mechanism, linkage, swing, require_even_point_count(count, MOST))
@@ -149,23 +152,53 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
     return rows
 
 
+def _lever_design_curves(design: StoredDesign, motion: Swing, count: int) -> DesignCurves:
+    """Return the curves of a lever at even times, out and back: the same places and forces, but opposite speeds."""
+    linkage, swing = lever_linkage(design.mechanism, design.linkage, motion), lever_swing(design.mechanism, motion)
+    machine, _ = lever_machine(design.mechanism, linkage, motion)
+    share = np.arange(count, dtype=np.float64) * (2.0 / count)
+    columns = lever_columns(lever_curves(machine, swing, np.minimum(share, 2.0 - share)))
+    way = np.where(share <= 1.0, 1.0, -1.0)
+    start, end = (1e3 * float(machine.sizes.length(at)) for at in (swing.start, swing.end))
+    return DesignCurves(
+        0,
+        None if swing.duration is None else 2.0 * swing.duration,
+        None,
+        (start, end),
+        [
+            CurveColumn(key, title, unit, (way * values if key == "cylinder_speed_m_s" else values).tolist())
+            for key, title, unit, values in columns
+            if swing.duration is not None or key != "cylinder_speed_m_s"
+        ],
+    )
+
+
+def lever_columns(curves: LeverCurves) -> list[tuple[str, str, str, Array]]:
+    """Return key, title, unit and metric values of the curves of a lever."""
+    columns = [
+        ("lever_angle_deg", "lever angle", "deg", np.degrees(curves.lever_angle)),
+        ("length_mm", "cylinder length", "mm", 1e3 * curves.length),
+        ("cylinder_angle_deg", "cylinder angle", "deg", np.degrees(curves.cylinder_angle)),
+        ("cylinder_speed_m_s", "cylinder speed", "m/s", curves.speed),
+        ("push_N", "push without seal friction", "N", curves.push),
+        ("transmission_angle_deg", "angle between cylinder and lever", "deg", np.degrees(curves.transmission)),
+    ]
+    forces = {
+        "pin": ("lever pin force", curves.pin),
+        "pivot": ("lever pivot force", curves.pivot),
+        "cylinder_pivot": ("cylinder pivot force", curves.cylinder_pivot),
+    }
+    for name, (title, force) in forces.items():
+        components = zip("xy", (force.real, force.imag), strict=True)
+        columns += [(f"{name}_{axis}_N", f"{title}, {axis}", "N", part) for axis, part in components]
+    return columns
+
+
 def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]:
     """Return a row for each point of the way out of a lever, metric, at even times."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
-    time = {} if swing.duration is None else {"time_s": swing.duration * found.share}
-    columns = {
-        **time,
-        "lever_angle_deg": np.degrees(found.lever_angle),
-        "length_mm": 1e3 * found.length,
-        "cylinder_angle_deg": np.degrees(found.cylinder_angle),
-        "cylinder_speed_m_s": found.speed,
-        "push_N": found.push,
-        "transmission_angle_deg": np.degrees(found.transmission),
-    }
-    for name, force in (("pin", found.pin), ("pivot", found.pivot), ("cylinder_pivot", found.cylinder_pivot)):
-        columns |= {f"{name}_x_N": force.real, f"{name}_y_N": force.imag}
-    lists = {key: values.tolist() for key, values in columns.items()}
-    return [{key: values[i] for key, values in lists.items()} for i in range(POINTS)]
+    time = {} if swing.duration is None else {"time_s": (swing.duration * found.share).tolist()}
+    return rows_of(time | {key: values.tolist() for key, _, _, values in lever_columns(found)})
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
+from ...model.turning_cylinder.batch import lever_batch
+from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, numbers_of_machine
+from ...model.turning_cylinder.states import LeverNumbers
 from . import layers as on
 from .linkage_shapes import bar, pivot_bearing
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
+if TYPE_CHECKING:
+    from ...optimise.front.front import ParetoFront
+
+Extent = tuple[float, float, float, float]
 _MM = 1e3
 _LEVER, _BARREL, _ROD, _PIN = 0.06, 0.075, 0.03, 0.014  # fraction of the greater of crank and frame
 _NECK = 0.93  # length of the barrel as a fraction of the shortest length
@@ -28,7 +35,7 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
         shapes += _links((layer,) * 3, machine, swing, end)
     shapes += _links((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
     if machine.lever.mass:
-        centre = _centre(machine) * np.exp(1j * angle)
+        centre = centre_of_lever(machine) * np.exp(1j * angle)
         ends = (centre - 0.04 * size * direction / _MM for direction in (1.0, -1.0, 1j, -1j))
         left, right, low, high = (_point(end) for end in ends)
         shapes += [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point(centre), 0.025 * size)]
@@ -36,16 +43,37 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
     return [*shapes, *(Circle(on.PINS, _point(pin), _PIN * size) for pin in pins)]
 
 
-def lever_extent(machine: LeverMachine, swing: LeverSwing) -> tuple[float, float, float, float]:
+def lever_extent(machine: LeverMachine, swing: LeverSwing) -> Extent:
     """Return left, bottom, right and top of the lever and its cylinder over the swing, widths included, mm."""
-    angles = np.linspace(swing.start, swing.end, 91)
-    places = [np.zeros(1, np.complex128), np.array([_pivot(machine)])]
-    places.append(machine.sizes.crank * np.exp(1j * (angles + machine.sizes.pin_angle)))
-    if machine.lever.mass:
-        places.append(_centre(machine) * np.exp(1j * angles))
-    every, edge = _MM * np.concatenate(places), 0.12 * _size(machine)
+    return extent_of_levers(LeverNumbers._make(np.atleast_1d(number) for number in numbers_of_machine(machine, swing)))
+
+
+def extent_of_front(front: ParetoFront) -> Extent | None:
+    """Return left, bottom, right and top of all levers of a front over their swings, mm; None for other mechanisms."""
+    found, variants = [], np.array(front.variants or [0] * len(front))
+    for variant in dict.fromkeys(variants.tolist()):
+        part, designs = front.problem.part(variant), front.dimensions[variants == variant]
+        if part.mechanism.lever is None or part.motion is None:
+            return None
+        found.append(extent_of_levers(lever_batch(part.mechanism, designs, part.motion, gradients=False)[0].plain))
+    if not found:
+        return None
+    left, bottom, right, top = zip(*found, strict=True)
+    return min(left), min(bottom), max(right), max(top)
+
+
+def extent_of_levers(c: LeverNumbers) -> Extent:
+    """Return left, bottom, right and top of all levers (n,) with their cylinders over their swings, mm."""
+    share = np.linspace(0.0, 1.0, 91)[:, None]
+    turn = np.exp(1j * (c.start + (c.end - c.start) * share))
+    mass = np.where(c.lever_mass > 0.0, c.lever_mass, np.inf)
+    places = [0.0 * turn, c.frame * np.exp(1j * c.frame_angle) + 0.0 * turn]
+    places += [c.crank * np.exp(1j * c.pin_angle) * turn, (c.along + 1j * c.across) / mass * turn]
+    every, edge = np.stack(places), 0.12 * np.maximum(c.crank, c.frame)
     x, y = every.real, every.imag
-    return float(x.min() - edge), float(y.min() - edge), float(x.max() + edge), float(y.max() + edge)
+    low, high = (np.min(part - edge) for part in (x, y)), (np.max(part + edge) for part in (x, y))
+    left, bottom, right, top = (_MM * float(end) for end in (*low, *high))
+    return left, bottom, right, top
 
 
 def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
@@ -54,12 +82,17 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
     motion = sizes.at(np.array([angle]))
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
-    neck = foot + _NECK * min(float(sizes.length(end)) for end in (swing.start, swing.end)) * line
+    neck = foot + barrel_length(machine, swing) * line
     return [
         _strip(layers[1], neck, pin, _ROD * size),
         _strip(layers[0], foot, neck, _BARREL * size),
         bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size),
     ]
+
+
+def barrel_length(machine: LeverMachine, swing: LeverSwing) -> float:
+    """Return the length of the drawn barrel, m."""
+    return _NECK * min(float(machine.sizes.length(end)) for end in (swing.start, swing.end))
 
 
 def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
@@ -77,7 +110,8 @@ def _pivot(machine: LeverMachine) -> complex:
     return machine.sizes.frame * complex(math.cos(machine.sizes.frame_angle), math.sin(machine.sizes.frame_angle))
 
 
-def _centre(machine: LeverMachine) -> complex:
+def centre_of_lever(machine: LeverMachine) -> complex:
+    """Return the mass centre of a lever with mass in its own axes, m."""
     lever = machine.lever
     return complex(lever.moment_along, lever.moment_across) / lever.mass
 

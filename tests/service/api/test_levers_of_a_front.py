@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from slidercrank.service.store import Store
@@ -11,9 +12,19 @@ from tests.optimise.problems import LEVER
 from tests.service.api.fixed_front import API, client_of
 from tests.service.api.swinging import solved_at_once
 
-ANSWERED = ("", "/analysis", "/cycle.csv", "/lever", "/lever.svg", "/linkage.dxf", "/linkage.svg", "/requirements")
+ANSWERED = (
+    "",
+    "/analysis",
+    "/curves",
+    "/cycle.csv",
+    "/lever",
+    "/lever.svg",
+    "/linkage.dxf",
+    "/linkage.svg",
+    "/requirements",
+)
 REFUSED = {
-    **dict.fromkeys(("/curves", "/motion.gif", "/motion.html", "/swing"), "needs a crank with rod and slider"),
+    **dict.fromkeys(("/motion.gif", "/motion.html", "/swing"), "needs a crank with rod and slider"),
     **dict.fromkeys(("/counterweight", "/law", "/sections"), "needs a rotating crank; the lever of this job swings"),
 }
 
@@ -32,6 +43,21 @@ def test_designs_of_levers_are_answered_or_refused_in_one_sentence(tmp_path: Pat
                 answer = client.get(design + path)
                 assert answer.status_code == 422, (path, answer.text)
                 assert part in answer.json()["detail"]
+            lever = client.get(f"{design}/lever").json()["lever"]
+            curves = client.get(f"{design}/curves", params={"angles": 400}).json()
+            assert curves["slider_ends_mm"] == pytest.approx([lever["start_length_mm"], lever["end_length_mm"]])
+            assert curves["curves"]["lever_angle_deg"][::200] == pytest.approx([-20.0, 50.0])
+            assert curves["outlines"]["lever"]["frame_angle_deg"] == pytest.approx(lever["frame_angle_deg"])
+            assert max(curves["curves"]["push_N"]) + 30.0 == pytest.approx(lever["peak_push_N"], rel=1e-4)
+            assert max(curves["curves"]["cylinder_speed_m_s"]) == -min(curves["curves"]["cylinder_speed_m_s"])
+            extents = np.array(
+                [
+                    client.get(f"{API}/jobs/{number}/designs/{other}/curves").json()["outlines"]["extent_mm"]
+                    for other in (1, 2, 3)
+                ]
+            )
+            whole = client.get(f"{API}/jobs/{number}/front").json()["extent_mm"]
+            assert whole == pytest.approx([*extents.min(axis=0)[:2], *extents.max(axis=0)[2:]])
             preview = client.post(f"{API}/preview", json={"job": LEVER})
             assert preview.status_code == 200, preview.text
             assert (preview.json()["wrong"], preview.json()["example"]) == ([], None)

@@ -31,6 +31,12 @@ export const OVER_SWING = [
   { name: "crank", title: "crank angle" },
   { name: "position", title: "slider position" },
 ];
+/** The same for a lever, whose cylinder counts as the slider. */
+export const OVER_LEVER = [
+  ...OVER_SWING.slice(0, 2),
+  { name: "crank", title: "lever angle" },
+  { name: "position", title: "cylinder length" },
+];
 const QUARTERS = [0, 90, 180, 270, 360];
 const ENDS = [
   { at: 0, text: "start" },

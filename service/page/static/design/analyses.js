@@ -13,23 +13,25 @@ const TITLES = {
   sensitivity: "Sensitivity",
   tolerances: "Effect of tolerances on the slider position",
 };
-/** Those of a design that swings. @type {Record<string, string>} */
-const TITLES_OF_SWING = { swing: "The swing", lever: "Moved by a cylinder that turns" };
+/** Those of a lever. @type {Record<string, string>} */
+const TITLES_OF_LEVER = { lever: "Moved by a cylinder that turns" };
+/** Those of a crank that swings. @type {Record<string, string>} */
+const TITLES_OF_SWING = { swing: "The swing", ...TITLES_OF_LEVER };
 const WITHOUT = "This job has no tolerances. Add some under “Tolerances”.";
 const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a view of their own
 
 /**
- * Put the analyses into two places. questions, fronts: all of the service to a design, and to a front; swings: whether the crank does; tolerances: whether the job has any;
+ * Put the analyses into two places. questions, fronts: all of the service to a design, and to a front; swings: whether the crank does; isLever: whether a cylinder moves it; tolerances: whether the job has any;
  * tab: the chosen one; chooseTab(tab): another one is, "" for the first.
  * Returns show(lengths): of a changed design, null for the design itself.
  * @param {{ sections: HTMLElement, tabs: HTMLElement }} places
- * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
+ * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, isLever: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
  */
 export function analyses(
   places,
-  { job, number, questions, fronts, swings, tolerances, tab, chooseTab, signal },
+  { job, number, questions, fronts, swings, isLever, tolerances, tab, chooseTab, signal },
 ) {
-  const titles = swings ? TITLES_OF_SWING : TITLES;
+  const titles = isLever ? TITLES_OF_LEVER : swings ? TITLES_OF_SWING : TITLES;
   const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Analyses", onkeydown });
   const panel = h("div", {
     class: "panel analysis",

@@ -92,7 +92,11 @@ export function frontMap(place, { objectives, front }) {
           ),
         ]),
         x.ticks.map((tick) =>
-          svg("text", { x: x.at(tick), y: HEIGHT - 6, "text-anchor": "middle" }, x.text(tick)),
+          svg(
+            "text",
+            { x: Math.min(x.at(tick), WIDTH - 18), y: HEIGHT - 6, "text-anchor": "middle" },
+            x.text(tick),
+          ),
         ),
       ),
       svg("path", {

@@ -148,6 +148,12 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
         ),
       );
     }
+    [...legend.children].forEach((item, n) =>
+      item.toggleAttribute(
+        "hidden",
+        !ARROWS[n].along.some((key) => key && machines[0].curves[key]),
+      ),
+    );
     const frame = around(
       machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)),
     );
@@ -194,10 +200,11 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
     );
     if (angleText.textContent !== words) angleText.textContent = words;
     const position = between(machines[0].curves.slider_position_mm, at);
-    where.textContent = `slider at ${withUnit(position, "mm", 4)}`;
+    const slider = `${machines[0].outlines?.lever ? "cylinder" : "slider at"} ${withUnit(position, "mm", 4)}`;
+    where.textContent = slider;
     showSizes(at);
     if (playing) return;
-    angle.setAttribute("aria-valuetext", `${words}, slider at ${withUnit(position, "mm", 4)}`);
+    angle.setAttribute("aria-valuetext", `${words}, ${slider}`);
   }
 
   /** @type {boolean | null} */

@@ -1,6 +1,6 @@
 /** The curves of a design: over crank angle, time or the way of the slider, three of them large, and as CSV. */
 
-import { abscissaOf, OVER, OVER_SWING } from "../charts/abscissa.js";
+import { abscissaOf, OVER, OVER_LEVER, OVER_SWING } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -10,19 +10,23 @@ import { panelsOf } from "./panels.js";
 const CURVE_STORAGE = "large curves";
 const SWING_STORAGE = "large curves of a swing";
 const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // unless the reader has chosen others
-const LARGE_OF_SWING = ["slider_position_mm", "drive_N", "drive_Nm", "transmission_angle_deg"];
+const LARGE_OF_SWING = [
+  ...["slider_position_mm", "drive_N", "drive_Nm", "transmission_angle_deg"],
+  ...["length_mm", "push_N"], // of a lever
+];
 
 /**
  * Put the curves into `place`; turned: of the charts. told(over): the reader chose what they are over. Returns
  * - show(series): each {name, series, curves, curveColumns, centres}, the first in front. - of(lengths): of a changed design, for the
  *   file; null for the design itself. - turn, close: of the charts.
  * @param {HTMLElement} place
- * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing.
- * @param {{ path: string, rpm: number, turns: number, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
+ * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing; lever: whether a cylinder moves a lever.
+ * @param {{ path: string, rpm: number, turns: number, lever: boolean, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
  */
-export function overCycle(place, { path, rpm, turns, over, turned, told: choose }) {
+export function overCycle(place, { path, rpm, turns, lever, over, turned, told: choose }) {
   const storageKey = turns ? CURVE_STORAGE : SWING_STORAGE;
-  const choices = (turns ? OVER : OVER_SWING).filter(({ name }) => name !== "time" || rpm !== 0);
+  const titles = lever ? OVER_LEVER : turns ? OVER : OVER_SWING;
+  const choices = titles.filter(({ name }) => name !== "time" || rpm !== 0);
   let chosen = choices.some(({ name }) => name === over) ? over : "angle";
   const choice = h(
     "select",
@@ -43,7 +47,11 @@ export function overCycle(place, { path, rpm, turns, over, turned, told: choose 
     {
       class: "button",
       download: "",
-      title: turns ? "A row for each degree, all curves" : "Both strokes, all curves",
+      title: lever
+        ? "One way of the swing, all curves"
+        : turns
+          ? "A row for each degree, all curves"
+          : "Both strokes, all curves",
     },
     "Curves as CSV",
   );
@@ -62,12 +70,12 @@ export function overCycle(place, { path, rpm, turns, over, turned, told: choose 
   });
   /** @type {Page.Machine[]} */
   let machines = [];
-  const draw = () =>
-    charts.show(
-      machines,
-      panelsOf(machines[0].curveColumns, machines),
-      abscissaOf(chosen, rpm, turns),
-    ); // in the units of now
+  const draw = () => {
+    const abscissa = abscissaOf(chosen, rpm, turns); // in the units of now
+    const named = lever && OVER_LEVER.slice(2).find(({ name }) => name === chosen);
+    if (named) abscissa.title = named.title;
+    charts.show(machines, panelsOf(machines[0].curveColumns, machines), abscissa);
+  };
   /** @type {Page.Numbers | null} */
   let lengths = null;
   const link = () => (file.href = address(`${path}/cycle.csv`, { ...lengths, units: apiSystem() }));

@@ -6,10 +6,15 @@ const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
   ["crank_pin_N", "Crank pin force", "crank_pin_x_N", "crank_pin_y_N"],
   ["slider_pin_N", "Slider pin force", "slider_pin_x_N", "slider_pin_y_N"],
+  ["pin_N", "Lever pin force", "pin_x_N", "pin_y_N"],
+  ["cylinder_pivot_N", "Cylinder pivot force", "cylinder_pivot_x_N", "cylinder_pivot_y_N"],
 ];
 const ORDER = [
   "way_mm",
   "slider_position",
+  "length_mm",
+  "cylinder_speed",
+  "push_N",
   "slider_velocity",
   "slider_acceleration",
   "drive_",
@@ -22,6 +27,8 @@ const ORDER = [
   "pivot_N",
   "crank_pin_N",
   "slider_pin_N",
+  "pin_N",
+  "cylinder_pivot_N",
   "guide_N",
   "position_error_mm",
   "position_error_rss_mm",
@@ -31,7 +38,7 @@ const ORDER = [
 
 /**
  * Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre, where
- * there is one.
+ * there is one. A lever and its cylinder count as crank and slider.
  * @param {Api.Cycle} cycle
  */
 export function withResultants({ curves, columns, turns, slider_ends_mm: [inner] }) {
@@ -45,6 +52,10 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
       value === null || curves[y][n] === null ? null : Math.hypot(value, curves[y][n]),
     );
     allColumns.push({ key, title, unit: "N" });
+  }
+  if (curves.lever_angle_deg) {
+    more.crank_angle_deg = curves.lever_angle_deg;
+    more.slider_position_mm = curves.length_mm;
   }
   if (!turns) return { curves: more, columns: allColumns };
   more.way_mm = curves.slider_position_mm.map((value) => (value === null ? null : value - inner));

@@ -82,7 +82,7 @@ export class Explorer {
     this.data = data;
     this.chosen = chosen;
     this.limits = limits;
-    this.linkages = linkages(data);
+    this.linkages = linkages(data, signal);
     this.clearing = h(
       "button",
       { type: "button", onclick: () => this.clear() },

@@ -3,6 +3,7 @@
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
+import { withResultants } from "../design/panels.js";
 import { drawing } from "../mechanism/drawing.js";
 import { motionOf } from "../mechanism/motion.js";
 import { playback } from "../mechanism/playback.js";
@@ -13,7 +14,6 @@ import { namesOf } from "./chart_marks.js";
 
 const START = 60; // deg: no links overlap here
 const SOON = 120; // ms that a design is pointed at, until its swing is asked for
-const TIMES = 72; // of a swing forth and back
 const ENDS = /** @type {Page.Point} */ ([0, 180]); // places in the swing
 
 /** Return {place, draw(what), close()} of the linkage of an explorer. @param {Explorer} explorer */
@@ -38,8 +38,6 @@ export function linkagePanel(explorer) {
   let drawnRow = null;
   let isRequested = false;
   const swings = !front.columns.some(({ key }) => key === "stroke_mm"); // every design that turns has one
-  /** @type {Map<number, Promise<Api.Curves | null>>} */
-  const cycles = new Map(); // of designs that swing, by their rows
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let later;
   let within = false; // whether the pointer or the focus is in the panel itself
@@ -84,22 +82,16 @@ export function linkagePanel(explorer) {
 
   /** Draw a design that swings between its ends, once the service has said how it goes. @param {number} row */
   async function showSwing(row) {
-    const path = /** @type {const} */ (`jobs/${explorer.job.id}/designs/${row + 1}/curves`);
-    const cycle =
-      cycles.get(row) ??
-      get(path, { angles: TIMES }, explorer.signal).then(
-        ({ curves }) => curves,
-        () => null,
-      );
-    cycles.set(row, cycle);
-    const curves = await cycle;
-    if (!curves || drawnRow !== row || explorer.signal.aborted) return;
-    drawn.show(explorer.linkages.of(row), curves, {
+    const cycle = await explorer.linkages.cycle(row);
+    if (!cycle || drawnRow !== row || explorer.signal.aborted) return;
+    const { outlines } = cycle;
+    drawn.show(explorer.linkages.of(row), withResultants(cycle).curves, {
       frame: explorer.linkages.frame(),
       direction: 0,
       small: true,
       turns: 0,
       dead_centres_deg: ENDS,
+      ...(outlines.lever && { outlines }),
     });
     if (!motion) drawn.turn(START);
   }
@@ -122,7 +114,7 @@ export function linkagePanel(explorer) {
       drawn.node.setAttribute("aria-label", `Linkage of design ${row + 1}`);
       if (swings) {
         clearTimeout(later);
-        later = setTimeout(() => showSwing(row), cycles.has(row) ? 0 : SOON);
+        later = setTimeout(() => showSwing(row), explorer.linkages.isAsked(row) ? 0 : SOON);
       } else {
         drawn.show(linkage, motionOf(linkage), {
           frame: explorer.linkages.frame(),

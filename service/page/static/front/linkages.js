@@ -1,7 +1,8 @@
 /** The designs of a front as linkages, and the frame in which all of them have one scale. */
 
+import { get } from "../lib/api.js";
 import { deadCentresOf } from "../mechanism/motion.js";
-import { around, frameWithin } from "../mechanism/frame.js";
+import { around, frameOfExtent, frameWithin } from "../mechanism/frame.js";
 
 /**
  * @import { FrontData } from "./data.js"
@@ -9,11 +10,26 @@ import { around, frameWithin } from "../mechanism/frame.js";
  */
 
 export const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
+const TIMES = 72; // of a swing back and forth
 
-/** Return {of(row), frame()} of a front whose lengths are here. @param {FrontData} data */
-export function linkages(data) {
+/**
+ * Return {of(row), frame(), cycle(row), isAsked(row)} of a front whose lengths are here; cycle: the service's answer for a design that
+ * swings, asked for once, null if it has none.
+ * @param {FrontData} data @param {AbortSignal} signal
+ */
+export function linkages(data, signal) {
+  const { front } = data;
   /** @type {Frame | null} */
-  let frame = null;
+  let frame = front.extent_mm ? frameOfExtent(front.extent_mm) : null;
+  /** @type {Map<number, Promise<Api.Cycle | null>>} */
+  const cycles = new Map();
+  /** @param {number} row */
+  function cycle(row) {
+    const path = /** @type {const} */ (`jobs/${front.job}/designs/${row + 1}/curves`);
+    const asked = cycles.get(row) ?? get(path, { angles: TIMES }, signal).catch(() => null);
+    cycles.set(row, asked);
+    return asked;
+  }
   const [crank, rod, offset] = LENGTHS.map((key) => data.numbers(key));
   /** @param {number} row @returns {Page.Lengths} */
   const lengthsAt = (row) => ({ crank_mm: crank[row], rod_mm: rod[row], offset_mm: offset[row] });
@@ -37,5 +53,10 @@ export function linkages(data) {
     frame = around(frames);
     return frame;
   }
-  return { of: lengthsAt, frame: all };
+  return {
+    of: lengthsAt,
+    frame: all,
+    cycle,
+    isAsked: (/** @type {number} */ row) => cycles.has(row),
+  };
 }

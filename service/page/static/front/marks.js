@@ -119,6 +119,21 @@ export function marksPanel(explorer) {
     }, PAUSE);
   }
 
+  /** Return the thumbnail of a design; that of a lever comes once the service has said how it stands. @param {number} row */
+  function thumbnail(row) {
+    const { linkages } = explorer;
+    if (!front.extent_mm) return smallLinkage(linkages.of(row), linkages.frame());
+    const picture = h("span", {});
+    linkages
+      .cycle(row)
+      .then((cycle) =>
+        picture.replaceWith(
+          smallLinkage(linkages.of(row), linkages.frame(), cycle?.outlines.lever),
+        ),
+      );
+    return picture;
+  }
+
   /** @param {number} row @param {string} name */
   function item(row, name) {
     const of = data.objectives
@@ -127,7 +142,7 @@ export function marksPanel(explorer) {
     return h(
       "li",
       { onpointerenter: () => explorer.point(row), onpointerleave: () => explorer.point(null) },
-      smallLinkage(explorer.linkages.of(row), explorer.linkages.frame()),
+      thumbnail(row),
       h(
         "div",
         {},

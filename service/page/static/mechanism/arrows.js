@@ -1,4 +1,4 @@
-/** Forces as arrows: of the frame on the crank, crank on rod, rod on slider, guide on slider, and the load. */
+/** Forces as arrows: of the frame on the crank, crank on rod, rod on slider, guide on slider, and the load; or those of a lever. */
 
 import { between } from "../charts/cycle.js";
 import { h, svg } from "../lib/dom.js";
@@ -10,7 +10,7 @@ const DOT = 2.5;
 const HEAD = 7;
 
 /**
- * The arrows. at: 0 pivot, 1 crank pin, 2 slider pin; along: keys of the curves of its components in x and y.
+ * The arrows. at: 0 pivot, 1 crank pin, 2 slider pin or the cylinder's pivot; along: keys of the curves of its components in x and y.
  * @type {{ name: string, title: string, at: number, along: [string | null, string | null] }[]}
  */
 export const ARROWS = [
@@ -21,6 +21,13 @@ export const ARROWS = [
     title: "rod on slider",
     at: 2,
     along: ["slider_pin_x_N", "slider_pin_y_N"],
+  },
+  { name: "crank-pin", title: "piston rod on crank", at: 1, along: ["pin_x_N", "pin_y_N"] },
+  {
+    name: "slider-pin",
+    title: "frame on cylinder",
+    at: 2,
+    along: ["cylinder_pivot_x_N", "cylinder_pivot_y_N"],
   },
   { name: "guide-force", title: "guide on slider", at: 2, along: [null, "guide_N"] },
   { name: "load-force", title: "load on slider", at: 2, along: ["load_N", null] },

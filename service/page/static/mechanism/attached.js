@@ -71,7 +71,7 @@ export function attached() {
       const [mark, hole] = [half / 2, 0.3 * half];
       cross.setAttribute(
         "d",
-        `M${u - mark} ${v}h${2 * mark}M${u} ${v - mark}v${2 * mark}M${u - hole} ${v}a${hole} ${hole} 0 1 0 ${2 * hole} 0a${hole} ${hole} 0 1 0 ${-2 * hole} 0`,
+        `${outlines?.lever ? `M0 0L${u} ${v}` : ""}M${u - mark} ${v}h${2 * mark}M${u} ${v - mark}v${2 * mark}M${u - hole} ${v}a${hole} ${hole} 0 1 0 ${2 * hole} 0a${hole} ${hole} 0 1 0 ${-2 * hole} 0`,
       );
     },
     /** Move with the slider pin, in pixels. @param {number} x */

@@ -6,6 +6,7 @@ import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { attached } from "./attached.js";
 import { fitted, frameOf, placeIn, sliderRange } from "./frame.js";
+import { cylinder, leverAt, leverScenery } from "./lever.js";
 import { bar, placed, scenery } from "./scenery.js";
 
 /**
@@ -66,22 +67,25 @@ export function drawing(place, { label, grips = null }) {
       one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
     const { turns = 1 } = options;
+    const [lever, written] = [outlines?.lever, !options.small];
     fill(
       still,
-      scenery({
-        linkage,
-        ends: options.slider_ends_mm,
-        centres: deadCentres(motion, options.dead_centres_deg, turns),
-        view,
-        block,
-        tall,
-        link,
-        direction: options.direction ?? 1,
-        written: !options.small,
-        swings: turns === 0,
-        outlines,
-        hasStrokeAngles: grips !== null,
-      }),
+      lever
+        ? leverScenery({ linkage, lever, view, link, written })
+        : scenery({
+            linkage,
+            ends: options.slider_ends_mm,
+            centres: deadCentres(motion, options.dead_centres_deg, turns),
+            view,
+            block,
+            tall,
+            link,
+            direction: options.direction ?? 1,
+            written,
+            swings: turns === 0,
+            outlines,
+            hasStrokeAngles: grips !== null,
+          }),
     );
     measure(handle, { cx: view.x(0), cy: view.y(0), r: linkage.crank_mm * view.unit + 0.8 * link });
     parts.size({
@@ -91,12 +95,12 @@ export function drawing(place, { label, grips = null }) {
       tall,
       outlines,
       link,
-      written: !options.small,
-      crossed: crossed(linkage, motion, turns),
+      written,
+      crossed: !lever && crossed(linkage, motion, turns),
     });
     parts.forces.size(motion, view, options.largest_force);
     // Where the slider drives, the angle that counts is between rod and crank: not the one that is marked.
-    parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N));
+    parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N || lever));
     turn(angle);
   }
 
@@ -104,11 +108,22 @@ export function drawing(place, { label, grips = null }) {
   function turn(to, settled = true) {
     angle = to;
     if (!view || !current) return;
-    const { linkage, motion } = current;
+    const { linkage, motion, options } = current;
+    const lever = options.outlines?.lever;
+    if (lever) {
+      const at = leverAt(
+        linkage,
+        lever,
+        view,
+        crankAt({ curves: motion, turns: options.turns ?? 1 }, angle),
+      );
+      parts.moveLever(at);
+      if (arrowed) parts.forces.move(at.pivot, at.pin, at.base, angle);
+      return;
+    }
     const position = between(motion.slider_position_mm, angle);
     if (position === null) return; // the crank locks before
-    const radians =
-      (crankAt({ curves: motion, turns: current.options.turns ?? 1 }, angle) * Math.PI) / 180;
+    const radians = (crankAt({ curves: motion, turns: options.turns ?? 1 }, angle) * Math.PI) / 180;
     const pin = /** @type {Page.Point} */ ([
       view.x(linkage.crank_mm * Math.cos(radians)),
       view.y(linkage.crank_mm * Math.sin(radians)),
@@ -152,7 +167,8 @@ export function drawing(place, { label, grips = null }) {
     angleAt(x, y) {
       if (!view) return angle;
       const [across, up] = placeIn(node, view, x, y);
-      return (Math.atan2(up, across) * 180) / Math.PI;
+      const pinAngle = current?.options.outlines?.lever?.pin_angle_deg ?? 0;
+      return (Math.atan2(up, across) * 180) / Math.PI - pinAngle;
     },
     close: () => watcher.disconnect(),
   };
@@ -192,7 +208,7 @@ function movingParts() {
   ];
   const pins = [pin(), pin(), pin()];
   const length = svg("text", { class: "length", "text-anchor": "middle" });
-  const more = attached();
+  const [more, actuator] = [attached(), cylinder()];
   const [crankGroup, rodGroup, sliderGroup] = [
     svg("g", {}, crank, more.body, pins[0], pins[1]),
     svg("g", {}, rod, pins[2], length),
@@ -207,13 +223,16 @@ function movingParts() {
   let lastWritten = 0; // when the value was written last
   let side = ""; // on which it stands
   return {
-    nodes: [more.rod, sliderGroup, rodGroup, crankGroup, marked, forces.node],
+    nodes: [more.rod, sliderGroup, rodGroup, actuator.node, crankGroup, marked, forces.node],
     forces,
     marked,
     /** @param {{ linkage: Page.Lengths, view: View, block: number, tall: number, outlines: Api.Outlines | undefined, link: number, written: boolean, crossed: boolean }} options */
     size({ linkage, view, block: size, tall, outlines, link, written, crossed }) {
       const [wide, high] = [1.5 * size * view.unit, tall * view.unit];
       more.size(view, outlines, linkage.offset_mm);
+      actuator.size(view, linkage, outlines?.lever, link);
+      for (const one of [sliderGroup, rodGroup])
+        one.toggleAttribute("hidden", Boolean(outlines?.lever));
       crank.setAttribute("d", bar(linkage.crank_mm * view.unit, link));
       rod.setAttribute("d", bar(linkage.rod_mm * view.unit, link));
       measure(block, { x: -wide / 2, y: -high / 2, width: wide, height: high });
@@ -221,7 +240,8 @@ function movingParts() {
       measure(pins[1], { cx: linkage.crank_mm * view.unit });
       measure(pins[2], { cx: linkage.rod_mm * view.unit });
       const long = linkage.rod_mm * view.unit;
-      length.textContent = written && long > 150 ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
+      length.textContent =
+        written && long > 150 && !outlines?.lever ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
       // Along the rod outside the guide, and never on its head: on the crossed branch it points the other way.
       length.setAttribute(
         "transform",
@@ -231,6 +251,11 @@ function movingParts() {
       const room = Math.min(line, view.height - line) - 16; // above and below the slider line, with the value
       radius = Math.max(26, Math.min(0.42 * linkage.rod_mm * view.unit, 90, room));
       side = "";
+    },
+    /** @param {ReturnType<typeof leverAt>} at */
+    moveLever({ pivot, pin, foot }) {
+      crankGroup.setAttribute("transform", placed(pivot, pin));
+      actuator.move(foot, pin);
     },
     /**
      * @param {Page.Point} pivot @param {Page.Point} crankPin @param {Page.Point} slider @param {number | null | undefined} degrees

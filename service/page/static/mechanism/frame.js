@@ -28,6 +28,7 @@ export function sliderRange(motion) {
  * @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Api.Outlines} [outlines] @returns {Frame}
  */
 export function frameOf(linkage, motion, outlines) {
+  if (outlines?.lever) return frameOfExtent(outlines.extent_mm);
   const { low, high } = sliderRange(motion);
   const linkageFrame = frameWithin(linkage, low.value, high.value);
   if (!outlines) return linkageFrame;
@@ -37,6 +38,11 @@ export function frameOf(linkage, motion, outlines) {
     linkageFrame,
     { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall },
   ]);
+}
+
+/** Return the frame of levers, which have no slider. @param {Api.Outlines["extent_mm"]} extent @returns {Frame} */
+export function frameOfExtent([left, low, right, high]) {
+  return { left, low, right, high, block: 0, tall: 0 };
 }
 
 /**

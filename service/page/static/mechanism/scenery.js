@@ -68,8 +68,8 @@ export function scenery({
   ];
 }
 
-/** Way of the crank pin between the ends of a swing. @param {View} view @param {number} r @param {Centre[]} ends */
-function arcOf(view, r, ends) {
+/** Return the path of the crank pin between the ends of a swing. @param {View} view @param {number} r @param {{ angle: number }[]} ends */
+export function arcOf(view, r, ends) {
   const [first, last] = ends.map(({ angle }) => (angle * Math.PI) / 180).sort((a, b) => a - b);
   const arcEnds = [first, last].map(
     (angle) => `${view.x(r * Math.cos(angle))} ${view.y(r * Math.sin(angle))}`,
@@ -238,8 +238,8 @@ function strokeAngles(view, r, e, [inner, outer], direction) {
   });
 }
 
-/** @param {number} x @param {number} y @param {number} link */
-function bearing(x, y, link) {
+/** Return the bearing of a pivot. @param {number} x @param {number} y @param {number} link */
+export function bearing(x, y, link) {
   const foot = 1.7 * link;
   const ground = y + foot;
   const strokes = [-1, -0.4, 0.2, 0.8].map((at) => `M${x + at * foot} ${ground}l${-5} 6`).join("");

@@ -1,9 +1,13 @@
 /** Thumbnail of a linkage. */
 
 import { svg } from "../lib/dom.js";
+import { leverAt } from "./lever.js";
 import { motionOf } from "./motion.js";
 
-/** @import { Frame } from "./frame.js" */
+/**
+ * @import { Frame } from "./frame.js"
+ * @import { Lever } from "./lever.js"
+ */
 
 const WIDTH = 88;
 const HEIGHTS = [26, 64];
@@ -11,18 +15,41 @@ const ANGLES = [60, 30, 90, 0, 120, 330, 180, 270]; // crank angles, deg: no lin
 
 /**
  * Return a picture of a linkage in a frame that several share, so that they have one scale.
- * @param {Page.Lengths} linkage @param {Frame} frame
+ * @param {Page.Lengths} linkage @param {Frame} frame @param {Lever | null} [lever] half-way, for a linkage that is one
  */
-export function smallLinkage(linkage, frame) {
+export function smallLinkage(linkage, frame, lever) {
   const { crank_mm: r, offset_mm: e } = linkage;
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
-  const unit = WIDTH / wide;
-  const height = Math.min(Math.max(unit * tall, HEIGHTS[0]), HEIGHTS[1]);
+  const unit = Math.min(WIDTH / wide, HEIGHTS[1] / tall);
+  const height = Math.max(unit * tall, HEIGHTS[0]);
   /** @param {number} millimetres */
-  const x = (millimetres) => (unit * (millimetres - frame.left)).toFixed(1);
+  const x = (millimetres) =>
+    (WIDTH / 2 + unit * (millimetres - (frame.left + frame.right) / 2)).toFixed(1);
   /** @param {number} millimetres */
   const y = (millimetres) =>
     (height / 2 + unit * ((frame.high + frame.low) / 2 - millimetres)).toFixed(1);
+  const size = {
+    class: "small-linkage",
+    viewBox: `0 0 ${WIDTH} ${height.toFixed(0)}`,
+    width: WIDTH,
+    height: height.toFixed(0),
+    "aria-hidden": "true",
+  };
+  if (lever) {
+    const at = leverAt(
+      linkage,
+      lever,
+      { x: (mm) => Number(x(mm)), y: (mm) => Number(y(mm)) },
+      (lever.start_deg + lever.end_deg) / 2,
+    );
+    return svg(
+      "svg",
+      size,
+      svg("path", { class: "way", d: `M${at.pivot}L${at.base}` }),
+      svg("path", { class: "links", d: `M${at.pivot}L${at.pin}L${at.foot}` }),
+      [at.pivot, at.base].map(([cx, cy]) => svg("circle", { class: "pivot", cx, cy, r: 2 })),
+    );
+  }
   const positions = motionOf(linkage).slider_position_mm;
   const degrees = ANGLES.find((at) => Number.isFinite(positions[at])) ?? ANGLES[0];
   const angle = (degrees * Math.PI) / 180;
@@ -30,13 +57,7 @@ export function smallLinkage(linkage, frame) {
   const slider = Number.isFinite(positions[degrees]) ? positions[degrees] : 0;
   return svg(
     "svg",
-    {
-      class: "small-linkage",
-      viewBox: `0 0 ${WIDTH} ${height.toFixed(0)}`,
-      width: WIDTH,
-      height: height.toFixed(0),
-      "aria-hidden": "true",
-    },
+    size,
     svg("line", { class: "way", x1: x(frame.left), x2: x(frame.right), y1: y(e), y2: y(e) }),
     svg("circle", { class: "way", cx: x(0), cy: y(0), r: (unit * r).toFixed(1) }),
     svg("path", {

@@ -82,6 +82,7 @@ export async function show(place, { parts, query, signal }) {
     signal,
   };
   const { turns, seconds } = main;
+  const isLever = Boolean(main.outlines?.lever);
   const rpm = seconds ? (Math.sign(requirements.speed_rpm) || 1) * (60 / seconds) : 0; // cycles a minute
   const angle = playback(rpm, signal, CYCLES[turns]);
   /** @param {number} at @param {boolean} taken */
@@ -170,6 +171,7 @@ export async function show(place, { parts, query, signal }) {
     path,
     rpm,
     turns,
+    lever: isLever,
     over,
     turned: hold,
     told: (now) => {
@@ -206,6 +208,7 @@ export async function show(place, { parts, query, signal }) {
       questions,
       fronts: asked.fronts,
       swings: !turns,
+      isLever,
       tolerances: requirements.tolerances,
       tab,
       chooseTab: (now) => {
@@ -312,7 +315,7 @@ export async function show(place, { parts, query, signal }) {
   );
   fill(places["trade-offs"], h("h2", {}, "Cost of improvements"), costs.node);
   costs.ask();
-  for (const inverse of questions.filter(({ name }) => name === "inverse"))
+  for (const inverse of questions.filter(({ name }) => name === "inverse" && !isLever))
     inverseForm(places.inverse, inverse, {
       path,
       job,
