@@ -24,6 +24,7 @@ from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import load_job
+from tests.case_count import case_count
 from tests.model.bodies import bodies
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
 from tests.model.contour import distance_to_locking, motion_in_time
@@ -269,7 +270,7 @@ def test_crank_angles_over_time_solve_their_differential_equation(seed: int) -> 
     assert turning.times(inside + 2.0 * TURN * case.turns) == pytest.approx(times[1:-1], rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", range(case_count(25, 100)))
 def test_rms_torque_along_a_profile_is_over_time(seed: int) -> None:
     """Both sides resolve the torque to some 1e-12 of its greatest value."""
     case = random_case(seed)
@@ -282,7 +283,7 @@ def test_rms_torque_along_a_profile_is_over_time(seed: int) -> None:
         assert speed_profile_cycle(case.machine, linkage).rms_torque == pytest.approx(wanted, rel=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(case_count(8, 20)))
 def test_rms_shaking_along_a_profile_is_over_time(seed: int) -> None:
     case = random_case(seed)
     case = Case(replace(case.machine, friction=Friction(), loads=()), case.design, 1)

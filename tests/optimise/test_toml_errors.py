@@ -14,6 +14,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.job.file import toml_tables
+from tests.case_count import case_count
 
 PARSER = re.compile(
     "TOML|Invalid|Expected|Unclosed|Illegal|Unescaped|Unterminated|Cannot|column [0-9]|statement|declar"
@@ -356,7 +357,7 @@ def test_the_remedy_for_a_slip_in_any_line_of_a_shipped_job_restores_the_job(
         lines, tables = text.split("\n"), tomllib.loads(text)
         plain = [n for n, line in enumerate(lines) if re.match(r"\[|[a-z_.]+ = ", line)]
         changed = [n for n in plain if slip(lines[n]) != lines[n]]
-        for n in random.permutation(changed)[:6]:
+        for n in random.permutation(changed)[: case_count(2, 6)]:
             wrong = "\n".join([*lines[:n], slip(lines[n]), *lines[n + 1 :]])
             if is_read(wrong):
                 continue

@@ -21,6 +21,7 @@ from slidercrank.service.figures.datasheet import cycle_curves
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.motor import analysis as motor
 from slidercrank.service.questions.uneven_speed import analysis as uneven_speed
+from tests.case_count import case_count
 
 TURN = 2.0 * math.pi
 
@@ -53,7 +54,7 @@ def angle_of_greatest(machine: Mechanism, linkage: Linkage, sign: int) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", range(1, 7))
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(case_count(2, 4)))
 def test_every_place_names_the_first_of_equal_greatest_torques(count: int, seed: int) -> None:
     machine, linkage = even_engine(count, seed)
     size, most, least = (angle_of_greatest(machine, linkage, sign) for sign in (0, 1, -1))
@@ -94,7 +95,7 @@ def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_b
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(case_count(12, 40)))
 def test_no_extreme_of_a_symmetric_machine_is_named_at_the_end_of_its_cycle(seed: int) -> None:
     random = np.random.default_rng(seed)
     profile = Harmonics(cosines=(0.0, float(random.uniform(-0.1, 0.1)))) if seed % 2 else None

@@ -1,4 +1,4 @@
-"""The best motion laws of 30 random machines against direct collocation in time, which shares no code with them."""
+"""The best motion laws of random machines against direct collocation in time, which shares no code with them."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from slidercrank.optimise.motion_law.words import LawObjective
 
 pytest.importorskip("casadi")
 
+from tests.case_count import case_count
 from tests.optimise.motion_law.collocation import Plain, best_by_collocation
 
 OBJECTIVES: tuple[LawObjective, ...] = ("peak torque", "rms torque", "cycle time")
@@ -69,7 +70,7 @@ def as_mechanism(plain: Plain) -> Mechanism:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", range(case_count(9, 30)))
 def test_collocation_finds_no_better_law_and_none_below_the_bound(seed: int) -> None:
     plain = random_plain(seed)
     mechanism, linkage = as_mechanism(plain), Linkage(plain.crank, plain.rod, plain.offset)

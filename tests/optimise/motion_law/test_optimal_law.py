@@ -25,6 +25,7 @@ from slidercrank.optimise.motion_law.law_limits import LawRequest, resolve_limit
 from slidercrank.optimise.motion_law.optimal_law import GAP, LIMIT_TOLERANCE, OptimalLaw, optimal_law
 from slidercrank.optimise.motion_law.reachable import Reachable
 from slidercrank.optimise.motion_law.words import LawObjective
+from tests.case_count import case_count
 from tests.model.law_cases import random_case
 
 pytest.importorskip("cvxpy")
@@ -67,7 +68,7 @@ def require_within_limits(found: OptimalLaw) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(case_count(6, 12)))
 def test_laws_of_random_machines_keep_their_limits_and_are_near_their_bound(seed: int) -> None:
     machine, linkage = random_case(seed)
     random = np.random.default_rng([412, seed])
