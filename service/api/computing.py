@@ -26,7 +26,7 @@ from ..store import Limits
 from ..workers.heartbeat import EXHAUSTED
 from ..workers.supervisor import reason_of
 from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, is_last, serve_requests
-from .throttle import TurnQueue
+from .throttle import turn
 
 MOST = Limits(seconds=60.0, memory=10**9)
 """Limits for one answer: processor time, and memory beyond that of an idle process."""
@@ -70,7 +70,7 @@ class Computing:
         self._context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
         self._context.set_forkserver_preload(list(modules))
         self._make, self._most = make, limits
-        self._turns = {"quick": TurnQueue("quick analyses", 2), "long": TurnQueue("long analyses", 2)}
+        self._turns = {"quick": CapacityLimiter(2), "long": CapacityLimiter(2)}
         self._threads = CapacityLimiter(8)  # threads that wait for processes, separate from those that read
         self._idle: list[_Process] = []
         self._all: set[_Process] = set()
@@ -106,7 +106,7 @@ class Computing:
             process.end()
 
     async def _compute(self, turns: str, question: Question, give: Callable[[Message], None]) -> None:
-        async with self._turns[turns].turn():
+        async with turn(self._turns[turns], f"{turns} analyses"):
             while (process := self._take_idle_process()) is None:
                 await run_sync(self._start_process, limiter=self._threads)
             try:

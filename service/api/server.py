@@ -89,11 +89,12 @@ def config_of(app: FastAPI) -> Config:
     """Return the web server configuration for an application."""
     from uvicorn import Config
 
-    from .connections import Connection, Gate, raise_connection_limit
+    from .connections import MOST_HEAD, Connection, Gate, raise_connection_limit
 
     return Config(
         app,
         http=cast("Any", partial(Connection, Gate(raise_connection_limit()))),  # any protocol factory works
+        h11_max_incomplete_event_size=MOST_HEAD,
         log_config=None,
         access_log=False,  # it would contain the address with the token
         server_header=False,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import math
 import re
@@ -14,6 +15,7 @@ from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
+from starlette.requests import ClientDisconnect, Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from ...model.errors import InputError
@@ -50,41 +52,37 @@ class StrictInput:
             refused = problem_response(HTTPStatus.BAD_REQUEST, "an address must not contain NUL; got one; leave it out")
             await refused(scope, receive, send)
             return
-        headers = Headers(scope=scope)
-        body = await self._read_body(headers, receive)
+        body = await self._read_body(Request(scope, receive))
         if body is None:
             rule = f"a request may have at most {self.most_body} bytes; got more; is it the right file?"
-            await problem_response(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})(
-                scope, receive, send
-            )
+            refused = problem_response(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, rule, {"Connection": "close"})
+            await refused(scope, receive, send)
             return
-        if body and _JSON.fullmatch(headers.get("content-type", "")):
+        if body and _JSON.fullmatch(Headers(scope=scope).get("content-type", "")):
             try:
                 scope[PARSED_BODY] = await read_body_in_turn(scope["app"], body, read_json, body, self.most_depth)
             except InputError as error:
                 await problem_response(HTTPStatus.BAD_REQUEST, str(error))(scope, receive, send)
                 return
-        await self.app(scope, _replaying_receive(body, receive), send)
+        replayed = iter([{"type": "http.request", "body": body, "more_body": False}])
 
-    async def _read_body(self, headers: Headers, receive: Receive) -> bytes | None:
+        async def receive_again() -> Message:
+            return next(replayed, None) or await receive()
+
+        await self.app(scope, receive_again, send)
+
+    async def _read_body(self, request: Request) -> bytes | None:
         """Return the whole body; None if it is too large.
 
         Bytes are counted on arrival: the stated length may be wrong.
         """
-        length = headers.get("content-length", "0")
-        if not length.isdecimal() or len(length) > 15 or int(length) > self.most_body:
-            return None
-        parts, size, is_incomplete = list[bytes](), 0, True
-        while is_incomplete:
-            message = await receive()
-            if message["type"] != "http.request":
-                break  # the client has left: the application will notice
-            parts.append(message.get("body", b""))
-            size += len(parts[-1])
-            if size > self.most_body:
-                return None
-            is_incomplete = message.get("more_body", False)
-        return b"".join(parts)
+        body = bytearray()
+        with contextlib.suppress(ClientDisconnect):  # the application will notice
+            async for part in request.stream():
+                body += part
+                if len(body) > self.most_body:
+                    return None
+        return bytes(body)
 
 
 async def read_body_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: Any) -> T:
@@ -94,20 +92,6 @@ async def read_body_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: 
     turn: asyncio.Lock = app.state.reading
     async with turn:
         return await run_in_threadpool(read, *of)
-
-
-def _replaying_receive(body: bytes, receive: Receive) -> Receive:
-    """Return a receive function that replays the body and then passes on further messages."""
-    first = True
-
-    async def replayed() -> Message:
-        nonlocal first
-        if first:
-            first = False
-            return {"type": "http.request", "body": body, "more_body": False}
-        return await receive()
-
-    return replayed
 
 
 def read_json(body: bytes, most_depth: int) -> Any:

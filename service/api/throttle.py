@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import math
 import time
@@ -10,42 +9,31 @@ from collections.abc import AsyncIterator, Callable
 from http import HTTPStatus
 from typing import Any
 
+from anyio import CapacityLimiter, fail_after
 from starlette.exceptions import HTTPException
 
 _PATIENCE = 30.0  # s
 _MOST = 200  # requests that wait
 
 
-class TurnQueue:
-    """Queue for one type of request: a limited number is answered at a time, the others wait. For one event loop."""
+@contextlib.asynccontextmanager
+async def turn(limiter: CapacityLimiter, name: str) -> AsyncIterator[None]:
+    """Wait for a turn; refuse with status 503 and a reason if too many wait or no turn comes soon.
 
-    def __init__(self, name: str, limit: int) -> None:
-        """Create an empty queue. name: name of these requests, in the plural. limit: number answered at a time."""
-        self.name, self.most = name, limit
-        self._free = asyncio.Semaphore(limit)
-        self._waiting = 0
-
-    @contextlib.asynccontextmanager
-    async def turn(self) -> AsyncIterator[None]:
-        """Wait for a turn; refuse with status 503 and a reason if too many wait or no turn comes soon."""
-        if self._waiting >= _MOST:
-            raise self._busy_error(f"{_MOST} others wait")
-        self._waiting += 1
-        try:
-            async with asyncio.timeout(_PATIENCE):
-                await self._free.acquire()
-        except TimeoutError:
-            raise self._busy_error(f"all were busy for {_PATIENCE:g} s") from None
-        finally:
-            self._waiting -= 1
-        try:
-            yield
-        finally:
-            self._free.release()
-
-    def _busy_error(self, why: str) -> HTTPException:
-        detail = f"at most {self.most} {self.name} can be made at a time; {why}; try again"
-        return HTTPException(503, detail, headers={"Retry-After": "5"})
+    name: name of the requests that share the limiter, in the plural.
+    """
+    too_many = limiter.statistics().tasks_waiting >= _MOST
+    try:
+        with fail_after(0.0 if too_many else _PATIENCE):
+            await limiter.acquire()
+    except TimeoutError:
+        why = f"{_MOST} others wait" if too_many else f"all were busy for {_PATIENCE:g} s"
+        detail = f"at most {limiter.total_tokens} {name} can be made at a time; {why}; try again"
+        raise HTTPException(HTTPStatus.SERVICE_UNAVAILABLE, detail, {"Retry-After": "5"}) from None
+    try:
+        yield
+    finally:
+        limiter.release()
 
 
 class RateLimit:
