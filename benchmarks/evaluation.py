@@ -10,8 +10,8 @@ from timeit import timeit
 import numpy as np
 
 from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
+from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.job import load_job
 

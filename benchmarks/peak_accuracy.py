@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 
 from .machines import MECHANISM, random_designs

@@ -14,8 +14,8 @@ from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 from pymoo.util.ref_dirs import get_reference_directions
 
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 

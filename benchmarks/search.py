@@ -18,7 +18,7 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.search import explore
+from slidercrank.optimise.search.sample_and_zoom import explore
 from slidercrank.optimise.solve import solve
 
 from .machines import Array

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 
-from .extras import NamingExtra
+from .optional_packages import NamingExtra
 
 with NamingExtra("figures need"):
     from matplotlib.figure import Figure

@@ -11,9 +11,9 @@ import numpy as np
 
 from ..model.kinematics.closed_forms import ClosedForm, closed_form_value, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import require_width
-from ..model.machine.raw import Raw
-from .bounds import QuantityBounds
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import require_width
+from .bounds_over_ranges import QuantityBounds
 from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
 
 

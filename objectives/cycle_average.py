@@ -7,8 +7,8 @@ from typing import Literal
 
 from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import raw_number_at_slot
-from ..model.machine.raw import Raw
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import raw_number_at_slot
 from ..model.signals.averages import average
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal

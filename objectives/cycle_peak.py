@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
+from ..model.signals.fast_torque_and_error import ANGLES, is_supported, screened_maxima
 from ..model.signals.peaks import find_peaks
-from ..model.signals.screening import ANGLES, is_supported, screened_maxima
 from ..model.signals.signal_inputs import has_load_change_at_dead_centres
 from ..model.signals.signals import Signal
 from .quantity import Array, Pieces, Quantity, Values

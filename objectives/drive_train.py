@@ -10,8 +10,8 @@ from functools import partial
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import DRIVE, formula_of_numbers
-from ..model.machine.raw import Raw
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import DRIVE, formula_of_numbers
 from ..model.signals.motor_curves import MotorCurve, motor_averages, motor_peaks
 from ..model.signals.peaks import STORED_PEAKS
 from ..model.signals.shaft_statistics import greatest_speed_ratio

@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from ..model.machine.dissipation import with_loads_alone
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import formula_of_numbers
-from ..model.machine.raw import Raw
-from ..model.machine.two_turns import cycle_turns
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import formula_of_numbers
+from ..model.machine.two_turn_machine import cycle_turns
+from ..model.machine.work_absorption import with_loads_alone
 from ..model.signals.averages import average_torque
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .average_torque import MEAN_TORQUE

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.raw import Raw
+from ..model.machine.raw_machine_vector import Raw
 from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import LENGTH
 from .proportions import FOOTPRINT

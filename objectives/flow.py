@@ -13,17 +13,17 @@ import numpy as np
 from ..model.cycle.gas_cycle import cylinders, gas_cycle_number
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
+from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.loads.compressor import Compressor
 from ..model.machine.loads.crank_torque import CrankTorque
 from ..model.machine.loads.cylinder import Cylinder
 from ..model.machine.loads.load import Load
 from ..model.machine.loads.stroke_force import StrokeForce
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.members import cylinder_count
 from ..model.machine.memoise import memoise_by_machine
-from ..model.machine.numbers import formula_of_numbers
-from ..model.machine.raw import LOAD_SLOTS, Raw
-from ..model.machine.varying import Varying
+from ..model.machine.raw_machine_vector import LOAD_SLOTS, Raw
+from ..model.machine.raw_numbers_of_designs import formula_of_numbers
+from ..model.machine.varying_numbers import Varying
 from ..model.signals.peaks import find_peaks
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal

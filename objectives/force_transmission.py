@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.machine.dissipation import carries_linkage_forces, has_slider_loads
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.work_absorption import carries_linkage_forces, has_slider_loads
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
 from .kinds import RATIO

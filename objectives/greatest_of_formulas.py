@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import formula_of_numbers
 from .quantity import Array, Pieces, Quantity, Values, undefined
 
 

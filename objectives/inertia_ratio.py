@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.numbers import DRIVE, formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import DRIVE, formula_of_numbers
 from ..model.signals.averages import average
 from ..model.signals.peaks import find_peaks
 from ..model.signals.signals import Signal

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..model.machine.design import link_properties
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.raw import Raw
+from ..model.machine.raw_machine_vector import Raw
 from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import MASS
 from .machine_needs import CRANK_MASS as CRANK_WEIGHS

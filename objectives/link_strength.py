@@ -13,7 +13,7 @@ from ..model.kernel.arithmetic import magnitude
 from ..model.machine.mechanism import Mechanism
 from ..model.strength.stress_cycle import stress_peaks
 from ..model.strength.stress_locations import Eye, LinkBody, StressLocation
-from .bars import (
+from .bar_pieces import (
     LINKS,
     NEAR,
     STATIC,

@@ -8,7 +8,11 @@ from functools import partial
 from typing import Literal
 
 from ..model.cycle.gas_cycle import compressors, cylinders
-from ..model.machine.dissipation import (
+from ..model.machine.cylinder_machines import cylinder_count
+from ..model.machine.links import Bar
+from ..model.machine.mechanism import Mechanism
+from ..model.machine.two_turn_machine import cycle_turns
+from ..model.machine.work_absorption import (
     carries_linkage_forces,
     carries_pivot_force,
     crank_weighs,
@@ -18,10 +22,6 @@ from ..model.machine.dissipation import (
     may_do_work_over_a_turn,
     needs_drive_torque,
 )
-from ..model.machine.links import Bar
-from ..model.machine.mechanism import Mechanism
-from ..model.machine.members import cylinder_count
-from ..model.machine.two_turns import cycle_turns
 from ..model.signals.shaking_balance import has_rocking_couple, has_shaking_force
 
 Consequence = Literal["undefined", "equal", "zero"]

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from ..model.machine.cylinder_machines import single_cylinder
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.members import single_cylinder
-from ..model.machine.numbers import PINS, formula_of_numbers
-from ..model.machine.raw import Raw
-from ..model.machine.two_turns import cycle_turns
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import PINS, formula_of_numbers
+from ..model.machine.two_turn_machine import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
-from .bars import LINKS, NEAR, BarPeak, BarPieces, BarQuantity, SectionLoad, material_and_pins
+from .bar_pieces import LINKS, NEAR, BarPeak, BarPieces, BarQuantity, SectionLoad, material_and_pins
 from .kinds import LENGTH, PRESSURE, PRESSURE_SPEED
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, PIVOT_LOADED, ROD_BAR, SPEED, STRENGTH, WEARS, Need
 from .quantity import Array, Formula

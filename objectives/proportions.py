@@ -6,7 +6,7 @@ import math
 
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
-from .bounds import LengthRanges, QuantityBounds
+from .bounds_over_ranges import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import AREA, LENGTH, RATIO
 from .quantity import Domain, Group

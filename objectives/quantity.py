@@ -15,7 +15,7 @@ import numpy as np
 from ..model.arrays import Array as Array
 from ..model.arrays import IntArray
 from ..model.machine.mechanism import Mechanism
-from .bounds import QuantityBounds
+from .bounds_over_ranges import QuantityBounds
 from .kinds import DisplayUnit, Kind
 from .machine_needs import Consequence, Need
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from ..model.cycle.stroke_times import ScaledStrokeTimes, scaled_stroke_times
 from ..model.kernel.arithmetic import STEP
+from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.members import cylinder_count
-from ..model.machine.numbers import formula_of_numbers, require_width
-from ..model.machine.raw import Raw
+from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import formula_of_numbers, require_width
 from .kinds import RATIO, TIME
 from .machine_needs import ONE_TIMING, REPEATS, SPEED
 from .quantity import Array, Formula, Group, Pieces, Quantity, Values, undefined

@@ -10,7 +10,7 @@ import numpy as np
 from ..model.kinematics import geometry
 from ..model.kinematics.closed_forms import ClosedForm
 from ..model.machine.mechanism import Mechanism
-from .bounds import LengthRanges, QuantityBounds
+from .bounds_over_ranges import LengthRanges, QuantityBounds
 from .closed_form import ClosedFormQuantity
 from .kinds import RATIO
 from .machine_needs import ONE_TIMING

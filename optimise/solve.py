@@ -12,26 +12,26 @@ import numpy as np
 from ..model.arrays import Array
 from ..model.errors import InputError
 from ..model.kernel.interruption import interrupted_by
-from .certificate.infeasible import prove_infeasible
+from .certificate.infeasibility_certificate import prove_infeasible
 from .engine.engine import Engine
-from .feasibility.best import Best, find_best_design
+from .feasibility.best_value import Best, find_best_design
 from .feasibility.infeasibility import diagnose
-from .feasibility.valueless import require_finite, valueless_quantity_text_of_variants
+from .feasibility.quantities_without_value import require_finite, valueless_quantity_text_of_variants
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver, search_with
 from .methods.auto.partial_front import partial_front
 from .methods.registry import method_of, require_gradients, require_supported_equalities, require_supported_settings
-from .problem.always_zero import require_nonzero_quantities
-from .problem.impossible import require_possible_problem
+from .problem.always_zero_quantities import require_nonzero_quantities
+from .problem.contradictory_problems import require_possible_problem
 from .problem.problem import Problem, require_problem
-from .search.assemble import empty_front
+from .search.assemble_front import empty_front
 from .search.checkpoints import Cancelled, Checkpoints, Record, require_records_of
 from .search.elimination import elimination_branches
 from .search.evaluation import Evaluator
 from .search.fingerprint import identity_of
-from .search.mirror import drop_mirrored_branches
-from .search.search import Archive, Callback, Run, searched_evaluators, zoom
+from .search.mirrored_branches import drop_mirrored_branches
+from .search.sample_and_zoom import Archive, Callback, Run, searched_evaluators, zoom
 
 
 def solve(
@@ -139,7 +139,7 @@ class _ContinuousSolver:
 
 def _solve_discrete(problem: Problem, solver: _ContinuousSolver) -> ParetoFront:
     """Return the front of a problem with discrete numbers."""
-    from .discrete.front import discrete_front
+    from .discrete.discrete_front import discrete_front
 
     run = solver.start_run(problem)
     evaluators: list[Evaluator] = []

@@ -129,7 +129,7 @@ def _reword_option_error(error: Exception) -> None:
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
     from ..objectives.units import quote
-    from ..optimise.job.messages import rule_of
+    from ..optimise.job.mistake_messages import rule_of
 
     details = refused.errors(include_url=False)[0]
     error.message = f"{rule_of(details)}; got {quote(details['input'])}"

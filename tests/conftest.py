@@ -21,7 +21,7 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("fixed")
     if "NUMBA_CPU_NAME" in os.environ:
         # Another processor's kernels are for these tests alone: no processes besides compile those that none calls.
-        pytest.MonkeyPatch().setattr("slidercrank.model.kernel.disk.compile_in_processes", lambda *_: None)
+        pytest.MonkeyPatch().setattr("slidercrank.model.kernel.disk_cache.compile_in_processes", lambda *_: None)
     gc.disable()  # while objects only come
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.formula.formulas import Formulas
 from slidercrank.optimise.problem.requirements import Range
 

@@ -76,23 +76,23 @@ __all__ = [
 
 if TYPE_CHECKING:
     from slidercrank.model.errors import AssemblyError, InfeasibleError, InputError, JobError, SlidercrankError
-    from slidercrank.model.linkage.inverse import crank_from_stroke
+    from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
     from slidercrank.model.linkage.linkage import Linkage
     from slidercrank.model.machine.mechanism import Mechanism
-    from slidercrank.objectives.tables.evaluate import evaluate
+    from slidercrank.objectives.tables.evaluate_quantities import evaluate
     from slidercrank.optimise.adapters.jax import jax_function
     from slidercrank.optimise.adapters.openmdao import openmdao_component
     from slidercrank.optimise.adapters.optuna import optuna_objective
     from slidercrank.optimise.adapters.pymoo import pymoo_problem
     from slidercrank.optimise.adapters.standard_form import StandardForm, standard_form
     from slidercrank.optimise.adapters.torch import torch_function
-    from slidercrank.optimise.decisions.like import like
-    from slidercrank.optimise.decisions.quantities import quantities
+    from slidercrank.optimise.decisions.quantity_table import quantities
+    from slidercrank.optimise.decisions.similar_design import like
     from slidercrank.optimise.decisions.wish import wish
     from slidercrank.optimise.front.choose_design import Priority
     from slidercrank.optimise.front.front import ParetoFront
     from slidercrank.optimise.job import job_schema, load_job
-    from slidercrank.optimise.job.tables import problem
+    from slidercrank.optimise.job.problem_from_tables import problem
     from slidercrank.optimise.problem.design_analysis import Analysis, analyse
     from slidercrank.optimise.problem.problem import Problem
     from slidercrank.optimise.problem.requirements import Constraint, Objective
@@ -103,7 +103,7 @@ else:
     # Hidden from type checkers, which would accept every misspelt name.
     _HOMES = {
         "model.errors": ("AssemblyError", "InfeasibleError", "InputError", "JobError", "SlidercrankError"),
-        "model.linkage.inverse": ("crank_from_stroke",),
+        "model.linkage.inverse_kinematics": ("crank_from_stroke",),
         "model.linkage.linkage": ("Linkage",),
         "model.machine.mechanism": ("Mechanism",),
         "optimise.adapters.jax": ("jax_function",),
@@ -115,13 +115,13 @@ else:
         "optimise.front.front": ("ParetoFront",),
         "optimise.front.choose_design": ("Priority",),
         "optimise.job": ("job_schema", "load_job"),
-        "optimise.job.tables": ("problem",),
+        "optimise.job.problem_from_tables": ("problem",),
         "optimise.problem.design_analysis": ("Analysis", "analyse"),
-        "objectives.tables.evaluate": ("evaluate",),
+        "objectives.tables.evaluate_quantities": ("evaluate",),
         "optimise.problem.problem": ("Problem",),
         "optimise.problem.requirements": ("Constraint", "Objective"),
-        "optimise.decisions.like": ("like",),
-        "optimise.decisions.quantities": ("quantities",),
+        "optimise.decisions.similar_design": ("like",),
+        "optimise.decisions.quantity_table": ("quantities",),
         "optimise.decisions.wish": ("wish",),
         "optimise.solve": ("solve",),
     }

@@ -35,7 +35,7 @@ from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
 from ..machine.design import design_at
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 
 STATES = 7
 """Gap x, y; gap velocity x, y; work of the drive, work of the loads, dissipated energy."""

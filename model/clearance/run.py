@@ -15,9 +15,9 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.clearance import Clearance
+from ..machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
-from ..machine.members import require_single_cylinder_at_constant_speed
 from .equations import reported_quantities
 from .phases import FLIGHT, Integrator, Trace
 from .system import build_system

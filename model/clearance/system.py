@@ -8,11 +8,11 @@ from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.clearance import Clearance
-from ..machine.crank_loads import require_no_crank_load
-from ..machine.derived import derived_blocks
+from ..machine.crank_load_checks import require_no_crank_load
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import Loads, Raw, load_structure, raw_vector
+from ..machine.raw_machine_vector import Loads, Raw, load_structure, raw_vector
 from .equations import System
 
 

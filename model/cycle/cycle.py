@@ -10,20 +10,20 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
-from ..dynamics.contact import needs_friction_kernel, sides_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.friction_signs import needs_friction_kernel, sides_of
 from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
+from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
-from ..machine.derived import derived_blocks
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.raw import Loads, load_structure, raw_vector
-from ..machine.two_turns import TURN, cycle_turns, half_at, machines_of_both_turns, require_one_turn
+from ..machine.raw_machine_vector import Loads, load_structure, raw_vector
+from ..machine.two_turn_machine import TURN, cycle_turns, half_at, machines_of_both_turns, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion

@@ -25,9 +25,9 @@ from ..dynamics.segments import crank_angle_from_crowded, crowded_from_crank_ang
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import TURN, cycle_turns
+from ..machine.two_turn_machine import TURN, cycle_turns
 from ..signals.averages import average
-from ..signals.panels import panels_of
+from ..signals.panel_polynomials import panels_of
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
 

@@ -20,16 +20,16 @@ from ..arrays import Array
 from ..dynamics.gas import compression_end_position, expansion_end_position
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import require_full_rotation
-from ..machine.derived import derived_blocks
+from ..machine.cylinder_machines import cylinder_count
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.compressor import Compressor
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_count
-from ..machine.numbers import raw_numbers_of_designs
-from ..machine.raw import raw_inputs_with_all_features
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.raw_machine_vector import raw_inputs_with_all_features
+from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
 _SERIES = 1e-4  # |x| below which f is computed from its series: x^4 / 120 is then below rounding

@@ -16,7 +16,7 @@ from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from ..machine.raw import load_structure, raw_vector
+from ..machine.raw_machine_vector import load_structure, raw_vector
 from .cycle import cycle
 from .self_locking import locking_margin
 

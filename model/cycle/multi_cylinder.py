@@ -18,15 +18,15 @@ from ..arrays import Array
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.arrangement import Arrangement
+from ..machine.cylinder_machines import member_machines
 from ..machine.mechanism import Mechanism
-from ..machine.members import member_machines
 from ..machine.speed_profile import time_per_angle
-from ..machine.two_turns import TURN, cycle_turns
-from ..signals.first_greatest import angle_in_cycle
-from ..signals.panels import Extreme, Panels, panels_of, peak_of
+from ..machine.two_turn_machine import TURN, cycle_turns
+from ..signals.first_of_equal_maxima import angle_in_cycle
+from ..signals.panel_polynomials import Extreme, Panels, panels_of, peak_of
 from .crank_speed import crank_speed_and_acceleration, speed_knots
 from .cycle import breakpoints, cycle
-from .shaking import shaking_curves
+from .moving_mass_effects import shaking_curves
 
 _PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 256

@@ -33,8 +33,8 @@ from ..kinematics.geometry import least_transmission_angle
 from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import raw_number_at_slot, require_width
-from ..machine.raw import Raw
+from ..machine.raw_machine_vector import Raw
+from ..machine.raw_numbers_of_designs import raw_number_at_slot, require_width
 
 
 def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:

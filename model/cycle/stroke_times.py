@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kinematics import geometry
 from ..linkage.linkage import Linkage
+from ..machine.cylinder_machines import cylinder_machines
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_machines
 from ..machine.speed_profile import Profile
 
 _EQUAL = 1e-12  # fraction of their sum: a smaller difference between stroke times is a rounding error

@@ -9,10 +9,10 @@ import numpy as np
 from ..arrays import Array
 from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
 from ..machine.design import design_at
-from ..machine.raw import Loads
-from .contact import add_contact_cuts
-from .rubbing import always_drives
+from ..machine.raw_machine_vector import Loads
+from .friction_signs import add_contact_cuts
 from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
+from .torque_with_friction import always_drives
 
 
 class Breakpoints(NamedTuple):

@@ -18,7 +18,7 @@ from ..kinematics.position import motion
 from ..machine.design import AREA, DESIGN, LOAD_ROWS, Design
 from ..machine.loads.load import Enters
 from ..machine.loads.registry import force_of
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 from .gas import burning_force, gas_force, pressure_piece_at, valve_event_positions
 from .torque import load_without_pieces
 

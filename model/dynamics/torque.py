@@ -8,7 +8,7 @@ vector from the link's origin to its mass centre), A the crank pin, B the slider
 - rod, forces: A = B + m_rod (a_A - G) + S_tt;
 - crank, moments about the pivot: T = I_O alpha - C x G + r_OA x A; forces: P = A + C_tt - m_crank G.
 
-Friction adds to these equations: `rubbing`.
+Friction adds to these equations: `torque_with_friction`.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ from pathlib import Path
 from threading import Thread
 from typing import NamedTuple
 
-from .closure import code_lengths
-from .disk import (
+from .cache_folder import kernel_folder
+from .disk_cache import (
     INTO,
     MODEL,
     KernelSource,
@@ -29,8 +29,8 @@ from .disk import (
     locked,
     read_from_any_folder,
 )
-from .folder import kernel_folder
 from .kernel import KERNELS, Kernel
+from .kernel_digest import code_lengths
 
 _MOSTLY = 0.7
 """Fraction of formulas shared with another kernel above which a kernel is cheap to compile after that one."""

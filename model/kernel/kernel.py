@@ -13,7 +13,7 @@ from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type
 import numpy as np
 from numpy.typing import NDArray
 
-from .disk import KernelSource, machine_code
+from .disk_cache import KernelSource, machine_code
 from .machine_code import Leaf, load
 
 Function = TypeVar("Function", bound=Callable[..., Any])

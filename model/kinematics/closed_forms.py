@@ -12,7 +12,7 @@ from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import Row, Table, kernel
 from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
-from .in_line import is_in_line
+from .negligible_offset import is_in_line
 
 
 class ClosedForm(IntEnum):

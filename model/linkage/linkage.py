@@ -17,8 +17,8 @@ from ..kinematics import geometry
 from ..kinematics.position import Motion, motion
 from ..machine.mechanism import Branch
 from ..signals.position_error import Influences, influences
+from .crank_angles_from_slider import CrankSolution, crank_solutions
 from .dimensions import DIMENSIONS
-from .from_slider import CrankSolution, crank_solutions
 from .linkage_picture import Pose, figure, svg
 from .linkage_values import (
     Kinematics,
@@ -192,7 +192,7 @@ class Linkage:
     ) -> tuple[CrankSolution, ...]:
         """Return all crank angles that put the slider of one linkage at a position, each with the crank's motion.
 
-        theta = atan2(e, x) -+ beta as in `slidercrank.model.linkage.inverse`; speed = v / x', acceleration =
+        theta = atan2(e, x) -+ beta as in `slidercrank.model.linkage.inverse_kinematics`; speed = v / x', acceleration =
         (a - x'' speed^2) / x'. position: m, signed as x; velocity, m/s, and acceleration, m/s^2: along +x.
         There are two solutions, the outward one first; one at a dead centre, or if the other is on the other branch. At
         a dead centre any crank speed leaves the slider at rest: speed and acceleration are None.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, Mask
 from ..errors import AssemblyError, InputError
 from ..input_warning import LONGEST, reading_in_both_units
-from ..kinematics.in_line import is_in_line
+from ..kinematics.negligible_offset import is_in_line
 from .dimensions import DIMENSIONS
 
 

@@ -13,7 +13,7 @@ from ..kernel.arithmetic import analytic, inverse, magnitude, root
 from ..kinematics.geometry import inner_crank_angle, inner_dead_centre, outer_crank_angle, outer_dead_centre
 from .loads.engine import burning_stroke_fraction
 from .loads.load import Enters
-from .raw import LOAD_SLOTS, Raw
+from .raw_machine_vector import LOAD_SLOTS, Raw
 
 _CRANK, _ROD, _OFFSET, _BRANCH = int(Raw.CRANK), int(Raw.ROD), int(Raw.OFFSET), int(Raw.BRANCH)
 _CRANK_LINK, _ROD_LINK = int(Raw.CRANK_WIDTH), int(Raw.ROD_WIDTH)

@@ -21,7 +21,7 @@ from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .strength import Strength
 from .swing_start import Start
-from .varying import Varying, require_valid_variables, with_values
+from .varying_numbers import Varying, require_valid_variables, with_values
 
 Branch = Literal["open", "crossed"]
 

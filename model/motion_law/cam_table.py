@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..transient.equation import TURN
+from ..transient.crank_equation import TURN
 from .motion_law import MotionLaw
 
 POINTS = 1_000

@@ -5,8 +5,8 @@ With the kinetic energy K = J w^2 / 2 of all moving parts and phi the angle pass
     dK / d(phi) = T - Q(phi),        w^2 = 2 K / J(phi),        alpha = (T - Q - K J' / J) / J,
 
 where T is the torque in that direction, and Q is the torque that gravity and loads absorb. J and Q follow from the
-equation of motion (`model.transient.equation`); the drive's inertia at the crank counts as part of the crank. Cells end
-at all breakpoints, so that every term is smooth within a cell and is known at its 16 Gauss-Legendre nodes.
+equation of motion (`model.transient.crank_equation`); the drive's inertia at the crank counts as part of the crank.
+Cells end at all breakpoints, so that every term is smooth within a cell and is known at its 16 Gauss-Legendre nodes.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import cycle_turns
+from ..machine.two_turn_machine import cycle_turns
 from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, WEIGHTS
-from ..transient.equation import TURN, CrankEquation
-from ..transient.turn import PeriodicTurn
+from ..transient.crank_equation import TURN, CrankEquation
+from ..transient.steady_cycle import PeriodicTurn
 
 
 def with_drive_inertia(mechanism: Mechanism) -> Mechanism:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..quadrature import NODES
-from ..transient.equation import TURN
+from ..transient.crank_equation import TURN
 from ..transient.speed_profile_cycle import CrankMotion
 from .law_turn import LawTurn, values_at
 

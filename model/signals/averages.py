@@ -10,18 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import needs_friction_kernel
+from ..dynamics.friction_signs import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.dissipation import may_do_work_over_a_turn
+from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_treated_as_shaft
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.work_absorption import may_do_work_over_a_turn
 from .shaft_statistics import shaft_signal_averages
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 from .turn_means import MeansTask, turn_means
-from .two_turns import averages_of_both_turns
+from .two_turn_peaks import averages_of_both_turns
 
 
 @dataclass(frozen=True)

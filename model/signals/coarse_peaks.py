@@ -1,10 +1,10 @@
 """Location of the peaks of very many designs: curves sampled in single precision, and their highest samples.
 
-The sweep only has to find the cell that contains a peak; `screening` refines the peak in double precision, with the
-formulas from `signals`. Single precision is twice as fast and is sufficient. Near locking its rounding error grows to
-1e-7 l / (l - r - |e|), but the drop from a peak to the next sample grows to spacing^2 / 4 times the same factor, a
-thousand times as much at 360 angles. A second peak that is equally high to rounding could still mislead, so it is
-refined as well. Lengths are scaled by the rod, and curves to about one, so that nothing overflows in any unit.
+The sweep only has to find the cell that contains a peak; `fast_torque_and_error` refines the peak in double precision,
+with the formulas from `signals`. Single precision is twice as fast and is sufficient. Near locking its rounding error
+grows to 1e-7 l / (l - r - |e|), but the drop from a peak to the next sample grows to spacing^2 / 4 times the same
+factor, a thousand times as much at 360 angles. A second peak that is equally high to rounding could still mislead, so
+it is refined as well. Lengths are scaled by the rod, and curves to about one, so that nothing overflows in any unit.
 
 For the same reason, the torque comes from virtual work here, with half the operations of the joint forces in
 `dynamics`; tests compare the two. Let S be the rod's first moment about the crank pin, C that of the crank, to which

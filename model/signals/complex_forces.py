@@ -10,16 +10,16 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.contact import needs_friction_kernel, sides_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.friction_signs import needs_friction_kernel, sides_of
 from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
 from ..dynamics.torque import Forces
+from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, rarely_used_kernel
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.raw import Loads, load_structure, raw_vector
+from ..machine.raw_machine_vector import Loads, load_structure, raw_vector
 from .signals import design_motion
 
 ComplexArray = NDArray[np.complex128]

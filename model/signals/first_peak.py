@@ -6,8 +6,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import TURN, cycle_turns
-from .first_greatest import angle_in_cycle, first_greatest
+from ..machine.two_turn_machine import TURN, cycle_turns
+from .first_of_equal_maxima import angle_in_cycle, first_greatest
 from .peaks import find_peaks
 from .signals import Signal
 

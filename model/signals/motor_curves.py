@@ -25,12 +25,12 @@ from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks, require_full_rotation
 from ..linkage.linkage import Linkage
+from ..machine.cylinder_machines import cylinder_count
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_count
 from ..machine.memoise import memoise_by_batch
-from ..machine.numbers import DRIVE, raw_number_at_slot
-from ..machine.raw import Raw, knot_count
+from ..machine.raw_machine_vector import Raw, knot_count
+from ..machine.raw_numbers_of_designs import DRIVE, raw_number_at_slot
 from .peaks import Peaks
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE_OVER_TIME, shaft_means

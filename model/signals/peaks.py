@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import needs_friction_kernel
+from ..dynamics.friction_signs import needs_friction_kernel
 from ..kernel.batches import in_chunks, require_full_rotation
-from ..machine.derived import derived_blocks
+from ..machine.cylinder_machines import is_treated_as_shaft
+from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_treated_as_shaft
-from ..machine.numbers import raw_numbers_of_designs
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
 from .turn_peaks import TurnTask, find_in_turns
-from .two_turns import highest_peaks_of_both_turns
+from .two_turn_peaks import highest_peaks_of_both_turns
 
 ANGLES = 128
 """Sampled angles per turn. Alone, they miss the higher of two close peaks on 3 of 750,000 random machines with all

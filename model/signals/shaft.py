@@ -10,18 +10,18 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import breakpoints_of
-from ..dynamics.contact import needs_friction_kernel
-from ..dynamics.rubbing import always_drives
+from ..dynamics.friction_signs import needs_friction_kernel
 from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
+from ..dynamics.torque_with_friction import always_drives
 from ..kinematics import geometry
-from ..machine.derived import derived_blocks
+from ..machine.cylinder_machines import cylinder_machines, single_cylinder
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_machines, single_cylinder
-from ..machine.numbers import raw_numbers_of_designs
-from ..machine.raw import Loads
-from ..machine.two_turns import TURN, cycle_turns, half_at, machines_of_both_turns
+from ..machine.raw_machine_vector import Loads
+from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.two_turn_machine import TURN, cycle_turns, half_at, machines_of_both_turns
 from .cycle_segments import Segments
 from .roots import find_roots
 from .shaft_curves import (

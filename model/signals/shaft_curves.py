@@ -14,10 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
+from ..dynamics.friction_signs import sides_of
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.rubbing import Sides, guide_side_function, joint_forces_with_optional_friction
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -27,11 +26,12 @@ from ..dynamics.segments import (
     load_on_slider,
 )
 from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
+from ..dynamics.torque_with_friction import Sides, guide_side_function, joint_forces_with_optional_friction
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, rarely_used_kernel
 from ..kinematics.position import third_slider_derivative
 from ..machine.design import Design, design_at
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 from .signals import Signal, design_motion, slider_pin_to_guide_centre
 
 TOUCH, WORK = 100, 101

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..machine.two_turns import TURN
+from ..machine.two_turn_machine import TURN
 from .cycle_segments import Segments
 
 FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4

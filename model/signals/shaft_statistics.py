@@ -14,13 +14,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.batches import in_chunks
-from ..machine.dissipation import may_do_work_over_a_turn
+from ..machine.cylinder_machines import cylinder_count, cylinder_machines, single_cylinder
 from ..machine.mechanism import Mechanism
-from ..machine.members import cylinder_count, cylinder_machines, single_cylinder
 from ..machine.memoise import memoise_by_machine
-from ..machine.raw import knot_count
-from ..machine.two_turns import TURN
-from .panels import panels_of
+from ..machine.raw_machine_vector import knot_count
+from ..machine.two_turn_machine import TURN
+from ..machine.work_absorption import may_do_work_over_a_turn
+from .panel_polynomials import panels_of
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK

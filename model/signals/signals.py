@@ -7,9 +7,9 @@ from typing import Any
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.inertia import reflected_inertia, shaking
-from ..dynamics.rubbing import Sides, joint_forces_with_optional_friction
 from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import forces
+from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_slider_derivative
 from ..machine.design import Design

@@ -21,9 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.contact import add_contact_cuts, cut_imaginary_shift, sides_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.rubbing import Sides, always_drives, joint_forces_with_optional_friction
+from ..dynamics.friction_signs import add_contact_cuts, cut_imaginary_shift, sides_of
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -36,15 +35,16 @@ from ..dynamics.segments import (
     enter_segment,
     load_on_slider,
 )
+from ..dynamics.torque_with_friction import Sides, always_drives, joint_forces_with_optional_friction
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
 from ..kinematics.position import motion_from_rod_vector
-from ..machine.derived import derived_blocks
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import raw_numbers_of_designs
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
+from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
 from ..quadrature import ANGLE_ROUNDING, DEEPEST, MOST_HALVINGS, NODES, TAIL, WEIGHTS
 from .signals import Signal, signal_of_forces, signal_of_motion
 

@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.contact import add_contact_cuts, cut_imaginary_shift, sides_of
-from ..dynamics.rubbing import Sides, always_drives
+from ..dynamics.friction_signs import add_contact_cuts, cut_imaginary_shift, sides_of
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -28,10 +27,11 @@ from ..dynamics.segments import (
     cut_cycle,
     enter_segment,
 )
+from ..dynamics.torque_with_friction import Sides, always_drives
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, kernel
 from ..machine.design import Design, design_at
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 from .signals import design_motion, signal_in_segment
 
 _FINER, _NEAR = 16, 0.95  # samples in that row, and how close to the highest a sample must be to get one

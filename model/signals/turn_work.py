@@ -17,13 +17,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..arrays import Array
-from ..dynamics.contact import needs_friction_kernel
+from ..dynamics.friction_signs import needs_friction_kernel
 from ..dynamics.segments import CycleWindow
 from ..kernel.batches import require_full_rotation
+from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism
-from ..machine.members import is_treated_as_shaft
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 from .shaft_statistics import shaft_turn_work
 from .signal_inputs import signal_inputs
 from .signals import Signal

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 from .section_forces import CRANK, Stress, stress_at_length_fraction
 from .stress_points import WIDE, stress_field_of
 

@@ -32,7 +32,7 @@ from ..errors import InputError
 from ..kernel.batches import in_chunks, require_full_rotation
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turns import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 from .section_forces import Stress, stress_at_length_fraction
 from .stress_locations import StressLocation, StressLocations, stress_at_locations
 from .stress_points import stress_field_of

@@ -22,7 +22,7 @@ import numpy as np
 from ..arrays import Array, IntArray, Mask
 from ..kernel.kernel import Integers, IntegerTable, Table, rarely_used_kernel
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import formula_of_numbers
+from ..machine.raw_numbers_of_designs import formula_of_numbers
 from .section_forces import CRANK
 from .stress_points import WIDE, Field, Samples
 

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
-from ..dynamics.contact import cut_imaginary_shift, needs_friction_kernel, sides_of
-from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.friction_signs import cut_imaginary_shift, needs_friction_kernel, sides_of
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -27,13 +26,14 @@ from ..dynamics.segments import (
     enter_segment,
     load_on_slider,
 )
+from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, rarely_used_kernel
-from ..machine.derived import derived_blocks
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import Numbers, raw_numbers_of_designs
-from ..machine.raw import Loads, Raw
+from ..machine.raw_machine_vector import Loads, Raw
+from ..machine.raw_numbers_of_designs import Numbers, raw_numbers_of_designs
 from ..signals.signal_inputs import cycle_window, signal_inputs
 from ..signals.signals import Signal, design_motion
 from .section_forces import stress_along

@@ -19,7 +19,7 @@ from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
-from .ends import Ends, ends_of
+from .end_angles import Ends, ends_of
 from .slider_pin_force import pin_distance_from_crank_line
 from .swing import Swing
 

@@ -13,18 +13,18 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..dynamics.rubbing import determinacy_margin
+from ..dynamics.torque_with_friction import determinacy_margin
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..kinematics.position import motion
-from ..machine.derived import derived_blocks
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
-from ..machine.numbers import raw_numbers_of_designs
-from ..machine.raw import raw_inputs_with_all_features
+from ..machine.raw_machine_vector import raw_inputs_with_all_features
+from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
 from .closure import swings_without_dead_point, transmission_angle_candidates
-from .ends import Ends, append_start_number, ends_of, greatest_pin_distance, swing_start_column
+from .end_angles import Ends, append_start_number, ends_of, greatest_pin_distance, swing_start_column
 from .forces import locking_angle
 from .law import corners, reversed_law_pieces, time_fractions_at_travel
 from .swing import Swing, without_inertia

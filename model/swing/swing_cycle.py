@@ -15,7 +15,7 @@ from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
-from ..machine.raw import load_structure
+from ..machine.raw_machine_vector import load_structure
 from ..quadrature import graded_gauss
 from .forces import SwingCurves, driver_start_and_end, swing_curves
 from .law import corners, reversed_law_pieces, time_fractions_at_travel

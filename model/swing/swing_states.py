@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..dynamics.contact import sides_of
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.rubbing import joint_forces_with_optional_friction
+from ..dynamics.friction_signs import sides_of
 from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
 from ..dynamics.torque import add_crank_couple, balance_before_pin_force
+from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import motion
 from ..machine.design import Design, design_at
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 from ..signals.position_error import influences, worst_case
 from .law import code_of, travel_and_derivatives_at
 from .slider_pin_force import (

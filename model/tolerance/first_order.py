@@ -12,7 +12,7 @@ from ..cycle.cycle import cycle
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from .sources import limit_box, limits_of_sources, source_influences
+from .error_sources import limit_box, limits_of_sources, source_influences
 
 
 @dataclass(frozen=True)

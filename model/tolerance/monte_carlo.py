@@ -20,8 +20,8 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .sources import angles_where_error_counts, limits_of_sources, source_influences
-from .spreads import Draw, Spreads
+from .error_distributions import Draw, Spreads
+from .error_sources import angles_where_error_counts, limits_of_sources, source_influences
 
 CHUNK = 1024
 """Machines per chunk: each chunk has its own random stream, so that runs of any length begin alike."""

@@ -24,7 +24,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.drive import ConstantTorque, Drive
 from ..machine.mechanism import Mechanism
-from .steady import Runner, SteadyRunning
+from .steady_running import Runner, SteadyRunning
 
 _WIDEST = 60
 """Number of times that the largest trial flywheel is enlarged."""

@@ -27,15 +27,15 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.rubbing import Sides, guide_side_function, joint_forces_with_optional_friction
 from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import balance_before_pin_force
+from ..dynamics.torque_with_friction import Sides, guide_side_function, joint_forces_with_optional_friction
 from ..errors import InputError
 from ..kernel.arithmetic import analytic, root
 from ..kernel.kernel import ComplexTable, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import Motion
 from ..machine.design import Design, design_at
-from ..machine.raw import Loads
+from ..machine.raw_machine_vector import Loads
 from ..signals.signals import design_motion
 
 ITERATIONS = 100

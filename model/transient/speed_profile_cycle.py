@@ -20,14 +20,14 @@ import numpy as np
 from ..arrays import Array
 from ..cycle.crank_speed import crank_speed_and_acceleration, speed_knots
 from ..cycle.cycle import Cycle, breakpoints, cycle
-from ..cycle.shaking import shaking_curves
+from ..cycle.moving_mass_effects import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from ..machine.two_turns import TURN, cycle_turns
-from ..signals.first_greatest import angle_in_cycle
-from ..signals.panels import Extreme, panels_of, peak_of
+from ..machine.two_turn_machine import TURN, cycle_turns
+from ..signals.first_of_equal_maxima import angle_in_cycle
+from ..signals.panel_polynomials import Extreme, panels_of, peak_of
 
 _PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 360

@@ -9,14 +9,14 @@ import numpy as np
 
 from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
-from ..machine.derived import derived_blocks
+from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design
 from ..machine.lever_cylinder import buckling_number, piston_areas
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.numbers import LEVER, START, Numbers, raw_numbers_of_designs
-from ..machine.raw import raw_inputs_with_all_features
-from ..machine.varying import number_at
+from ..machine.raw_machine_vector import raw_inputs_with_all_features
+from ..machine.raw_numbers_of_designs import LEVER, START, Numbers, raw_numbers_of_designs
+from ..machine.varying_numbers import number_at
 from ..swing.swing import Swing
 from .peaks import LeverBatch
 from .states import LeverNumbers

@@ -11,9 +11,9 @@ from typing import Protocol
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.numbers import unit_of
-from ..bounds import CLEAR, KnownBounds, QuantityBounds
-from ..bounds import LengthRanges as Box
+from ...model.machine.raw_numbers_of_designs import unit_of
+from ..bounds_over_ranges import CLEAR, KnownBounds, QuantityBounds
+from ..bounds_over_ranges import LengthRanges as Box
 from ..kinds import LENGTH, Kind, kind_in
 from ..quantity import Quantity
 from ..registry import FACTS, QUANTITIES, listed
@@ -28,7 +28,7 @@ from ..units import (
     to_si,
     value_of_one_si_unit_in,
 )
-from .dimensions import kind_of_formula
+from .dimensional_analysis import kind_of_formula
 from .expression import ARGUMENTS, Name, Node, names_in, text_of
 from .linear import Linear, linear_of, unknown
 from .parser import parse

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.numbers import require_width
-from ...model.machine.varying import Varying, number_at
+from ...model.machine.raw_numbers_of_designs import require_width
+from ...model.machine.varying_numbers import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, fold

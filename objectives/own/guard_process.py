@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from .printable import printable
+from .printable_text import printable
 
 PRINTED = 1_000_000
 """Bytes that a function and its descendants may print."""
@@ -35,7 +35,7 @@ def main() -> None:
     del sys.argv[1:]  # modules of the user may read it
     if hasattr(os, "fork"):
         _fork_function_process(int(asking), log)
-    from .child import main as run_function
+    from .function_process import main as run_function
 
     run_function()
 

@@ -22,9 +22,9 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ...model.arrays import IntArray
-from ...model.tolerance.spreads import Shape, error_distribution
+from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..quantity import Array
-from .points import star
+from .tolerance_box_points import star
 
 _FAINT = 1e-15  # smaller weights are rounding errors
 _LEAST = 2.0**-40  # a scrambled point at zero would map to minus infinity in a normal distribution

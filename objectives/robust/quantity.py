@@ -14,11 +14,19 @@ from ...model.arrays import IntArray, Mask
 from ...model.errors import InputError
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...model.tolerance.spreads import Shape, error_distribution
+from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
-from .points import PointValues, corners, evaluate_points, match_pieces, star, tolerance_limits, toleranced_columns
 from .quantile import sample
+from .tolerance_box_points import (
+    PointValues,
+    corners,
+    evaluate_points,
+    match_pieces,
+    star,
+    tolerance_limits,
+    toleranced_columns,
+)
 from .worst_points import worst_inner_points
 
 Side = Literal["high", "low"]

@@ -10,7 +10,14 @@ import numpy as np
 from ...model.arrays import IntArray, Mask
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
-from .points import PointValues, corners, evaluate_points, match_pieces, points_at_zero_offset, tolerance_limits
+from .tolerance_box_points import (
+    PointValues,
+    corners,
+    evaluate_points,
+    match_pieces,
+    points_at_zero_offset,
+    tolerance_limits,
+)
 
 _SIDE_STEP = (
     1e-6  # in units of the limits: distance from offset zero that distinguishes a kink there from a nearby extreme

@@ -24,8 +24,8 @@ from ...model.linkage.linkage import Linkage
 from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
-from ...model.signals.first_greatest import angle_in_cycle, first_greatest
+from ...model.machine.two_turn_machine import cycle_turns
+from ...model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
 from ..kinds import Kind
 from ..machine_needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS

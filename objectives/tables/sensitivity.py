@@ -16,11 +16,11 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, with_start_of_machine
-from ...model.tolerance.sources import limits_of_sources
+from ...model.tolerance.error_sources import limits_of_sources
 from ..kinds import ANGLE, LENGTH, Kind
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
-from .swinging import quantities_for_swing, require_motion, swing_quantities
+from .swing_columns import quantities_for_swing, require_motion, swing_quantities
 
 _TIE = 1e-9  # relative to a quantity: pieces that differ by less count as equal
 _ROUNDING = 1e-12  # in units of a quantity over the rod: smaller changes are rounding errors

@@ -15,9 +15,9 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ..formula.resolve import resolve_quantities
+from ..formula.resolve_names import resolve_quantities
 from ..quantity import Array, Quantity
-from .missing_values import missing_value_reasons
+from .missing_value_reasons import missing_value_reasons
 
 Parameter = Literal["crank", "rod", "offset", "speed"]
 MOST = 1_000_000

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ..problem.problem import Problem, require_problem
-from .missing import missing_framework_error
+from .missing_framework import missing_framework_error
 
 if TYPE_CHECKING:
     import jax

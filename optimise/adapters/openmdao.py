@@ -10,9 +10,9 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.numbers import unit_of
+from ...model.machine.raw_numbers_of_designs import unit_of
 from ..problem.problem import Problem, require_problem
-from .missing import missing_framework_error
+from .missing_framework import missing_framework_error
 
 if TYPE_CHECKING:
     from openmdao.api import ExplicitComponent

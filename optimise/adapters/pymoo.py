@@ -9,7 +9,7 @@ import numpy as np
 
 from ...objectives.quantity import Array
 from ..problem.problem import Problem
-from .missing import missing_framework_error
+from .missing_framework import missing_framework_error
 from .standard_form import standard_form
 
 if TYPE_CHECKING:

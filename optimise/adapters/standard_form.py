@@ -13,9 +13,9 @@ from ...model.errors import InputError
 from ...objectives.quantity import Array
 from ...objectives.tables.design_input import designs_as_array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
+from ..problem.constraint_violation import FEASIBLE, constraints_of, minimised
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective
-from ..problem.violation import FEASIBLE, constraints_of, minimised
 from ..search.elimination import EliminationBranch, elimination_branches
 
 if TYPE_CHECKING:

@@ -7,12 +7,12 @@ search adds. A front with few designs leaves gaps, and no proof can be better th
 states both numbers, and the design that shows the widest gap.
 
 A box of designs is closed when none of its designs can be feasible. It is also closed when one design in the set covers
-the box's lower corner (`cover`), and thus every feasible design in the box. Other boxes are halved, largest excess
-first, so at any time the largest excess among open boxes is a proven epsilon. In a small box, a feasible design from
-the box itself may cover its corner when no other design does; that design is added.
+the box's lower corner (`covering_designs`), and thus every feasible design in the box. Other boxes are halved, largest
+excess first, so at any time the largest excess among open boxes is a proven epsilon. In a small box, a feasible design
+from the box itself may cover its corner when no other design does; that design is added.
 
-The proof relies on the bounds from `boxes`, which account for rounding, and on the model's values for the designs in
-the set. Requirements count as met to a relative 1e-9, as everywhere else.
+The proof relies on the bounds from `box_bounds`, which account for rounding, and on the model's values for the designs
+in the set. Requirements count as met to a relative 1e-9, as everywhere else.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from ...model.errors import InputError
 from ..discrete.combinations import Axes, with_values
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
+from .certificate_search import Search
 from .defaults import EPSILON, SECONDS
-from .search import Search
 
 MOST_COMBINATIONS = 1_000
 """Maximum number of combinations of listed values; each has its own boxes."""

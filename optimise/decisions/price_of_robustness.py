@@ -8,9 +8,9 @@ import numpy as np
 
 from ...model.arrays import Array
 from ..front.front import ParetoFront
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.robust import nominal_problem
-from ..problem.violation import FEASIBLE
+from ..problem.robust_problem import nominal_problem
 from ..solve import solve
 
 

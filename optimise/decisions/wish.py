@@ -29,19 +29,19 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ..front.front import ParetoFront, require_front
 from ..front.rounding import ranges_or_sizes
-from ..methods.achievement import Achievement
+from ..methods.achievement_objectives import Achievement
 from ..methods.registry import require_gradients
 from ..methods.scalar_objective import SUM, Form
-from ..problem.violation import FEASIBLE
-from ..search.assemble import assemble, empty_front
+from ..problem.constraint_violation import FEASIBLE
+from ..search.assemble_front import assemble, empty_front
 from ..search.candidates import Candidates, FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
-from ..search.mirror import drop_mirrored_branches
+from ..search.mirrored_branches import drop_mirrored_branches
 from ..search.polish import polish
+from ..search.sample_and_zoom import BANDS, Run
 from ..search.sampling import distant_rows
-from ..search.search import BANDS, Run
-from .wished import Wished, outcomes_of
+from .wish_outcome import Wished, outcomes_of
 from .wishes import Wish, minimised_aim, read_wishes
 
 _NEAREST, _MORE = 3, 6  # starts per branch, and further ones if the first end in different optima

@@ -19,7 +19,7 @@ from ...model.errors import InputError
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.units import quote, to_si
 from ..front.front import ParetoFront
-from ..problem.violation import minimised
+from ..problem.constraint_violation import minimised
 
 Kind = Literal["value", "improve", "keep", "limit", "free"]
 _LIMIT = re.compile(r"(?:may\s+)?worsen\s+to\s+(.+)", re.IGNORECASE)

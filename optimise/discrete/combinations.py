@@ -12,10 +12,7 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
-from ..problem.problem import Problem, Variant
-from ..problem.requirements import Range
-from ..problem.robust import asks_robust
-from ..problem.violation import (
+from ..problem.constraint_violation import (
     FEASIBLE,
     all_minimised,
     constraints_of,
@@ -23,6 +20,9 @@ from ..problem.violation import (
     needs_cycle,
     rotates_beyond_rounding,
 )
+from ..problem.problem import Problem, Variant
+from ..problem.requirements import Range
+from ..problem.robust_problem import asks_robust
 
 _BATCH, _ROBUST_BATCH = 1 << 15, 1 << 10  # combinations to judge between two progress reports
 

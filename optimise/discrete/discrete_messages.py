@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.count_text import counted
-from ...objectives.tables.varying_column import columns_of_numbers
+from ...objectives.tables.variable_columns import columns_of_numbers
 from ..front.front import ParetoFront
+from ..problem.constraint_violation import constraints_of, relative_violation
 from ..problem.problem import Problem
-from ..problem.violation import constraints_of, relative_violation
 from .combinations import Judged
 
 

@@ -17,7 +17,7 @@ from platform import python_version_tuple
 from typing import Any
 
 from ...model.errors import EngineError, InputError, SlidercrankError
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 from .engine import Found, Item, Poll
 
 _log = logging.getLogger(__name__)

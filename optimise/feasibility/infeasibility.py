@@ -10,17 +10,17 @@ import numpy as np
 from ...model.arrays import Array
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ..engine.engine import Engine
+from ..problem.constraint_violation import FEASIBLE, constraints_of
 from ..problem.problem import Problem, Settings
-from ..problem.violation import FEASIBLE, constraints_of
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
+from ..search.least_violation import least_violation
 from ..search.sampling import first_samples
-from ..search.violation import least_violation
-from .best import Best
+from .best_value import Best
+from .impossible_swing_reasons import why_no_swing
+from .quantities_without_value import valueless_quantity_text
 from .relaxation import Relaxation, relaxation_of_missed_bound, relaxations
-from .swinging import why_no_swing
-from .valueless import valueless_quantity_text
 
 _UNMOVED = "no rod in its range exceeds crank + |offset|, so no crank rotates fully; allow a longer rod"
 _SAMPLES = 16384

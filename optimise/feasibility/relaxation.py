@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merged
 from ..problem.restatement import restate
-from ..problem.violation import FEASIBLE
-from .best import Best, with_single_objective
-from .safe_side import isolated_value_text, round_to_safe_side
+from .best_value import Best, with_single_objective
+from .safe_side_rounding import isolated_value_text, round_to_safe_side
 
 _LOWEST = 0.02
 """Fraction of a floor that remains when it is dropped. Values closer to locking are not worth reporting."""

@@ -26,16 +26,16 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
-from ..problem.questions import question_to, subject_of
+from ..problem.question_registry import question_to, subject_of
 from ..problem.requirements import Objective
 from ..problem.table_columns import sufficient_option_field
 from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
 from .constant_numbers import column_ranges
-from .discrete_search import DiscreteSearch
+from .discrete_search_summary import DiscreteSearch
 from .front_picture import figure, svg
-from .nonnegative import nonnegative_least_squares
+from .nonnegative_least_squares import nonnegative_least_squares
 from .progress import Progress
-from .rounded import Rounded
+from .rounded_design import Rounded
 from .rounding import doubtful_misses, ranges_or_sizes, rounding
 from .rounding_search import Stage
 from .saved_front import front_fields, write_front

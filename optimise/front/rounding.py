@@ -22,11 +22,11 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
 from ...objectives.units import quote, to_si
+from ..problem.constraint_violation import FEASIBLE, constraints_of
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
-from ..problem.violation import FEASIBLE, constraints_of
 from .constant_numbers import column_ranges
-from .rounded import Rounded
+from .rounded_design import Rounded
 from .rounding_search import RoundingSearch, Steps, number_text
 
 _SMALLEST = 1e-9  # relative to the greatest number in a range: a smaller step is rounding

@@ -13,12 +13,9 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
-from ...objectives.tables.evaluate import can_run_despite_friction
-from ...objectives.tables.varying_column import columns_of_numbers
-from ..problem.problem import Problem
-from ..problem.requirements import Constraint
-from ..problem.robust import asks_robust
-from ..problem.violation import (
+from ...objectives.tables.evaluate_quantities import can_run_despite_friction
+from ...objectives.tables.variable_columns import columns_of_numbers
+from ..problem.constraint_violation import (
     FEASIBLE,
     all_minimised,
     constraints_of,
@@ -27,6 +24,9 @@ from ..problem.violation import (
     needs_cycle,
     rotates_beyond_rounding,
 )
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint
+from ..problem.robust_problem import asks_robust
 from .dominance import nondominated
 
 REACHES = (16, 32)

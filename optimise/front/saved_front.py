@@ -13,9 +13,9 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
+from ..problem.constraint_violation import all_minimised
 from ..problem.problem import Problem
-from ..problem.violation import all_minimised
-from .discrete_search import DiscreteSearch
+from .discrete_search_summary import DiscreteSearch
 from .progress import Progress
 
 _FORM = 1

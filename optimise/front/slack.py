@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import sides
 from ..problem.requirements import Constraint
-from ..problem.violation import sides
 from .constant_numbers import is_constant
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.arrays import Array, IntArray, row_norms
-from .nonnegative import nonnegative_least_squares
+from .nonnegative_least_squares import nonnegative_least_squares
 
 STATIONARY = 1e-6
 """Residual below which a design counts as stationary, with objectives scaled by their range."""

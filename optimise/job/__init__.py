@@ -18,25 +18,25 @@ from typing import Any
 from pydantic import ValidationError
 
 from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
-from ...model.file_names import path_from_text, path_text
+from ...model.file_name_encoding import path_from_text, path_text
 from ...objectives.units import printable_name
 from ..problem.problem import Problem
 from .catalogue import catalogue_files, with_catalogues, with_options
 from .custom_quantities import declared_quantities, function_modules
 from .drive import motor_torque_warnings
-from .file import LARGEST, read, require_plain_data
+from .job_file import LARGEST, read, require_plain_data
 from .load_file import names_of_load_files, with_loads
-from .messages import LONGEST, MOST, explain
+from .mistake_messages import LONGEST, MOST, explain
+from .mistake_order import first_problems
 from .model import Job, job_with
 from .named_files import Files
 from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_and_note_plain_numbers
 from .problem_of_job import problem_of
-from .problem_order import first_problems
 from .schema import schema_of
 from .speed_profile import speeds_file, with_speeds
 from .target_motion import target_motion_file, with_target_motion
 from .toml_errors import with_lines
-from .varying import with_values
+from .variables_and_variants import with_values
 
 __all__ = ["Job", "job_schema", "load_job", "needed_files", "parse_job", "read_job", "with_files"]
 
@@ -81,9 +81,9 @@ def warn_about(problem: Problem) -> None:
     Also warn about loads that drive it, or that are stated for more than the whole stroke, about loaded strokes that
     are fast in every design, and about offsets that a slow stroke excludes.
     """
-    from ..search.driving_loads import driving_load_warnings
-    from ..search.full_stroke_loads import full_stroke_load_warnings
-    from ..search.loaded_stroke import stroke_warnings
+    from ..search.driving_load_warnings import driving_load_warnings
+    from ..search.overlong_stroke_part_warnings import full_stroke_load_warnings
+    from ..search.stroke_warnings import stroke_warnings
 
     sentences = [*driving_load_warnings(problem), *full_stroke_load_warnings(problem)]
     for sentence in (*problem.warnings, *sentences, *stroke_warnings(problem, certain=True)):

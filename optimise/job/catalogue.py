@@ -17,12 +17,12 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
 from .catalogue_columns import Column, columns_of
 from .catalogue_screening import screen_rows
-from .messages import key_of
+from .mistake_messages import key_of
 from .named_files import Files, read_named_text
-from .paths import unknown_path_message, with_number
+from .number_paths import unknown_path_message, with_number
 from .raw_tables import table_in, tables_in
-from .table_file import TableFile, read_table
-from .table_layout import are_numbers
+from .text_table import TableFile, read_table
+from .text_table_layout import are_numbers
 
 MOST_ROWS = 50_000
 MOST_OPTIONS = 200

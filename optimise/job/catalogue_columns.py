@@ -12,7 +12,7 @@ from functools import cache
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.catalogue_amount import kind_of_amount
-from ...objectives.formula.dimensions import kind_of_formula
+from ...objectives.formula.dimensional_analysis import kind_of_formula
 from ...objectives.formula.expression import Name, names_in, text_of
 from ...objectives.formula.formulas import ROOTS, Units, unknown_name
 from ...objectives.formula.parser import parse

@@ -21,9 +21,9 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import InputError, JobError
 from ...objectives.formula.formulas import identifiers_in
 from ...objectives.units import to_si
-from ..problem.violation import FEASIBLE
-from .amounts import excluded_in_words
+from ..problem.constraint_violation import FEASIBLE
 from .catalogue_columns import Column
+from .option_amounts import excluded_in_words
 from .raw_tables import table_in
 
 ORDER = ("price", "mass")

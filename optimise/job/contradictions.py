@@ -16,23 +16,23 @@ from ...model.errors import InfeasibleError, InputError, JobError
 from ...model.machine.links import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.varying import number_at
-from ...objectives.bars import LINKS, NEAR
+from ...model.machine.varying_numbers import number_at
+from ...objectives.bar_pieces import LINKS, NEAR
 from ...objectives.link_strength import LinkStress
 from ...objectives.proportions import STROKE
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import quote
-from ..feasibility.swinging import require_swinging
-from ..problem.always_zero import require_nonzero_quantities
-from ..problem.impossible import require_longer_slow_stroke
+from ..feasibility.impossible_swing_reasons import require_swinging
+from ..problem.always_zero_quantities import require_nonzero_quantities
+from ..problem.contradictory_problems import require_longer_slow_stroke
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merged
 from ..problem.restatement import restate
 from ..search.elimination import offset_signs, require_offset_for_slow_stroke
+from .impossible_options import require_possible_option
 from .linear_contradictions import require_compatible
-from .messages import key_of
-from .options import require_possible_option
+from .mistake_messages import key_of
 from .possible_values import Box, require_reachable
 
 

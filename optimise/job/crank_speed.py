@@ -12,7 +12,7 @@ from ...model.machine.speed_profile import SpeedTable
 from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
 from ...objectives.units import quote
 from .speed_profile import SpeedProfilePart
-from .values import AngularAcceleration, Part, PhysicalWithin, optional
+from .value_types import AngularAcceleration, Part, PhysicalWithin, optional
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")

@@ -20,7 +20,7 @@ from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import letters_and_digits, quote, symbol_in, value_of_one_si_unit_in, without_word_in
-from .table_file import TableFile
+from .text_table import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
 # A record that ends closer to whole turns, relative to a turn, ends with them, unless half its last step is less.

@@ -27,11 +27,11 @@ from ...objectives.own.quantity import (
 )
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_of_any_unit, quote, value_of_one_si_unit_in
-from .amounts import amounts_in, kinds_of_amounts
+from .constraints_and_objectives import SLOW_STROKE, Stated
+from .option_amounts import amounts_in, kinds_of_amounts
 from .part_kinds import Kinds
-from .quantities import SLOW_STROKE, Stated
 from .raw_tables import options_in, table_in
-from .values import Part, Physical, optional, required
+from .value_types import Part, Physical, optional, required
 
 
 def _check_function(text: str) -> str:

@@ -9,10 +9,10 @@ from pydantic import BeforeValidator, Discriminator, Tag
 
 from ...model.machine import drive as model
 from ...model.machine.mechanism import Mechanism
-from ..problem.remark import Change, Remark
+from ..problem.job_remark import Change, Remark
 from .part_kinds import Kinds
 from .raw_tables import table_in
-from .values import (
+from .value_types import (
     AngularSpeed,
     Built,
     Checked,

@@ -10,18 +10,18 @@ from typing import Any
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.formula.dimensions import kind_of_formula
+from ...objectives.formula.dimensional_analysis import kind_of_formula
 from ...objectives.formula.expression import names_in
 from ...objectives.formula.formulas import Units, is_formula, unknown_name
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
-from ...objectives.tables.varying_column import number_in_words
+from ...objectives.tables.variable_columns import number_in_words
 from ...objectives.units import is_value, kind_of_any_unit
-from .amounts import amounts_in, kinds_of_amounts
 from .catalogue import with_options
-from .messages import key_of
-from .quantities import SLOW_STROKE, WORDS
+from .constraints_and_objectives import SLOW_STROKE, WORDS
+from .mistake_messages import key_of
+from .option_amounts import amounts_in, kinds_of_amounts
 from .raw_tables import table_in
 from .variables import stated_variables
 

@@ -11,7 +11,7 @@ from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from .catalogue import Catalogue, with_options
 from .custom_quantities import declared_quantities
-from .messages import key_of, toml_text
+from .mistake_messages import key_of, toml_text
 from .model import Job, job_with
 from .named_files import SOURCE
 from .plain_numbers import read_and_note_plain_numbers

@@ -10,7 +10,7 @@ from ...model.machine.lever_cylinder import Cylinder
 from ...model.swing.swing import Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart
-from .values import Checked, Clearance, Mass, NonNegativeForce, PositiveLength, Pressure, optional
+from .value_types import Checked, Clearance, Mass, NonNegativeForce, PositiveLength, Pressure, optional
 
 TURNING_CYLINDER = "turning cylinder"
 

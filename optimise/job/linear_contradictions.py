@@ -20,7 +20,7 @@ from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ..problem.problem import Problem
 from ..search.elimination import offset_signs
 from ..search.linear_rules import linear_equations, with_offset_size
-from .messages import key_of
+from .mistake_messages import key_of
 
 _UNIT = 1e3  # lengths in mm: the solver's tolerance is 1e-7 of its unit
 _ANY: dict[str, tuple[float, float]] = {"crank": (1e-6, math.inf), "rod": (1e-6, math.inf), "offset": (0.0, math.inf)}

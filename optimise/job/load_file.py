@@ -10,9 +10,9 @@ from ...model.machine.loads.load import ANGLE_DATUM, CYCLE, Entry, Table
 from ...model.machine.loads.registry import load_classes
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
-from . import values
+from . import value_types
 from .curve_file import convert_time_to_angle, curve_in, first_cycle, reduce_curve_points
-from .messages import key_of
+from .mistake_messages import key_of
 from .named_files import SOURCE, Files, read_named_table, require_point_count
 from .raw_tables import tables_in
 from .stated_speed import stated_speed
@@ -89,6 +89,6 @@ def load_tables_with_points() -> list[tuple[Table, Entry, Entry]]:
 
 def _kind_of_entry(entry: Entry) -> Kind:
     """Return the kind of an entry's values."""
-    marked: Any = getattr(values, str(entry.kind))
+    marked: Any = getattr(value_types, str(entry.kind))
     kind: Kind = marked.__metadata__[0].kind
     return kind

@@ -21,11 +21,11 @@ from ...model.errors import InputError
 from ...model.machine.loads import load as model
 from ...model.machine.loads.registry import load_classes
 from ...objectives.units import quote
-from . import values
+from . import value_types
 from .load_file import load_tables_with_points
 from .named_files import MOST_POINTS, SOURCE, unread_file_error
 from .part_kinds import Kinds
-from .values import Checked, optional
+from .value_types import Checked, optional
 
 
 def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
@@ -66,7 +66,7 @@ def _part_of_table(table: model.Table) -> type[LoadPart]:
     """Return the job-file table that a kind of load declares."""
     fields: dict[str, Any] = {entry.name: (_entry_type(entry), _entry_field(entry)) for entry in table.entries}
     if any(entry.several for entry in table.entries):
-        fields[SOURCE] = (values.Source, values.summary_entry())
+        fields[SOURCE] = (value_types.Source, value_types.summary_entry())
     part = create_model(table.name, __base__=LoadPart, __doc__=table.help, **fields)
     part.model_config["json_schema_extra"] = {
         "x-load": {"key": table.key, "title": table.title, "first": dict(table.initial), "motion": table.motion}
@@ -77,7 +77,7 @@ def _part_of_table(table: model.Table) -> type[LoadPart]:
 
 
 def _entry_type(entry: model.Entry) -> Any:
-    item_type: Any = getattr(values, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
+    item_type: Any = getattr(value_types, entry.kind) if isinstance(entry.kind, str) else Literal[entry.kind]
     several: Any = tuple.__class_getitem__((item_type, ...)) if entry.several else item_type
     return Annotated[several, WrapValidator(require_nondecreasing)] if entry.increasing else several
 

@@ -15,7 +15,7 @@ from ...model.machine.mechanism import Branch, Clearances, Tolerances, Window
 from ...model.machine.slider_distances import DeadCentre, SliderDistances
 from ...objectives.units import quote
 from .crank_speed import CrankSpeedPart
-from .values import (
+from .value_types import (
     Angle,
     AngleTolerance,
     Built,

@@ -11,25 +11,25 @@ from pydantic_core import CoreSchema, core_schema
 from ...model.errors import InputError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.slider_distances import SliderDistances
-from ...model.machine.two_turns import turns_per_cycle
+from ...model.machine.two_turn_machine import turns_per_cycle
 from ...model.swing.swing import Swing
 from ...objectives.units import quote
 from ..methods.registry import methods
 from ..problem.problem import Settings
-from .costs import CostsPart
+from .constraints_and_objectives import ConstraintsPart, ObjectivesPart, Stated, constraint_and_objective_tables
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
 from .drive import DrivePart
-from .joints import ClearancePart, FrictionPart
+from .friction_and_clearance import ClearancePart, FrictionPart
 from .lever import CylinderPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
-from .quantities import ConstraintsPart, ObjectivesPart, Stated, constraint_and_objective_tables
 from .robust import RobustPart
-from .sections import EXAMPLE as SECTIONS
-from .sections import SectionsPart
+from .sections_table import EXAMPLE as SECTIONS
+from .sections_table import SectionsPart
 from .target_motion import TargetMotionPart
-from .values import Built, Part, optional, required, with_types
+from .tolerance_costs import CostsPart
+from .value_types import Built, Part, optional, required, with_types
 from .variables import ChoicePart, VariablesPart, choice_with
 
 EXAMPLE = {

@@ -11,7 +11,7 @@ from pydantic import Field, create_model
 from ...model.errors import InputError, JobError
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.swing_start import Start
-from ...model.machine.varying import Varying
+from ...model.machine.varying_numbers import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.swing_types import Driver, Law, Side, Stated
 from ...objectives.kinds import ANGLE
@@ -19,10 +19,10 @@ from ...objectives.lever_geometry import LEVER_TRANSMISSION_ANGLE
 from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
-from ...objectives.tables.swinging import reason_undefined_for_swing, swing_facts
+from ...objectives.tables.swing_columns import reason_undefined_for_swing, swing_facts
 from ..problem.requirements import Constraint
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
-from .values import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
+from .value_types import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
 
 _TURN, _SWING = "turn", "swing"
 _MARGIN = ANGLE.metric.factor * (SWING_TRANSMISSION_ANGLE.floor or 0.0)

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path, PurePath
 
 from ...model.errors import InputError, JobError
-from ...model.file_names import path_from_text
+from ...model.file_name_encoding import path_from_text
 from ...objectives.units import quote
-from .table_file import TableFile, bytes_of, read_table, text_of
+from .text_table import TableFile, bytes_of, read_table, text_of
 
 Files = Path | Mapping[str, str | bytes]
 """The folder that contains the files, or their contents by name."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from ...model.errors import InputError
 from ...objectives.units import closest, quote
-from .values import Part
+from .value_types import Part
 
 _FEW = 4  # kinds that a table may lack one key for, in a message
 

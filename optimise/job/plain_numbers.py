@@ -14,11 +14,11 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
+from ..problem.job_remark import Change, Remark
 from ..problem.problem import Problem
-from ..problem.remark import Change, Remark
-from .messages import key_of, keys_of, toml_text
-from .paths import with_number
-from .values import PLAIN, Part, Table, flatten_values, plain_numbers_in
+from .mistake_messages import key_of, keys_of, toml_text
+from .number_paths import with_number
+from .value_types import PLAIN, Part, Table, flatten_values, plain_numbers_in
 from .variables import leaves_of, stated_variables
 
 _LONGEST = 60  # maximum length of a value that a warning repeats

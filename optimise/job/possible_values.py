@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.bounds import CLEAR, LengthRanges
+from ...objectives.bounds_over_ranges import CLEAR, LengthRanges
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.quantity import Quantity
@@ -18,7 +18,7 @@ from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, time_ratio_o
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Range
-from .messages import key_of
+from .mistake_messages import key_of
 
 if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
@@ -164,7 +164,7 @@ def _rule_in_words(problem: Problem, rule: Constraint) -> str:
 
 
 def _rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
-    from ..feasibility.best import rules_on_dimensions
+    from ..feasibility.best_value import rules_on_dimensions
 
     return rules_on_dimensions(problem)
 
@@ -177,7 +177,7 @@ def _nearest_relaxation(
     None if nothing is reachable even then. Each active constraint is a single bound; none are reported if there are
     choices.
     """
-    from ..feasibility.best import Best, find_best_dimensions
+    from ..feasibility.best_value import Best, find_best_dimensions
     from ..feasibility.relaxation import Relaxation, relaxations
 
     tried: list[Best] = []

@@ -14,17 +14,17 @@ from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.tables.swinging import swing_quantities
-from ..discrete.meetable import require_meetable
+from ...objectives.tables.swing_columns import swing_quantities
+from ..discrete.unmeetable_requirements import require_meetable
 from ..methods.registry import require_supported_settings
-from ..problem.impossible import no_option_error
+from ..problem.constraint_violation import FEASIBLE, relative_violation
+from ..problem.contradictory_problems import no_option_error
 from ..problem.problem import Problem, Variant
 from ..problem.requirements import Constraint, merged
-from ..problem.violation import FEASIBLE, relative_violation
-from .amounts import amounts_of, excluded_in_words
+from .constraints_and_objectives import constraints_of, objectives_of, slow_stroke_of
 from .contradictions import require_consistent
 from .custom_quantities import formulas_of, functions_of
-from .messages import key_of
+from .mistake_messages import key_of
 from .model import Job
 from .motion import (
     require_constant_swing_speed,
@@ -34,10 +34,17 @@ from .motion import (
     require_swing_motion,
     with_swing_margin,
 )
-from .quantities import constraints_of, objectives_of, slow_stroke_of
+from .option_amounts import amounts_of, excluded_in_words
 from .robust import make_robust
 from .target_motion import require_target
-from .varying import dimension_ranges, discrete_variables, ends_of, is_choice, machine_with_variables, variants_of
+from .variables_and_variants import (
+    dimension_ranges,
+    discrete_variables,
+    ends_of,
+    is_choice,
+    machine_with_variables,
+    variants_of,
+)
 
 
 def problem_of(

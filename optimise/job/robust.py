@@ -7,14 +7,14 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from ...model.errors import InputError, JobError
-from ...model.tolerance.spreads import Shape
+from ...model.tolerance.error_distributions import Shape
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.robust.points import toleranced_columns
 from ...objectives.robust.quantity import SAMPLES, Case
+from ...objectives.robust.tolerance_box_points import toleranced_columns
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
-from ..problem.robust import Robust, robust
-from .values import Checked, optional
+from ..problem.robust_problem import Robust, robust
+from .value_types import Checked, optional
 
 
 class RobustPart(Checked[Robust]):

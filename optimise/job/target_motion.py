@@ -16,7 +16,7 @@ from .loads import require_increasing
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
 from .stated_speed import stated_speed
-from .values import Angle, Checked, Length, Part, Source, optional, summary_entry
+from .value_types import Angle, Checked, Length, Part, Source, optional, summary_entry
 
 
 class TargetMotionPart(Checked[TargetMotion]):

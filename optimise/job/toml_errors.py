@@ -16,9 +16,9 @@ from collections.abc import Callable, Iterator, Sequence
 from pydantic import ValidationError
 
 from ...objectives.units import SPACES, number_and_unit
-from .messages import SEVERAL, SINGLE, example_of, headings, key_of, keys_of, nodes_at, sentence_of
+from .mistake_messages import SEVERAL, SINGLE, example_of, headings, key_of, keys_of, nodes_at, sentence_of
+from .mistake_order import key_above
 from .model import Job
-from .problem_order import key_above
 from .schema import schema_of
 
 _LONGEST = 1000  # maximum length of a line to read and edit

@@ -16,13 +16,13 @@ from pydantic import AfterValidator, Field, model_validator
 from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import printable_name, quote
-from .amounts import Amounts
-from .grids import states_values
-from .messages import DEEPEST
+from .constraints_and_objectives import ConstraintsPart
+from .mistake_messages import DEEPEST
 from .named_files import LARGEST, unread_file_error
-from .quantities import ConstraintsPart
+from .option_amounts import Amounts
 from .raw_tables import options_in, table_in
-from .values import AnyRange, Part, PositiveRange, optional, required, with_types
+from .value_grids import states_values
+from .value_types import AnyRange, Part, PositiveRange, optional, required, with_types
 
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}

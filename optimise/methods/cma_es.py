@@ -19,11 +19,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE
 from ..search.candidates import stack_rows
 from ..search.evaluation import Evaluator
-from ..search.search import Archive, Run
+from ..search.sample_and_zoom import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE
-from ..search.assemble import span_of
+from ..search.assemble_front import span_of
 from ..search.evaluation import Evaluator
+from ..search.sample_and_zoom import Archive, Run
 from ..search.sampling import generator
-from ..search.search import Archive, Run
 from .local import archive_optimum, by_slsqp
 from .registry import Method, budget
 from .scalar_objective import Form, Programme

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE
-from ..search.assemble import span_of
+from ..search.assemble_front import span_of
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
+from ..search.sample_and_zoom import BANDS, Archive, Run
 from ..search.sampling import first_samples
-from ..search.search import BANDS, Archive, Run
 from .registry import Method, budget
 from .scalar_objective import Form, Programme
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE
 from ..search.evaluation import Evaluator
 from .population import Generation, Rows
 

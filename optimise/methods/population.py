@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...model.arrays import Array, IntArray
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.violation import FEASIBLE
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
-from ..search.search import Archive, Run
+from ..search.sample_and_zoom import Archive, Run
 from .registry import budget
 
 Rows = IntArray

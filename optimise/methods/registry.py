@@ -17,7 +17,7 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from ..problem.problem import Problem
     from ..search.evaluation import Evaluator
-    from ..search.search import Archive, Run
+    from ..search.sample_and_zoom import Archive, Run
 
 
 Family = Literal["default", "gradient", "global", "scalarisation", "evolutionary", "model-based", "sampling"]

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.arrays import Array
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
-from ..search.search import Archive, Run
+from ..search.sample_and_zoom import Archive, Run
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ..search.evaluation import Evaluator
-from ..search.pieces import Rows, greatest_pieces, rows_of_designs
+from ..search.piece_rows import Rows, greatest_pieces, rows_of_designs
 
 SUM = 1e-4
 """rho: excludes a design that loses less than 1e-4 of a range in one objective for a whole range of another."""

@@ -22,7 +22,7 @@ from ..front.hypervolume import scaling
 from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
-from ..search.search import Archive, Run
+from ..search.sample_and_zoom import Archive, Run
 from .local import archive_optimum, by_slsqp, is_budget_spent, starting_samples
 from .registry import Method
 from .scalar_objective import SUM, Form, Programme

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
-from ..search.search import Archive, Run
+from ..search.sample_and_zoom import Archive, Run
 from .optuna_trials import ask_points, completed_trials, new_study, search_space, silence_optuna
 from .population import Brood, Generation, evolve, generation_seed, generation_size
 from .registry import Method

@@ -8,10 +8,10 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...model.motion_law.law_turn import LawTurn
-from ...model.transient.equation import TURN
+from ...model.transient.crank_equation import TURN
+from .cone_programme import Margins, Programme, Requirement
 from .law_limits import LawLimits, rpm_text
-from .programme import Margins, Programme, Requirement
-from .reachable import Reachable
+from .reachable_energies import Reachable
 
 _AMPLE = 1e3  # multiple of the loads' greatest torque that is effectively unlimited
 _ROUNDING = 1e-9

@@ -14,9 +14,9 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.motion_law.law_turn import LawTerms, LawTurn
-from ...model.transient.equation import TURN
+from ...model.transient.crank_equation import TURN
 from ...objectives.dead_centre import angle_and_travel_rate_before_dead_centre
-from .words import RANGE, LawObjective, Timing
+from .input_words import RANGE, LawObjective, Timing
 
 _EDGE = 1e-9  # rad
 _ONLY_CONSTANT = 1e-5  # relative distance of a limit from the mean speed below which only constant speed remains

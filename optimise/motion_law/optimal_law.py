@@ -1,7 +1,7 @@
 """The best motion law for a machine with given lengths, with a proof.
 
-The law is first found on coarse cells (`stage`). These are halved until the law, which is exact on the continuous turn,
-is within a thousandth of a bound on all laws (`bound`, `reachable`).
+The law is first found on coarse cells (`law_on_cells`). These are halved until the law, which is exact on the
+continuous turn, is within a thousandth of a bound on all laws (`objective_lower_bound`, `reachable_energies`).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.motion_law.law_turn import LawTurn
 from ...model.motion_law.motion_law import MotionLaw
-from ...model.transient.equation import TURN
-from .bound import lower_bound
+from ...model.transient.crank_equation import TURN
 from .contradictions import require_consistent_limits, unreachable_limits_error
 from .law_limits import LawLimits, LawRequest, resolve_limits
-from .reachable import Reachable
-from .stage import Stage, solve_on_cells
+from .law_on_cells import Stage, solve_on_cells
+from .objective_lower_bound import lower_bound
+from .reachable_energies import Reachable
 
 GAP = 1e-3
 """Greatest relative gap between a law and the bound at which the law counts as proven."""

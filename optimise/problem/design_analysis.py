@@ -17,13 +17,14 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import numbers
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
+from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.formula.quantity import FormulaQuantity
-from ...objectives.formula.resolve import resolve_quantities
+from ...objectives.formula.resolve_names import resolve_quantities
 from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
+from ...objectives.tables.curve_deviation import deviations
 from ...objectives.tables.cycle_curves import Curve, cycle_curves, cycle_table, even_angles
 from ...objectives.tables.design_input import (
     designs_as_array,
@@ -33,11 +34,10 @@ from ...objectives.tables.design_input import (
     short_text,
     warn_of_lengths,
 )
-from ...objectives.tables.deviation import deviations
-from ...objectives.tables.measured import measured_from
-from ...objectives.tables.missing_values import missing_value_reason
+from ...objectives.tables.measured_curves import measured_from
+from ...objectives.tables.missing_value_reasons import missing_value_reason
+from ...objectives.tables.swing_columns import quantities_for_swing, require_in_motion, require_motion
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
-from ...objectives.tables.swinging import quantities_for_swing, require_in_motion, require_motion
 from ...objectives.tables.violations import violations
 
 if TYPE_CHECKING:

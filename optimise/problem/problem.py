@@ -15,17 +15,17 @@ from ...model.checks import require_kinds, store_as_tuples
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
-from ...model.machine.crank_loads import require_loads_repeating_each_turn
+from ...model.machine.crank_load_checks import require_loads_repeating_each_turn
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...objectives.bounds import QuantityBounds
+from ...objectives.bounds_over_ranges import QuantityBounds
 from ...objectives.catalogue_amount import Amount, substitute_amounts
-from ...objectives.formula.resolve import is_formula, resolve_quantities
+from ...objectives.formula.resolve_names import is_formula, resolve_quantities
 from ...objectives.quantity import Array, Quantity
 from ...objectives.registry import QUANTITIES, listed
 from ...objectives.tables.design_input import designs_as_array, names_of_design_numbers, warn_of_lengths
-from ...objectives.tables.evaluate import evaluated_as_array
-from ...objectives.tables.swinging import (
+from ...objectives.tables.evaluate_quantities import evaluated_as_array
+from ...objectives.tables.swing_columns import (
     reason_undefined_for_swing,
     require_in_motion,
     require_loads,
@@ -33,10 +33,9 @@ from ...objectives.tables.swinging import (
     require_same_driver,
     swing_quantities,
 )
-from .costs import Costs
 from .design_analysis import Analysis, analyse_machine, machine_and_design_row
-from .discrete import Discrete, require_distinct_numbers
-from .questions import question_to
+from .discrete_values import Discrete, require_distinct_numbers
+from .question_registry import question_to
 from .requirements import Constraint, Objective, Range, Word, merged
 from .section_limits import SectionLimits
 from .table_columns import (
@@ -46,6 +45,7 @@ from .table_columns import (
     sufficient_amount_field,
     sufficient_option_field,
 )
+from .tolerance_costs import Costs
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary

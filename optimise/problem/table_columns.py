@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterable, Sequence
 
 from ...model.errors import InputError
-from ...model.machine.varying import Varying
+from ...model.machine.varying_numbers import Varying
 from ...objectives.quantity import Quantity
 from ...objectives.registry import FACTS
 from ...objectives.tables.turn_columns import OF_A_TURN
-from ...objectives.tables.varying_column import columns_of_numbers
+from ...objectives.tables.variable_columns import columns_of_numbers
 
 RESIDUAL, STATUS = "residual", "status"
 """Columns with the distance of a design from stationarity, and whether stationarity is proven."""

@@ -13,7 +13,7 @@ from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
 from ..front.stationarity import STATIONARY
-from ..problem.violation import FEASIBLE
+from ..problem.constraint_violation import FEASIBLE
 from .evaluation import Evaluator
 from .sampling import distant_rows
 

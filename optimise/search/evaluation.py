@@ -10,13 +10,10 @@ import numpy as np
 from ...model.arrays import IntArray, Mask
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.quantity import Array, Pieces, Quantity
-from ...objectives.tables.evaluate import can_run_despite_friction
+from ...objectives.tables.evaluate_quantities import can_run_despite_friction
 from ..engine.chunks import Chunked, Shared
 from ..engine.engine import Engine, Serial
-from ..problem.problem import Problem
-from ..problem.requirements import Constraint, Objective, Range
-from ..problem.restatement import restate
-from ..problem.violation import (
+from ..problem.constraint_violation import (
     FEASIBLE,
     Side,
     constraints_of,
@@ -26,10 +23,13 @@ from ..problem.violation import (
     relative_violation,
     sides,
 )
+from ..problem.problem import Problem
+from ..problem.requirements import Constraint, Objective, Range
+from ..problem.restatement import restate
+from .batch_quantities import evaluate_pieces, join_batches, screen_quantities
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import EliminationBranch
-from .judging import evaluate_pieces, join_batches, screen_quantities
-from .pieces import Rows
+from .piece_rows import Rows
 
 _HUGE = 1e100
 _CLEARANCE = 1e-9
@@ -102,7 +102,8 @@ class Evaluator:
         """Return designs (n, 3 + v), minimised objectives (n, m) and violation (n,) for points in the unit box.
 
         The violation is the greatest relative one, infinite where no linkage rotates fully; designs that violate a
-        constraint by more than `band` have NaN objectives. Peaks are screened (see `model.signals.screening`).
+        constraint by more than `band` have NaN objectives. Peaks are screened (see
+        `model.signals.fast_torque_and_error`).
         """
         dimensions = self.branch.dimensions(u)
         rows, values, violation = self.step(

@@ -23,7 +23,7 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask, row_norms
 from ..front.stationarity import multipliers, multipliers_with_positive_weights
 from .candidates import Polished, object_array
-from .pieces import (
+from .piece_rows import (
     ACTIVE,
     Rows,
     active_bound_normals,

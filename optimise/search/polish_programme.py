@@ -23,8 +23,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...model.arrays import Array, row_norms
-from ..front.nonnegative import nonnegative_least_squares
-from .pieces import Rows
+from ..front.nonnegative_least_squares import nonnegative_least_squares
+from .piece_rows import Rows
 
 LOSS = 1e3
 """K: weight of an objective's loss against another's gain, with ranges scaled to one."""

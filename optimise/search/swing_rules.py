@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.swing.ends import swing_start_column
+from ...model.swing.end_angles import swing_start_column
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..problem.problem import Problem
 from .elimination_rule import Rule

@@ -30,14 +30,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.cycle.shaking import ShakingCurves, shaking_curves
+from ...model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
 from ...model.errors import InputError
-from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import require_single_cylinder_at_constant_speed
+from ...model.optional_packages import import_extra
 from ...model.signals.averages import average
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks

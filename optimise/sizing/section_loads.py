@@ -20,7 +20,7 @@ from ...model.arrays import Array
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
+from ...model.machine.two_turn_machine import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 

@@ -20,14 +20,14 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
-from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.members import require_single_cylinder_at_constant_speed
 from ...model.machine.strength import Material
+from ...model.optional_packages import import_extra
 from ..problem.section_limits import SectionLimits
 from .limit_states import AMPLIFICATION, Above, crank_loads, identity, joint_load_terms, limit_states, rod_loads
 from .section_loads import Whip, greatest_rod_accelerations, joint_loads

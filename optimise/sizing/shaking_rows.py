@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.cycle.shaking import shaking_curves
+from ...model.cycle.moving_mass_effects import shaking_curves
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.linkage import Linkage
 from ...model.machine.design import link_properties

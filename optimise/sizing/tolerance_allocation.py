@@ -35,14 +35,14 @@ from numpy.typing import NDArray
 
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
-from ...model.extras import import_extra
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
-from ..problem.costs import Costs
-from .error_rows import ErrorRows
+from ...model.optional_packages import import_extra
+from ..problem.tolerance_costs import Costs
 from .input_words import Kind
+from .position_error_rows import ErrorRows
 
 ROUNDS = 60
 _NEAR = 1e-3  # relative excess below which the optimality conditions are tried

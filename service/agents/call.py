@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InfeasibleError, InputError, NotFound
 from ...optimise.job import parse_job, read_job, with_files
-from ...optimise.job.file import require_plain_data, toml_tables
+from ...optimise.job.job_file import require_plain_data, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
 from ..jobs.submission import (

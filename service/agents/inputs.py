@@ -16,7 +16,7 @@ from ...objectives.units import quote
 from ...optimise.front.front import ParetoFront
 from ...optimise.job.model import Job as JobModel
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.questions import SUBJECTS
+from ...optimise.problem.question_registry import SUBJECTS
 from ..designs.choice_options import require_single_choice
 from ..designs.columns import find_column
 from ..designs.stored_designs import front_of, stored_design

@@ -11,14 +11,14 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from ...model.errors import InputError, NotFound, RunError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
 from ...objectives.units import closest
-from ...optimise.job.messages import nodes_at, toml_text
+from ...optimise.job.mistake_messages import nodes_at, toml_text
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.questions import SUBJECTS
+from ...optimise.problem.question_registry import SUBJECTS
 from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
 from ..jobs.find_run import run_folders

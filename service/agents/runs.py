@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field
 
 from ...model.errors import InfeasibleError, InputError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
 from ..designs.choice_options import require_single_choice
 from ..designs.display_units import convert_result

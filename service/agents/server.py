@@ -17,7 +17,7 @@ from anyio.streams.memory import MemoryObjectReceiveStream
 from mcp.server.session import ServerSession
 
 from ...model.errors import SlidercrankError
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 from ...optimise.front.progress import Progress, stage_text
 from ...optimise.search.fingerprint import version_of
 from ..resources.disk import full_places_text, is_full

@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 
 from ...model.errors import InputError
 from ...objectives.units import closest, quote
-from ...optimise.job.messages import rule_of
+from ...optimise.job.mistake_messages import rule_of
 from ...optimise.job.schema import schema_of
 from .call import Call, ToolResult
 

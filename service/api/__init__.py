@@ -1,5 +1,5 @@
 """The HTTP API of the service."""
 
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 
 import_extra("fastapi", "the service needs")

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.table_columns import choice_field
 from ..designs.changed_design import Variation, design_with_numbers, variation_of
 from ..designs.columns import all_columns

@@ -8,7 +8,7 @@ from typing import Any
 from fastapi import APIRouter, Response
 from pydantic_core import to_json
 
-from ...model.extras import import_extra, is_installed
+from ...model.optional_packages import import_extra, is_installed
 from ..designs.display_units import convert_result, convert_rows
 from ..designs.selection import numbered_rows
 from ..runs.result import csv_text

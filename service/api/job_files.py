@@ -171,7 +171,7 @@ def read_catalogue(catalogue_text: CatalogueText) -> CatalogueModel:
 )
 def write_file(tables: Tables) -> Response:
     """Return the tables of a job as a TOML job file; reading it gives the same tables."""
-    from ...optimise.job.file import require_few_values
+    from ...optimise.job.job_file import require_few_values
     from ..jobs.job_toml import job_toml
 
     require_few_values(tables.job)

@@ -136,7 +136,7 @@ async def requested_job(request: Request) -> RequestedJob:
 
 def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
     """Return the tables of a job file in TOML. Raises `JobError`."""
-    from ...optimise.job.file import toml_tables
+    from ...optimise.job.job_file import toml_tables
 
     try:
         text = body.decode("utf-8-sig")

@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
 from ...objectives.tables.curve_extremes import curve_extremes
-from ...optimise.problem.remark import changes_of
+from ...optimise.problem.job_remark import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
 from .job_files import ChangeModel, Understood, describe_problem

@@ -145,7 +145,7 @@ def _methods(request: Request) -> list[str]:
 def validation_message(details: Mapping[str, Any]) -> str:
     """Return the message for an error from pydantic: rule, value, remedy."""
     from ...objectives.units import quote
-    from ...optimise.job.messages import rule_of
+    from ...optimise.job.mistake_messages import rule_of
 
     if details["type"] == "missing":
         return "is missing, but required; add it"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ...model.classical.polygons import Polygons, motion_polygons
-from ...model.linkage.inverse import crank_motion
+from ...model.linkage.inverse_kinematics import crank_motion
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Branch
 from .printed_values import Numbers

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ...model.classical.static_forces import static_forces
-from ...model.linkage.inverse import crank_angle_at
+from ...model.linkage.inverse_kinematics import crank_angle_at
 from ...model.linkage.linkage import Linkage
 from .printed_values import Numbers
 

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError, ServiceError
-from ...model.file_names import path_from_text
+from ...model.file_name_encoding import path_from_text
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import Result, Row, read_row
 from ..runs.run_folder import write_file
@@ -283,7 +283,7 @@ class Client(Designs):
 def tables_of(job: JobSource) -> Record:
     """Return the tables of a job file, including the contents of the files beside it. Raises `JobError`."""
     from ...optimise.job import with_files
-    from ...optimise.job.file import read, toml_tables
+    from ...optimise.job.job_file import read, toml_tables
 
     if isinstance(job, Mapping):
         return dict(job)

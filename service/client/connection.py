@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from ...model.errors import InfeasibleError, InputError, NotFound, RunError, ServiceError, SlidercrankError
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 
 with NamingExtra("clients of a service need"):
     import httpx

@@ -217,7 +217,7 @@ def _free_space(name: str, folder: Path) -> Check:
 
 def _check_compiled_model() -> Check:
     """Check the folder with the compiled model; if it is missing, every process spends minutes on compilation."""
-    from ...model.kernel.folder import choose_folder
+    from ...model.kernel.cache_folder import choose_folder
 
     folder, _, refused, other_folders = choose_folder()
     if not refused:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ..designs.display_units import convert_result
 from ..questions.compare.runs import ComparedRun, compared_run
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS

@@ -55,7 +55,7 @@ def check(
 
 def _change_line(sentence: str, path: str, value: Any, label: str) -> str:
     """Return a change that resolves a warning, as a line of a job file."""
-    from ...optimise.job.messages import toml_text
+    from ...optimise.job.mistake_messages import toml_text
 
     return label if value is None else f"{label}: {path} = {toml_text(value)}"
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, OutputLost, StoreError
-from ...model.extras import import_extra, is_installed
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
+from ...model.optional_packages import import_extra, is_installed
 from ...objectives.kinds import System
 from ..designs.display_units import convert_result
 from ..jobs.stores import FILE, Address, open_store
@@ -78,7 +78,7 @@ def optimise(
     keeps the designs found so far. --resume continues in the folder of that run, with the same result as an
     uninterrupted search. The run is also in the store, where `jobs` and the service can see it.
     """
-    from ...model.kernel.disk import compile_ahead
+    from ...model.kernel.disk_cache import compile_ahead
 
     compile_ahead(*SEARCH)
     from ..store.address import without_secrets

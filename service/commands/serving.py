@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 from ..jobs.stores import STORE_VARIABLE, Address, open_store, store_address
 from ..resources.memory import size_of
 from ..runs.run_folder import runs_place
@@ -229,7 +229,7 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
     go to standard error. Ctrl-C stops it, and a running search keeps the designs found so far.
     """
     import_extra("mcp", "serving agents needs")
-    from ...model.kernel.disk import compile_ahead
+    from ...model.kernel.disk_cache import compile_ahead
     from ..agents.server import serve
 
     compile_ahead(*SEARCH)

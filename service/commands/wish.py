@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ...model.errors import InputError, StoreError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
 from ..jobs.front_wish_history import keep_wish, stated_wishes, wishes_as_entered, wishes_of_run
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS

@@ -11,9 +11,9 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.tables.evaluate import can_move, evaluated_as_array
-from ...objectives.tables.swinging import require_motion
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.evaluate_quantities import can_move, evaluated_as_array
+from ...objectives.tables.swing_columns import require_motion
+from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of
@@ -82,7 +82,7 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
 
     minimised: result of `minimised_values(result)`, computed once for many designs.
     """
-    from ...optimise.search.assemble import columns_of
+    from ...optimise.search.assemble_front import columns_of
 
     columns = columns_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     row = rows_of(columns)[0]

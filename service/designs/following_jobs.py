@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.problem import Problem
 from ..runs.result import Result
 from .columns import find_column

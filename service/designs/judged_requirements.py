@@ -96,7 +96,7 @@ class Judgement:
 
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices; default minimum values replace missing ones."""
-    from ...optimise.problem.violation import constraints_of
+    from ...optimise.problem.constraint_violation import constraints_of
 
     requirements = []
     for constraint in constraints_of(part):
@@ -108,7 +108,7 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 def ranges_of(part: Problem) -> list[Requirement]:
     """Return the ranges of crank, rod, offset and the extra variables, in their units."""
-    from ...objectives.tables.varying_column import columns_of_numbers
+    from ...objectives.tables.variable_columns import columns_of_numbers
 
     columns = columns_of_numbers(part.mechanism.varying)
     ranges = []

@@ -10,9 +10,9 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
-from ...objectives.tables.measured import Measured, columns_of, measured_from
+from ...objectives.tables.measured_curves import Measured, columns_of, measured_from
 from ...objectives.units import symbol_in, to_si
-from ...optimise.job.table_file import bytes_of, read_table, text_of
+from ...optimise.job.text_table import bytes_of, read_table, text_of
 
 _LARGEST = 300_000_000  # bytes: millions of rows
 _NAME = "a measured file"

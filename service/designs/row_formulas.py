@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.errors import InputError
 from ...objectives.column_keys import split_unit
-from ...objectives.formula.dimensions import kind_of_formula
+from ...objectives.formula.dimensional_analysis import kind_of_formula
 from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
 from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse

@@ -13,8 +13,8 @@ import numpy as np
 from ...model.errors import RunError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.varying import Varying
-from ...objectives.tables.varying_column import varying_column
+from ...model.machine.varying_numbers import Varying
+from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
 from ...optimise.problem.table_columns import choice_field

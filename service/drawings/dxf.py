@@ -6,7 +6,7 @@ import io
 import math
 from typing import TYPE_CHECKING, Any
 
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 from ..designs.toleranced import decimals_of
 from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 

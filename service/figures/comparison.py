@@ -16,7 +16,7 @@ from ...objectives.count_text import counted
 from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
-from ...optimise.problem.robust import robust_quantities
+from ...optimise.problem.robust_problem import robust_quantities
 from ..render.numerals import with_unit
 from ..runs.result import StoredObjective, stored_objectives
 from .design_marks import BETTER, with_better_arrow

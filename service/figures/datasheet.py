@@ -18,7 +18,7 @@ from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parame
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
+from ...model.machine.two_turn_machine import cycle_turns
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
 from ...objectives.column_keys import split_unit

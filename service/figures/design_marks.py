@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.kinds import System, metric_unit_in
-from ...objectives.tables.varying_column import varying_column
+from ...objectives.tables.variable_columns import varying_column
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.requirements import Objective

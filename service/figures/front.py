@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
-from ...optimise.problem.robust import robust_quantities
+from ...optimise.problem.robust_problem import robust_quantities
 from ..designs.changed_design import Variation
 from ..designs.stored_designs import StoredDesign
 from ..resources.garbage import without_garbage_collection

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 from ..drawings import layers as on
 from ..drawings.shapes import (
     Arc,

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 from ...optimise.front.constant_numbers import is_constant
 from ..render.numerals import format_on_scale
 from ..resources.garbage import without_garbage_collection

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import InputError, LeaseLost, StoreError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ..runs.run_folder import RunFolder
 from ..store import RESUMABLE, Artefact, Claim, Job, Store
 from .find_run import find_folder

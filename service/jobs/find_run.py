@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...model.errors import InputError, NotFound
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ..runs.run_folder import MARK, RunFolder
 from .stores import has_store, open_store
 

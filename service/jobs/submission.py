@@ -39,7 +39,7 @@ def parse_with_allowed_functions(
     meet. Raises `JobError`.
     """
     from ...optimise.job import parse_job
-    from ...optimise.job.file import require_plain_data
+    from ...optimise.job.job_file import require_plain_data
 
     require_plain_data(tables)
     require_allowed_functions(tables, allowed)

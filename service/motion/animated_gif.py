@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...model.cycle.gas_cycle import cylinders
-from ...model.cycle.indicator import indicator
+from ...model.cycle.indicator_diagram import indicator
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
+from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.swing_curves import curves_at_even_times

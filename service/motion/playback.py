@@ -12,10 +12,10 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.cycle.gas_cycle import cylinders
-from ...model.cycle.indicator import indicator
+from ...model.cycle.indicator_diagram import indicator
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turns import cycle_turns
+from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves

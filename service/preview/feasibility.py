@@ -21,10 +21,10 @@ from ...model.cycle.stroke_times import massless_machine, slow_stroke
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...objectives.registry import QUANTITIES
-from ...optimise.feasibility.best import with_single_objective
+from ...optimise.feasibility.best_value import with_single_objective
+from ...optimise.problem.constraint_violation import FEASIBLE, constraints_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
-from ...optimise.problem.violation import FEASIBLE, constraints_of
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish

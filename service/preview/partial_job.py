@@ -14,11 +14,11 @@ from ...model.errors import InputError
 from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.registry import QUANTITIES
 from ...objectives.units import Sign
+from ...optimise.job.constraints_and_objectives import ConstraintsPart, constraints_of
 from ...optimise.job.crank_speed import SPEED_KEYS, CrankSpeedPart
-from ...optimise.job.quantities import ConstraintsPart, constraints_of
 from ...optimise.job.raw_tables import table_in
-from ...optimise.job.values import RangeOf
-from ...optimise.job.varying import ends_of
+from ...optimise.job.value_types import RangeOf
+from ...optimise.job.variables_and_variants import ends_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.search.elimination import require_offset_for_slow_stroke

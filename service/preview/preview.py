@@ -14,16 +14,16 @@ from ...objectives.count_text import counted
 from ...optimise.feasibility.relaxation import Relaxation, relaxation_of_missed_bound
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
-from ...optimise.job.file import require_few_values
 from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
-from ...optimise.job.messages import where_key_belongs
+from ...optimise.job.job_file import require_few_values
+from ...optimise.job.mistake_messages import where_key_belongs
 from ...optimise.job.plain_numbers import plain_values
 from ...optimise.job.possible_values import STROKE_RATIOS, ratio_and_angle_conflict
 from ...optimise.job.schema import schema_of
+from ...optimise.problem.constraint_violation import constraints_of
+from ...optimise.problem.job_remark import Change, Remark
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.remark import Change, Remark
 from ...optimise.problem.requirements import Constraint, Word
-from ...optimise.problem.violation import constraints_of
 from .feasibility import Ends, Possible, possible_values
 from .partial_job import geometry_problem, omitted_requirements
 from .swinging import PossibleSwing, possible_swing

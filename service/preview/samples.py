@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.swing.ends import swing_start_column
+from ...model.swing.end_angles import swing_start_column
 from ...objectives.registry import QUANTITIES
 from ...optimise.job.possible_values import Box
+from ...optimise.problem.constraint_violation import FEASIBLE
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
-from ...optimise.problem.violation import FEASIBLE
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.sampling import first_samples

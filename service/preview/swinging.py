@@ -14,10 +14,10 @@ from ...model.errors import InputError
 from ...model.kinematics.position import motion
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import swings_without_dead_point
-from ...model.swing.ends import ends_of
+from ...model.swing.end_angles import ends_of
 from ...model.swing.swing import STARTS, Swing
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
-from ...objectives.tables.swinging import swing_quantities
+from ...objectives.tables.swing_columns import swing_quantities
 from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem

@@ -84,7 +84,7 @@ def quantities_of_design(
     mechanism: Mechanism, linkage: Linkage, custom: Sequence[Quantity] = ()
 ) -> tuple[Row, dict[str, str]]:
     """Return every quantity of one design, and by column the reason for each missing one. custom: custom quantities."""
-    from ...objectives.tables.analysis import analysis_columns
+    from ...objectives.tables.all_quantities import analysis_columns
     from .peaks import lengths_row
 
     return with_undefined_values(
@@ -102,7 +102,7 @@ def with_undefined_values(
     """
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
-    from ...objectives.tables.missing_values import missing_value_reason
+    from ...objectives.tables.missing_value_reasons import missing_value_reason
     from ...objectives.tables.turn_columns import PEAK_TORQUE_ANGLE
 
     reasons: dict[str, str] = {}
@@ -125,7 +125,7 @@ def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
     """Return every quantity of a swinging design, and by column the reason for each missing one."""
     import numpy as np
 
-    from ...objectives.tables.swinging import swing_columns
+    from ...objectives.tables.swing_columns import swing_columns
 
     row = rows_of(swing_columns(design.part.mechanism, np.array([design.values]), design.part.own))[0]
     return with_undefined_values(row, design.mechanism, design.linkage, design.part.own, design.part.motion)

@@ -118,7 +118,7 @@ class DesignQuestion:
     def answer(
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
-        """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric; called by `optimise.problem.question_registry`."""
         from ...model.linkage.single_linkage import single_rotating_linkage
 
         bound = self.bind_to_problem(mechanism, linkage, problem, inputs)

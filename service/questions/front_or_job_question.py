@@ -111,6 +111,6 @@ class FrontOrJobQuestion:
         return result
 
     def answer_of(self, subject: object, row: int | None, inputs: Mapping[str, object]) -> dict[str, Any]:
-        """Return the numbers as JSON, metric; called by `optimise.problem.questions`."""
+        """Return the numbers as JSON, metric; called by `optimise.problem.question_registry`."""
         record: dict[str, Any] = json_ready(self.ask(subject, inputs, row=row).record("metric"))
         return record

@@ -62,7 +62,7 @@ class TypedInput(Input):
         from pydantic import ValidationError
 
         from ...objectives.units import quote
-        from ...optimise.job.messages import rule_of
+        from ...optimise.job.mistake_messages import rule_of
 
         form = get_origin(self.type)
         value: Any = [raw] if isinstance(raw, str) and form in (list, dict) else raw

@@ -1,5 +1,5 @@
 """Report on a design for a review: job, front, design, evidence, as HTML and PDF."""
 
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 
 import_extra("matplotlib", "reports need")

@@ -13,7 +13,7 @@ from typing import Any
 
 import matplotlib
 
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 from ...objectives.kinds import DISPLAYED_KINDS, unit_text
 from ..figures.style import figure_bytes
 from .document import Block, Facts, Paragraph, Picture, Report, Table

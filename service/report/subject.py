@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...objectives.column_keys import column_key_in_system
 from ...objectives.kinds import System
-from ...objectives.tables.measured import Measured
+from ...objectives.tables.measured_curves import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation

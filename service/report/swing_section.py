@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import cached_property
 
-from ...model.swing.errors import error_shares
+from ...model.swing.error_sources import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in

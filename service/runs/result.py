@@ -140,9 +140,9 @@ def stored_objectives(problem: Problem) -> list[StoredObjective]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
-    from ...optimise.problem.always_zero import idle_constraint_warnings
-    from ...optimise.search.driving_loads import front_driving_load_warnings
-    from ...optimise.search.loaded_stroke import front_stroke_warnings
+    from ...optimise.problem.always_zero_quantities import idle_constraint_warnings
+    from ...optimise.search.driving_load_warnings import front_driving_load_warnings
+    from ...optimise.search.stroke_warnings import front_stroke_warnings
 
     has_designs = len(front) > 0
     several = has_designs and len(front.objectives) > 1

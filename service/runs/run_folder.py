@@ -27,7 +27,7 @@ from pathlib import Path
 from types import TracebackType
 
 from ...model.errors import InputError, MissingExtra, RunError
-from ...model.file_names import path_from_text, path_text
+from ...model.file_name_encoding import path_from_text, path_text
 from ..resources.disk import free_space_text, is_full
 from .result import Result, csv_text, json_text
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from .result import Exact, Result, Row, StoredObjective, json_ready, rows_from_csv
 from .run_folder import MARK
 

@@ -11,7 +11,7 @@ from sqlalchemy import URL, make_url
 from sqlalchemy.exc import ArgumentError
 
 from ...model.errors import InputError, StoreError
-from ...model.file_names import path_from_text, path_text
+from ...model.file_name_encoding import path_from_text, path_text
 
 _OPEN = ("host", "port", "dbname", "user", "service", "sslmode", "application_name", "mode", "uri")
 _MANGLED = re.compile(r"[^/\\]*:[^\\]+@|postgres\w*:|.*password\s*=", re.IGNORECASE | re.DOTALL)

@@ -21,8 +21,8 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, InterfaceError, Invalidate
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from ...model.errors import StoreError
-from ...model.extras import NamingExtra
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
+from ...model.optional_packages import NamingExtra
 from ..resources.disk import LEAST, free_bytes, free_space_text
 from .address import HIDDEN, address_without_secrets, file_of, secrets_of, store_file_exists, url_of
 

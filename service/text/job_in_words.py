@@ -13,26 +13,26 @@ from ...model.machine.links import Bar, Link
 from ...model.machine.loads.load_text import range_text
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
-from ...model.machine.two_turns import cycle_turns
-from ...model.machine.varying import Varying
-from ...model.swing.ends import swing_start_column
+from ...model.machine.two_turn_machine import cycle_turns
+from ...model.machine.varying_numbers import Varying
+from ...model.swing.end_angles import swing_start_column
 from ...objectives.count_text import counted
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.tables.varying_column import columns_of_numbers, varying_column
-from ...optimise.job.options import impossible_option_notes, impossible_options
-from ...optimise.problem.always_zero import idle_constraint_warnings
-from ...optimise.problem.costs import Cost
-from ...optimise.problem.discrete import Discrete
+from ...objectives.tables.variable_columns import columns_of_numbers, varying_column
+from ...optimise.job.impossible_options import impossible_option_notes, impossible_options
+from ...optimise.problem.always_zero_quantities import idle_constraint_warnings
+from ...optimise.problem.constraint_violation import constraints_of
+from ...optimise.problem.discrete_values import Discrete
+from ...optimise.problem.job_remark import changes_of
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.remark import changes_of
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.problem.restatement import restate
-from ...optimise.problem.violation import constraints_of
-from ...optimise.search.driving_loads import driving_load_warnings
+from ...optimise.problem.tolerance_costs import Cost
+from ...optimise.search.driving_load_warnings import driving_load_warnings
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
-from ...optimise.search.full_stroke_loads import full_stroke_load_warnings
-from ...optimise.search.loaded_stroke import stroke_warnings
+from ...optimise.search.overlong_stroke_part_warnings import full_stroke_load_warnings
+from ...optimise.search.stroke_warnings import stroke_warnings
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 

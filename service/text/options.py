@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_type_hints
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import import_extra
 from ...model.linkage.dimensions import DIMENSIONS
+from ...model.optional_packages import import_extra
 from ...objectives.kinds import ANGULAR_SPEED, LENGTH, Kind, System
 from ..designs.selection import parse_value
 

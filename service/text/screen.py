@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 from ..runs.result import json_text
 from ..runs.run_folder import translate_disk_errors
 

@@ -10,7 +10,7 @@ import sys
 from typing import Any
 
 from ...model.errors import OutputLost
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
 
 _ESCAPES = "slidercrank.shown"
 """Name of the error handler for characters that a stream cannot encode."""

@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...model.extras import is_installed
-from ...model.file_names import path_text
+from ...model.file_name_encoding import path_text
+from ...model.optional_packages import is_installed
 from ..jobs.direct_run import begin_run, claim_stopped_job, end_job_on_error, folder_of, stopped_job
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError
-from ...model.extras import import_extra
+from ...model.optional_packages import import_extra
 from ..text.options import File
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from typing import NoReturn
 
 from ...model.errors import LeaseLost, StoreError
 from ...objectives.count_text import counted
-from ...objectives.own.worker import is_guard
+from ...objectives.own.function_process_client import is_guard
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result
 from ..store import NO_LIMITS, NOT_DONE, Claim, Limits

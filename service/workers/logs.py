@@ -10,7 +10,7 @@ from contextvars import ContextVar
 from datetime import UTC, datetime
 from typing import Literal, TextIO
 
-from ...model.extras import NamingExtra
+from ...model.optional_packages import NamingExtra
 
 Format = Literal["text", "json"]
 _SUBJECT: ContextVar[tuple[str | None, int | None]] = ContextVar("subject", default=(None, None))

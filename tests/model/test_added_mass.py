@@ -18,7 +18,7 @@ from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.swing.peaks import swing_peaks
 from slidercrank.model.swing.swing_states import DRIVE, POWER
-from slidercrank.model.transient.equation import CrankEquation
+from slidercrank.model.transient.crank_equation import CrankEquation
 from tests.model.cases import Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.swing.swings import random_swings
 from tests.model.varying_machines import vary

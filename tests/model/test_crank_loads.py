@@ -15,20 +15,20 @@ from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance
-from slidercrank.model.machine.dissipation import may_do_work_over_a_turn
 from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink
-from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.crank_torque_table import CrankTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
+from slidercrank.model.machine.work_absorption import may_do_work_over_a_turn
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.swing import Swing
-from slidercrank.model.transient.forward import simulate
+from slidercrank.model.transient.forward_dynamics import simulate
 from slidercrank.optimise.job import parse_job
 from tests.model.cases import SMOOTH, STROKES, TABLES
 from tests.model.swing.swings import crank_loads

@@ -20,11 +20,11 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.steady import Runner
+from slidercrank.model.transient.steady_running import Runner
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 

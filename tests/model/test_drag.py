@@ -17,11 +17,11 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.steady import Runner
+from slidercrank.model.transient.steady_running import Runner
 from slidercrank.optimise.job import parse_job
 from tests.model.virtual_work import drive_torque
 

@@ -15,8 +15,8 @@ from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.loads.engine import Engine
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
-from slidercrank.model.transient.forward import State, simulate
-from slidercrank.model.transient.steady import Runner
+from slidercrank.model.transient.forward_dynamics import State, simulate
+from slidercrank.model.transient.steady_running import Runner
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 

@@ -11,12 +11,12 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.gas_cycle import gas_cycle_number
-from slidercrank.model.cycle.indicator import indicator
+from slidercrank.model.cycle.indicator_diagram import indicator
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal

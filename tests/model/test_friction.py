@@ -20,8 +20,8 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.fast_torque_and_error import is_supported
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import is_supported
 from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
 from tests.model.cases import SMOOTH, Array, linkage_of, random_designs, random_friction, random_machine

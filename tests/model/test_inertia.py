@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.shaking import ShakingCurves, shaking_curves
+from slidercrank.model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass

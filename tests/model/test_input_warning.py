@@ -7,7 +7,7 @@ import random
 import pytest
 
 import slidercrank as sc
-from slidercrank.model.linkage.variation import vary
+from slidercrank.model.linkage.dimension_variation import vary
 from slidercrank.optimise.job import parse_job
 
 DRAW = random.Random(350)

@@ -23,13 +23,13 @@ import pytest
 from numba.core import event
 
 from slidercrank.model.errors import SlidercrankError
-from slidercrank.model.kernel import compile_all, compiler, disk
+from slidercrank.model.kernel import compile_all, compiler, disk_cache
 from slidercrank.model.kernel.arithmetic import arcsine
-from slidercrank.model.kernel.closure import kernel_digest
 from slidercrank.model.kernel.compile_all import compile_missing
-from slidercrank.model.kernel.disk import KernelSource, keep, read, report_progress
+from slidercrank.model.kernel.disk_cache import KernelSource, keep, read, report_progress
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
+from slidercrank.model.kernel.kernel_digest import kernel_digest
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
 from slidercrank.model.kinematics import closed_forms
 from slidercrank.model.signals.peaks import find_peaks
@@ -86,7 +86,7 @@ def test_a_kernel_that_several_processes_need_is_compiled_and_told_once(program:
 
 @pytest.mark.slow
 def test_compiling_ahead_is_told_by_who_waits_for_it(program: list[str], tmp_path: Path) -> None:
-    begin = "from slidercrank.model.kernel.disk import compile_ahead; compile_ahead('program', ['program'])"
+    begin = "from slidercrank.model.kernel.disk_cache import compile_ahead; compile_ahead('program', ['program'])"
     source = SOURCE.replace("    print(", f"    {begin}\n    print(")
     Path(program[-1]).write_text(source)
     found, said = started(program, tmp_path).communicate()
@@ -143,8 +143,8 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
         return code
 
     monkeypatch.setattr(KernelSource, "compile", compiles)
-    monkeypatch.setattr(disk, "kernel_folder", lambda: tmp_path)
-    monkeypatch.setattr(disk, "compile_in_processes", lambda *given: begun.append(given[2]))
+    monkeypatch.setattr(disk_cache, "kernel_folder", lambda: tmp_path)
+    monkeypatch.setattr(disk_cache, "compile_in_processes", lambda *given: begun.append(given[2]))
     monkeypatch.setattr(compile_all, "_tasks", lambda *_: tasks)
     write = Path.write_bytes
 
@@ -152,7 +152,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    assert [disk.machine_code(each.source()) for each in needed] == [code] * 3
+    assert [disk_cache.machine_code(each.source()) for each in needed] == [code] * 3
     assert len(begun) == 1
     assert len(compiled) == 3
     compile_missing(tmp_path, "")
@@ -160,7 +160,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     monkeypatch.setattr(Path, "write_bytes", write)
     compile_missing(tmp_path, "")
     assert len(compiled) == 7
-    assert [disk.machine_code(each.source()) for each in needed] == [code] * 3
+    assert [disk_cache.machine_code(each.source()) for each in needed] == [code] * 3
     assert len(compiled) == 7
 
 
@@ -169,10 +169,10 @@ def test_a_wait_for_a_kernel_is_interrupted(tmp_path: Path, monkeypatch: pytest.
         raise TimeoutError
 
     compiling = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
-    monkeypatch.setattr(disk, "_start_compilers", lambda *_: [compiling])
+    monkeypatch.setattr(disk_cache, "_start_compilers", lambda *_: [compiling])
     try:
         with interrupted_by(stop), pytest.raises(TimeoutError):
-            disk.compile_in_processes(tmp_path, "some.package", tmp_path / "never")
+            disk_cache.compile_in_processes(tmp_path, "some.package", tmp_path / "never")
     finally:
         compiling.kill()
         compiling.wait()
@@ -213,7 +213,7 @@ def test_of_earlier_machine_codes_the_last_ones_stay(tmp_path: Path) -> None:
         os.utime(file, (number, number))
     keep(tmp_path / "module.other.00", MachineCode("name", (), (), b"code"))
     assert sorted(file.name for file in tmp_path.glob("module.kernel.*"))[-1] == "module.kernel.11"
-    assert len(list(tmp_path.glob("module.kernel.*"))) == disk._STATES
+    assert len(list(tmp_path.glob("module.kernel.*"))) == disk_cache._STATES
     assert len(list(tmp_path.glob("*.unfinished"))) == 0
 
 
@@ -300,9 +300,9 @@ def test_digests_do_not_depend_on_the_process() -> None:
     code = (
         "import json; import slidercrank.model.cycle.cycle, slidercrank.model.signals.averages;"
         "import slidercrank.model.signals.peaks;"
-        "import slidercrank.model.signals.screening, slidercrank.model.signals.complex_forces;"
+        "import slidercrank.model.signals.fast_torque_and_error, slidercrank.model.signals.complex_forces;"
         "from slidercrank.model.kernel.kernel import KERNELS;"
-        "from slidercrank.model.kernel.closure import kernel_digest;"
+        "from slidercrank.model.kernel.kernel_digest import kernel_digest;"
         "print(json.dumps({w.name: kernel_digest(w.function, w.examples) for w in (k.source() for k in KERNELS)}))"
     )
     found = []

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator import burning_end_angle, indicator
+from slidercrank.model.cycle.indicator_diagram import burning_end_angle, indicator
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke, LimitedPressure
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.registry import QUANTITIES

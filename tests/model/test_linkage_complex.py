@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.kernel.arithmetic import STEP
 from slidercrank.model.kinematics.closed_forms import ClosedForm, evaluate_closed_form
-from slidercrank.model.linkage.inverse import crank_from_stroke
+from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage.inverse import crank_from_stroke
+from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import random_designs
 

@@ -21,7 +21,7 @@ package.__path__.append({folder!r})
 import numpy as np
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.dissipation import may_do_work_over_a_turn
+from slidercrank.model.machine.work_absorption import may_do_work_over_a_turn
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.job import parse_job

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.crank_torque_table import CrankTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -18,7 +18,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from tests.model.virtual_work import load_force, outward_motion, path, stroke_ends
 
 _VERBS = "partly helps and partly resists|helps|resists"

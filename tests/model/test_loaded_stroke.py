@@ -17,7 +17,7 @@ from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from tests.model.virtual_work import path, slider_load
 
 DESIGNS = np.array([[0.04, 0.1, 0.03], [0.04, 0.1, -0.03], [0.05, 0.2, 0.1]])

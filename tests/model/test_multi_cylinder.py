@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.moving_mass_effects import shaking_curves
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
-from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import member_machines, single_cylinder
 from slidercrank.model.signals.averages import average, average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal

@@ -12,18 +12,18 @@ FOLDERS = ("model", "objectives")
 QUADRATURES = {
     "model/quadrature.py": "nodes, weights, and panels that are halved until curves are resolved",
     "model/signals/turn_means.py": "the same rule, compiled with the curves of one crank",
-    "model/transient/turn.py": "collocation: the unknown is the motion itself",
+    "model/transient/steady_cycle.py": "collocation: the unknown is the motion itself",
     "model/motion_law/law_turn.py": "values and integrals within the cells of a turn, of polynomials through its nodes",
-    "model/signals/panels.py": "extremes of the polynomials that quadrature has fitted",
+    "model/signals/panel_polynomials.py": "extremes of the polynomials that quadrature has fitted",
     "model/machine/elapsed_time.py": "the series of an integral that quadrature has fitted",
 }
 ITERATIONS = {
     "model/signals/turn_peaks.py": "peaks of one crank, compiled with the curves",
     "model/signals/roots.py": "peaks of all else, and places where a curve changes its sign",
-    "model/signals/screening.py": "peaks of very many designs in vector instructions, without breakpoints",
+    "model/signals/fast_torque_and_error.py": "peaks of very many designs in vector instructions, without breakpoints",
     "model/strength/stress_points.py": "samples a segment evenly; no iteration",
     "model/strength/stress_search.py": "over the place along a link, with the peak over the angle in closed form",
-    "model/dynamics/rubbing.py": "solves for a force, not for an angle",
+    "model/dynamics/torque_with_friction.py": "solves for a force, not for an angle",
     "model/motion_law/motion_law.py": "inverts the time elapsed within a cell",
     "model/swing/angles_from_position.py": "inverts the position of the slider",
     "model/swing/forces.py": "inverts the position of the slider",

@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError
-from slidercrank.model.linkage.inverse import crank_from_stroke
+from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -21,8 +21,8 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import STORED_PEAKS, find_peaks
-from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import (
     MACHINES,

@@ -21,7 +21,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.equation import CrankEquation
+from slidercrank.model.transient.crank_equation import CrankEquation
 from slidercrank.optimise.job import parse_job
 
 Array = NDArray[np.float64]

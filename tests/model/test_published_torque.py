@@ -14,8 +14,8 @@ import pytest
 
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import find_peaks
-from slidercrank.model.signals.screening import screened_maxima
 from slidercrank.model.signals.signals import Signal
 from tests.model.virtual_work import path
 

@@ -16,9 +16,9 @@ from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import member_machines, single_cylinder
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.signals.averages import average
 from slidercrank.model.signals.peaks import find_peaks

@@ -15,12 +15,12 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import RigidLink
-from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.crank_torque_table import CrankTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.machine.varying import Varying
-from slidercrank.model.transient.forward import simulate
+from slidercrank.model.machine.varying_numbers import Varying
+from slidercrank.model.transient.forward_dynamics import simulate
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.cycle_curves import cycle_curves
 from slidercrank.optimise.job import parse_job

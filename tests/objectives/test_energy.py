@@ -17,7 +17,7 @@ from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import Array, linkage_of, random_designs, random_friction, random_machine

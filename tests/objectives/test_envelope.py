@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import Array, linkage_of, random_designs
 

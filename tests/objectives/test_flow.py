@@ -12,7 +12,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.flow import FLOW, FLOW_RIPPLE
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES

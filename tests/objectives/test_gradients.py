@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import STORED_PEAKS
-from slidercrank.objectives.bars import BarPieces, BarQuantity
+from slidercrank.objectives.bar_pieces import BarPieces, BarQuantity
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.pins import PinRubbing
 from slidercrank.objectives.quantity import Group, Pieces, Quantity

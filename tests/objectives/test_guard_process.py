@@ -17,10 +17,10 @@ import pytest
 
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.objectives.own import function_process_client as own_worker
 from slidercrank.objectives.own import guard_process
-from slidercrank.objectives.own import worker as own_worker
-from slidercrank.objectives.own.apply import Refused
-from slidercrank.objectives.own.worker import Worker
+from slidercrank.objectives.own.call_function import Refused
+from slidercrank.objectives.own.function_process_client import Worker
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere, only a group is ended")
 DESIGNS = np.array([[0.03, 0.1, 0.01]])
@@ -216,7 +216,7 @@ ASKING = """
 import os, pathlib, signal, sys, threading, time
 import numpy as np
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own.worker import Worker
+from slidercrank.objectives.own.function_process_client import Worker
 from slidercrank.service.workers.heartbeat import end_process_tree
 
 def leave_in_the_middle():

@@ -14,7 +14,7 @@ from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.slider_distances import SliderDistances
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.joint_forces import GUIDE_MOMENT
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import SMOOTH, STROKES, TABLES, Array, linkage_of, random_designs

@@ -18,14 +18,14 @@ from slidercrank.model.machine.lever_cylinder import Cylinder
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.turning_cylinder.forces import lever_curves
 from slidercrank.model.turning_cylinder.machine import lever_machine, lever_swing
 from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.swing_quantity import SwingQuantity
-from slidercrank.objectives.tables.evaluate import evaluate
-from slidercrank.objectives.tables.swinging import swing_quantities
+from slidercrank.objectives.tables.evaluate_quantities import evaluate
+from slidercrank.objectives.tables.swing_columns import swing_quantities
 from tests.model.turning_cylinder.machines import some_machine
 from tests.objectives.richardson import derivatives
 

@@ -11,7 +11,7 @@ from slidercrank.model.kinematics.target_motion import Freedom
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.motion_deviation import MotionDeviation, motion_deviations
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from tests.model.cases import Array, random_designs
 from tests.model.test_target_motion import ANGLES, target
 from tests.objectives.richardson import derivatives, steps_to_the_nearest_edge

@@ -17,8 +17,8 @@ import pytest
 
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own.apply import Refused
-from slidercrank.objectives.own.worker import Worker
+from slidercrank.objectives.own.call_function import Refused
+from slidercrank.objectives.own.function_process_client import Worker
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")
 DESIGNS = np.array([[0.03, 0.1, 0.01]])
@@ -158,7 +158,7 @@ def test_a_function_does_not_outlive_a_killed_process(tmp_path: Path, worker: Ca
     code = (
         "import numpy as np\n"
         "from slidercrank.model.machine.mechanism import Mechanism\n"
-        "from slidercrank.objectives.own.worker import Worker\n"
+        "from slidercrank.objectives.own.function_process_client import Worker\n"
         f"Worker('loops:forks', [{str(tmp_path)!r}], 1e5)(Mechanism(), np.array([[0.03, 0.1, 0.01]]), None)\n"
     )
     with subprocess.Popen([sys.executable, "-c", code]) as asking:
@@ -175,7 +175,7 @@ FORKING = """
 import gc, json, multiprocessing, os, signal, sys, threading, time, traceback
 import numpy as np
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own.worker import Worker
+from slidercrank.objectives.own.function_process_client import Worker
 
 signal.signal(signal.SIGALRM, lambda *_: os.killpg(0, signal.SIGKILL))  # a hang ends by itself, with its children
 signal.alarm(60)

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import STRENGTH, linkage_of, random_designs, random_friction
 from tests.model.strength.sections import random_bars

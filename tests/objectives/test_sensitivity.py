@@ -15,7 +15,7 @@ from slidercrank.model.linkage.dimensions import DIMENSIONS
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from tests.model.cases import MACHINES, SMOOTH, TOLERANCES, random_designs
 

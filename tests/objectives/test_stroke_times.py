@@ -22,11 +22,11 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.own.designs import Designs
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import Case, RobustQuantity
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from tests.model.cases import TOLERANCES, Array, random_designs
 from tests.model.quadrature import integrals
 

@@ -11,16 +11,16 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_table import CrankTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
+from slidercrank.model.machine.loads.crank_torque_table import CrankTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, without_inertia
 from slidercrank.objectives.swing_quantity import SwingQuantity
-from slidercrank.objectives.tables.swinging import quantities_for_swing, swing_facts, swing_quantities
+from slidercrank.objectives.tables.swing_columns import quantities_for_swing, swing_facts, swing_quantities
 from tests.model.cases import Array
 from tests.model.swing.swings import Case, random_swings
 from tests.objectives.richardson import derivatives

@@ -15,7 +15,7 @@ from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.tables.violations import violations
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.sections import EXAMPLE
+from slidercrank.optimise.job.sections_table import EXAMPLE
 from tests.model.cases import random_designs
 from tests.model.strength.sections import random_bars
 

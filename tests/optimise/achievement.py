@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import constraints_of
 from tests.optimise.independent import excess
 
 Array = NDArray[np.float64]

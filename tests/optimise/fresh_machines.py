@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from scipy.stats import binomtest
 
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.tolerance.spreads import error_distribution
+from slidercrank.model.tolerance.error_distributions import error_distribution
 from slidercrank.objectives.quantity import Quantity
-from slidercrank.objectives.robust.points import tolerance_limits
 from slidercrank.objectives.robust.quantity import RobustQuantity
+from slidercrank.objectives.robust.tolerance_box_points import tolerance_limits
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.problem.robust import robust_quantities
+from slidercrank.optimise.problem.robust_problem import robust_quantities
 
 Array = NDArray[np.float64]
 

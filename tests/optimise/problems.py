@@ -18,8 +18,8 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.methods.auto import auto
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range, Sense
-from slidercrank.optimise.search import search
-from slidercrank.optimise.search.search import WIDTHS
+from slidercrank.optimise.search import sample_and_zoom
+from slidercrank.optimise.search.sample_and_zoom import WIDTHS
 from slidercrank.optimise.solve import solve
 from tests.shared import computed_once
 
@@ -123,7 +123,7 @@ def polish_few(patch: pytest.MonkeyPatch) -> None:
 
 def search_little(patch: pytest.MonkeyPatch) -> None:
     """Zoom in half as many rounds, and polish few designs."""
-    patch.setattr(search, "WIDTHS", WIDTHS[::2])
+    patch.setattr(sample_and_zoom, "WIDTHS", WIDTHS[::2])
     polish_few(patch)
 
 
@@ -137,7 +137,7 @@ def shipped(job: str) -> Problem:
 def shipped_front(job: str) -> ParetoFront:
     """Return the front of a shipped job, for tests that search little too: they share it with all others."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(search, "WIDTHS", WIDTHS)
+        patch.setattr(sample_and_zoom, "WIDTHS", WIDTHS)
         for name, count in _ALL.items():
             patch.setattr(auto, name, count)
         return solve(shipped(job))

@@ -17,14 +17,14 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.always_zero import idle_constraint_warnings, require_nonzero_quantities
+from slidercrank.optimise.problem.always_zero_quantities import idle_constraint_warnings, require_nonzero_quantities
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve
 from tests.model.cases import fitted
-from tests.optimise.test_always_zero import job
+from tests.optimise.test_always_zero_quantities import job
 
 DESIGNS = np.array([[0.05, 0.2, 0.03], [0.03, 0.11, -0.02], [0.06, 0.25, 0.01]])
 CAUSES = ("speed", "masses", "heavy crank", "gravity", "tolerances", "friction", "viscous load")

@@ -16,7 +16,7 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.methods import local
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust
 from slidercrank.optimise.search import checkpoints
 from slidercrank.optimise.search import fingerprint as identity
 from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record

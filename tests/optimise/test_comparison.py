@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.compare import compare
+from slidercrank.optimise.decisions.front_comparison import compare
 from tests.optimise.independent import Array
 
 

@@ -14,9 +14,9 @@ from slidercrank.optimise.front.choose_design import knee, lexicographic, scale_
 from slidercrank.optimise.front.constant_numbers import SAME, column_ranges, is_constant
 from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
 from slidercrank.optimise.front.slack import slack_of
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.requirements import Constraint
-from slidercrank.optimise.problem.violation import constraints_of
-from slidercrank.optimise.search.assemble import columns_of
+from slidercrank.optimise.search.assemble_front import columns_of
 from tests.optimise.problems import problem
 
 PAGE = Path(__file__).parents[2] / "service" / "page" / "static" / "lib" / "constant.js"

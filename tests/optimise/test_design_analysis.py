@@ -10,7 +10,7 @@ import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse as table_of
+from slidercrank.objectives.tables.all_quantities import analyse as table_of
 from slidercrank.objectives.tables.cycle_curves import cycle_curves
 
 DESIGN = [0.04, 0.1, 0.02]

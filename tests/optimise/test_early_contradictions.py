@@ -15,7 +15,7 @@ from slidercrank.objectives.formula.linear import unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 from slidercrank.objectives.gas import VOLUMETRIC_EFFICIENCY
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.options import impossible_option_notes
+from slidercrank.optimise.job.impossible_options import impossible_option_notes
 from slidercrank.optimise.solve import solve
 
 pytestmark = pytest.mark.usefixtures("little")

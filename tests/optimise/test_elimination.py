@@ -12,9 +12,9 @@ import pytest
 from scipy.optimize import minimize
 
 from slidercrank.model.linkage.dimensions import DIMENSIONS
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Sense
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

@@ -16,7 +16,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.methods.registry import methods
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.search.checkpoints import Record
-from slidercrank.optimise.search.search import Archive
+from slidercrank.optimise.search.sample_and_zoom import Archive
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem

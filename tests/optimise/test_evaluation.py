@@ -13,12 +13,12 @@ from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE, constraints_of, minimised
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
-from slidercrank.optimise.problem.violation import FEASIBLE, constraints_of, minimised
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.pieces import Rows
+from slidercrank.optimise.search.piece_rows import Rows
 from tests.optimise.independent import Array, excess, objectives, value
 from tests.optimise.problems import Bounds, degrees, problem
 

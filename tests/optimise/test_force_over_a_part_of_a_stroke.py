@@ -15,8 +15,8 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.optimise.job import Job, job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.driving_loads import net_work
-from slidercrank.optimise.search.full_stroke_loads import full_stroke_load_warnings
+from slidercrank.optimise.search.driving_load_warnings import net_work
+from slidercrank.optimise.search.overlong_stroke_part_warnings import full_stroke_load_warnings
 
 LENGTHS = {"crank": ["20 mm", "100 mm"], "rod": ["200 mm", "400 mm"], "offset": ["0 mm", "50 mm"]}
 

@@ -14,7 +14,7 @@ from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.search.front_growth import FrontVolume
-from slidercrank.optimise.search.search import Archive, Run
+from slidercrank.optimise.search.sample_and_zoom import Archive, Run
 from slidercrank.optimise.solve import solve
 
 from .problems import JOBS, Bounds, degrees, problem, shipped

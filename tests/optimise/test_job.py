@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import JobError
-from slidercrank.model.linkage.inverse import crank_from_stroke
+from slidercrank.model.linkage.inverse_kinematics import crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
@@ -27,7 +27,7 @@ from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.optimise.job import Job, job_schema, load_job, parse_job
 from slidercrank.optimise.job.problem_of_job import problem_of
-from slidercrank.optimise.job.sections import EXAMPLE as SECTIONS
+from slidercrank.optimise.job.sections_table import EXAMPLE as SECTIONS
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from tests.model.cases import with_example

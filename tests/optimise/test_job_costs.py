@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.costs import Cost, Costs
+from slidercrank.optimise.problem.tolerance_costs import Cost, Costs
 
 SMALL: dict[str, Any] = {
     "name": "Small",

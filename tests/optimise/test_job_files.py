@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, parse_job
-from slidercrank.optimise.job.file import toml_tables
+from slidercrank.optimise.job.job_file import toml_tables
 
 
 def refusal(path: Path) -> str:

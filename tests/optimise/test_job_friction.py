@@ -18,10 +18,10 @@ from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.job.problem_of_job import problem_of
-from slidercrank.optimise.job.sections import EXAMPLE
+from slidercrank.optimise.job.sections_table import EXAMPLE
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
-from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

@@ -13,7 +13,7 @@ from slidercrank.model.errors import AssemblyError, JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.loaded_stroke import stroke_warnings
+from slidercrank.optimise.search.stroke_warnings import stroke_warnings
 from slidercrank.optimise.solve import solve
 
 JOB: dict[str, Any] = {

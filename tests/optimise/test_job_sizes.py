@@ -11,7 +11,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.file import MOST, require_few_values, toml_tables
+from slidercrank.optimise.job.job_file import MOST, require_few_values, toml_tables
 from slidercrank.service.jobs.job_toml import job_toml
 
 LONGEST = 10.0

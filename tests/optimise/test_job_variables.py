@@ -10,8 +10,8 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.links import Bar
-from slidercrank.model.machine.varying import Varying
-from slidercrank.objectives.tables.varying_column import varying_column
+from slidercrank.model.machine.varying_numbers import Varying
+from slidercrank.objectives.tables.variable_columns import varying_column
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Range

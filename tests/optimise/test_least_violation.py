@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slidercrank.optimise.feasibility.best import find_best_design, with_single_objective
+from slidercrank.optimise.feasibility.best_value import find_best_design, with_single_objective
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search import evaluation
+from slidercrank.optimise.search.batch_quantities import screen_quantities
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.judging import screen_quantities
+from slidercrank.optimise.search.least_violation import greatest_violations
 from slidercrank.optimise.search.sampling import distant_rows
-from slidercrank.optimise.search.violation import greatest_violations
 from tests.optimise.independent import Array
 from tests.optimise.problems import Bounds, degrees, problem
 

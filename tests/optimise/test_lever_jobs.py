@@ -13,10 +13,15 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.lever_quantity import LeverQuantity
-from slidercrank.objectives.tables.swinging import swing_facts
-from slidercrank.optimise.certificate.boundable import unbounded_reason
+from slidercrank.objectives.tables.swing_columns import swing_facts
+from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
+from slidercrank.optimise.problem.constraint_violation import (
+    FEASIBLE,
+    all_minimised,
+    constraints_of,
+    greatest_violation,
+)
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE, all_minimised, constraints_of, greatest_violation
 from tests.optimise.problems import LEVER
 
 TIPPER = [0.35, 0.9, 0.0]

@@ -15,7 +15,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.model.kinematics import geometry
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise import solve as solving
-from slidercrank.optimise.certificate.infeasible import prove_infeasible
+from slidercrank.optimise.certificate.infeasibility_certificate import prove_infeasible
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 

@@ -17,8 +17,8 @@ from slidercrank.model.swing.closure import swings_without_dead_point
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.swing_batch import can_swing_despite_friction
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

@@ -17,7 +17,7 @@ from slidercrank.objectives.kinds import DisplayUnit, kind_in
 from slidercrank.objectives.own import quantity as own_module
 from slidercrank.objectives.own.designs import magnitude
 from slidercrank.objectives.own.quantity import OwnQuantity
-from slidercrank.optimise.decisions.like import like
+from slidercrank.optimise.decisions.similar_design import like
 from slidercrank.optimise.job import load_job, needed_files, parse_job
 from slidercrank.optimise.job.custom_quantities import FormulaPart, require_usable_names
 from slidercrank.optimise.problem.requirements import Constraint, Objective

@@ -14,7 +14,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InputWarning, JobError
-from slidercrank.optimise.job import parse_job, values
+from slidercrank.optimise.job import parse_job, value_types
 from slidercrank.optimise.job.job_notes import notes_of
 
 PRESS = {
@@ -285,13 +285,13 @@ def test_lengths_within_ranges_with_units_never_warn() -> None:
 
 def test_a_job_of_values_with_units_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[object] = []
-    original = values.RangeOf.read
+    original = value_types.RangeOf.read
 
-    def counted(of: values.RangeOf, value: object) -> object:
+    def counted(of: value_types.RangeOf, value: object) -> object:
         read.append(value)
         return original(of, value)
 
-    monkeypatch.setattr(values.RangeOf, "read", counted)
+    monkeypatch.setattr(value_types.RangeOf, "read", counted)
     job = put("load.0.positions", ["0.1 m", "0.2 m"])
     parse_job(job)
     assert read.count(["20 mm", "200 mm"]) == 1

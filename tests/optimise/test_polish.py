@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.search.pieces import Rows
+from slidercrank.optimise.search.piece_rows import Rows
 from slidercrank.optimise.search.polish import ITERATIONS, make_convex, polish
 from slidercrank.optimise.search.polish_programme import FIRM, ROUNDING
 

@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.problem.violation import greatest_violation
+from slidercrank.optimise.problem.constraint_violation import greatest_violation
 from tests.optimise.problems import RUNS
 
 PRESS = load_job(Path(__file__).parents[2] / "runs/press.toml").part(0)

@@ -9,9 +9,9 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.restatement import restate
-from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve

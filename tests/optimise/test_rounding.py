@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.rounded import Rounded
+from slidercrank.optimise.front.rounded_design import Rounded
 from slidercrank.optimise.front.rounding import rounding
 from slidercrank.optimise.front.rounding_search import Stage, Steps
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Range
-from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, Ends, degrees, problem, search_little
 

@@ -13,11 +13,11 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.time_ratio import TIME_RATIO
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.problem import Variant
-from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
-from slidercrank.optimise.search.loaded_stroke import front_stroke_warnings, stroke_warnings
 from slidercrank.optimise.search.sampling import first_samples
+from slidercrank.optimise.search.stroke_warnings import front_stroke_warnings, stroke_warnings
 from slidercrank.optimise.solve import solve
 
 pytestmark = pytest.mark.usefixtures("little")

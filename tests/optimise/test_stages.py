@@ -21,8 +21,8 @@ from slidercrank.optimise.front.hypervolume import ReportProgress, choose_design
 from slidercrank.optimise.front.progress import REPEATING, Progress
 from slidercrank.optimise.methods.auto import partial_front
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search import assemble, checkpoints, search
-from slidercrank.optimise.search.assemble import columns_of
+from slidercrank.optimise.search import assemble_front, checkpoints, sample_and_zoom
+from slidercrank.optimise.search.assemble_front import columns_of
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
@@ -35,7 +35,7 @@ GIVEN = problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, des
 @pytest.fixture(autouse=True)
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
     """Tell at every occasion, and keep every step at once; polish few designs."""
-    monkeypatch.setattr(search, "REPORT_INTERVAL", 0.0)
+    monkeypatch.setattr(sample_and_zoom, "REPORT_INTERVAL", 0.0)
     monkeypatch.setattr(checkpoints, "PAUSE", 0.0)
     polish_few(monkeypatch)
 
@@ -84,7 +84,7 @@ def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
 
 def test_a_search_that_goes_on_tells_so_before_it_computes_anything(monkeypatch: pytest.MonkeyPatch) -> None:
     _, _, kept = whole()
-    monkeypatch.setattr(search, "REPORT_INTERVAL", 3600.0)
+    monkeypatch.setattr(sample_and_zoom, "REPORT_INTERVAL", 3600.0)
     _, told, _ = searched(resume=kept)
     assert (told[0].stage, told[0].step, told[0].steps) == (REPEATING, 0, len(kept))
 
@@ -147,7 +147,7 @@ def test_a_cancelled_front_has_as_many_designs_as_are_analysed_in_a_moment(monke
             time.sleep(0.1 * len(dimensions))
         return columns_of(given, variants, dimensions, *rest)
 
-    for module in (partial_front, assemble):
+    for module in (partial_front, assemble_front):
         monkeypatch.setattr(module, "columns_of", slowly)
     heard: list[str] = []
     given = replace(GIVEN, settings=replace(GIVEN.settings, designs=40))
@@ -173,13 +173,13 @@ def test_the_choice_tells_of_every_gain_that_it_weighs() -> None:
 
 
 def test_a_short_stage_is_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, "REPORT_INTERVAL", 3600.0)
+    monkeypatch.setattr(sample_and_zoom, "REPORT_INTERVAL", 3600.0)
     assert not [entry for entry in searched()[1] if entry.steps]
 
 
 def test_a_long_step_reports_its_stage_at_every_poll_until_its_round_ends() -> None:
     reports: list[Progress] = []
-    run = search.Run(GIVEN, 2, stages=reports.append)
+    run = sample_and_zoom.Run(GIVEN, 2, stages=reports.append)
     run.begin_round("polishing")
     for _ in range(3):
         run.checkpoints.poll()

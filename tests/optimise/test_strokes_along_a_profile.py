@@ -11,10 +11,10 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.constraint_violation import constraints_of
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import constraints_of
 from slidercrank.optimise.search.elimination import elimination_branches
-from slidercrank.optimise.search.loaded_stroke import front_stroke_warnings, stroke_warnings
+from slidercrank.optimise.search.stroke_warnings import front_stroke_warnings, stroke_warnings
 from slidercrank.optimise.solve import solve
 from tests.optimise.test_slow_stroke import job as steady_job
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.closure import swings_without_dead_point
-from slidercrank.model.swing.ends import ends_of, greatest_pin_distance
+from slidercrank.model.swing.end_angles import ends_of, greatest_pin_distance
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_types import Side
 from slidercrank.optimise.problem.problem import Problem

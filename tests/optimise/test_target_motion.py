@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job
-from slidercrank.optimise.job.tables import problem
+from slidercrank.optimise.job.problem_from_tables import problem
 from slidercrank.optimise.solve import solve
 
 KNOWN = np.array([0.05, 0.16, 0.03])

@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.job.file import toml_tables
+from slidercrank.optimise.job.job_file import toml_tables
 from tests.case_count import case_count
 
 PARSER = re.compile(

@@ -13,7 +13,7 @@ from scipy.optimize import minimize
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.dominance import nondominated
 from slidercrank.optimise.front.front import ParetoFront

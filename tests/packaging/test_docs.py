@@ -17,7 +17,7 @@ from docs.site import hooks
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job, parse_job, with_files
-from slidercrank.optimise.search.loaded_stroke import stroke_warnings
+from slidercrank.optimise.search.stroke_warnings import stroke_warnings
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.preview import AllowedModel, PreviewModel
 from slidercrank.service.cli import app

@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analysis_columns
+from slidercrank.objectives.tables.all_quantities import analysis_columns
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem

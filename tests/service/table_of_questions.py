@@ -22,7 +22,7 @@ from typer.main import get_command
 
 import slidercrank as sc
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.problem.questions import questions as announced
+from slidercrank.optimise.problem.question_registry import questions as announced
 from slidercrank.service import questions as folder
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.api.app import create_app

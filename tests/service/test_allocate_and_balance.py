@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from slidercrank.model.cycle.shaking import shaking_curves
+from slidercrank.model.cycle.moving_mass_effects import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.mechanism import Window

@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.questions.discovery import TOPIC_COLUMNS
 from tests.service import fronts

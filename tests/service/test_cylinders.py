@@ -10,8 +10,8 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.cylinder_machines import single_cylinder
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.members import single_cylinder
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.sizing.counterweight import balance
 from slidercrank.service.questions.cylinders import analysis

@@ -182,8 +182,10 @@ def test_it_is_swept(sort: str, place: Path, designs: list[dict[str, Any]], comm
 def test_a_design_like_another_is_asked_for_by_it(
     sort: str, place: Path, designs: list[dict[str, Any]], command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("slidercrank.optimise.decisions.like._ROUNDS", 1)  # how near it comes is tested elsewhere
-    monkeypatch.setattr("slidercrank.optimise.decisions.like._STARTS", 4)
+    monkeypatch.setattr(
+        "slidercrank.optimise.decisions.similar_design._ROUNDS", 1
+    )  # how near it comes is tested elsewhere
+    monkeypatch.setattr("slidercrank.optimise.decisions.similar_design._STARTS", 4)
     name, column, _, _ = SORTS[sort]
     ranked = sorted(range(len(designs)), key=lambda row: designs[row][column])
     row, other = (ranked[3], ranked[6]) if name == "transmission_angle_robust" else (ranked[6], ranked[3])

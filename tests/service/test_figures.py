@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.load import Datum
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.datasheet import Curves, cycle_curves, design_datasheet

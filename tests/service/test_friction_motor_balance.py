@@ -15,7 +15,7 @@ import pytest
 from rich.console import Console
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.shaking import shaking_curves
+from slidercrank.model.cycle.moving_mass_effects import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink

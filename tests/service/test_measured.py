@@ -17,7 +17,7 @@ from rich.console import Console
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
-from slidercrank.objectives.tables.deviation import deviations
+from slidercrank.objectives.tables.curve_deviation import deviations
 from slidercrank.service.designs import measured_file
 from slidercrank.service.designs.measured_file import measured_text, read_measured
 from slidercrank.service.figures.panel_figure import panel_in_units

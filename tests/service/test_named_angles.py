@@ -14,8 +14,8 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.first_greatest import angle_in_cycle, first_greatest
-from slidercrank.objectives.tables.analysis import analysis_columns
+from slidercrank.model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
+from slidercrank.objectives.tables.all_quantities import analysis_columns
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves
 from slidercrank.service.questions.cylinders import analysis as cylinders

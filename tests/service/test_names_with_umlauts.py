@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.file_names import path_from_text, path_text
+from slidercrank.model.file_name_encoding import path_from_text, path_text
 from slidercrank.optimise.job import load_job, needed_files
 from slidercrank.service.jobs.direct_run import files_of
 from slidercrank.service.store.address import address_without_secrets, url_of

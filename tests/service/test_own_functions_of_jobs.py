@@ -13,7 +13,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from slidercrank.objectives.own.worker import Worker
+from slidercrank.objectives.own.function_process_client import Worker
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import Terms, work
 from tests.faults.serving import Serving, alive, says

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 import slidercrank as sc
 from slidercrank.model.errors import InputError, InputWarning, NotFound
-from slidercrank.optimise.problem import questions as announced
+from slidercrank.optimise.problem import question_registry as announced
 from slidercrank.service.agents.call import Call
 from slidercrank.service.agents.questions import ask
 from slidercrank.service.agents.tool import Tool

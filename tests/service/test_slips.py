@@ -13,7 +13,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InfeasibleError, InputWarning, JobError
 from slidercrank.optimise.job import with_files
-from slidercrank.optimise.job.file import toml_tables
+from slidercrank.optimise.job.job_file import toml_tables
 from slidercrank.service.api.job_files import Understood
 from slidercrank.service.api.preview import Draft, preview_job
 from slidercrank.service.api.settings import Settings

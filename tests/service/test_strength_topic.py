@@ -16,10 +16,10 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar, Counterweight
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.bars import LINKS
+from slidercrank.objectives.bar_pieces import LINKS
 from slidercrank.objectives.quantity import Group
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.service.figures.panel_figure import panel_in_units
 from slidercrank.service.questions.strength.analysis import blocks, figure, numbers
 from slidercrank.service.render.terminal import print_blocks

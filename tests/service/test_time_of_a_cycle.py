@@ -13,7 +13,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
-from slidercrank.objectives.tables.measured import measured_from
+from slidercrank.objectives.tables.measured_curves import measured_from
 from slidercrank.service.motion.playback import turn_playback
 from tests.service.api.fixed_front import API, Solved, client_of
 from tests.service.conftest import Command

@@ -21,7 +21,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
-from slidercrank.model.transient.steady import steady_running
+from slidercrank.model.transient.steady_running import steady_running
 from slidercrank.service.figures.panel_figure import Panel, panel_in_units
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.flywheel import analysis as flywheel

@@ -78,7 +78,7 @@ class StrokePart:
 class Entry:
     """A key of a load's table in a job file.
 
-    kind: kind of its value, a name from `optimise.job.values`, or the words to choose from. increasing: whether a
+    kind: kind of its value, a name from `optimise.job.value_types`, or the words to choose from. increasing: whether a
     table's points increase. optional: whether it has a default.
     """
 

@@ -15,14 +15,13 @@ from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import ReportProgress, choose_designs
 from ...front.neighbours import neighbours
+from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
-from ...problem.violation import FEASIBLE
-from ...search.assemble import SELECTING, assemble, span_of
+from ...search.assemble_front import SELECTING, assemble, span_of
 from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stack_rows
 from ...search.evaluation import Evaluator
 from ...search.recorded_polish import polish_recorded, project_recorded
-from ...search.sampling import first_samples, generator, sample_near
-from ...search.search import (
+from ...search.sample_and_zoom import (
     FIRST,
     SAMPLES,
     WIDTHS,
@@ -33,6 +32,7 @@ from ...search.search import (
     samples_per_branch,
     searched_evaluators,
 )
+from ...search.sampling import first_samples, generator, sample_near
 from ..registry import Method
 
 ROUNDS = 4

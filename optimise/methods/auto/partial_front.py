@@ -12,11 +12,11 @@ from ....model.kernel.interruption import interrupted_by
 from ....objectives.own.quantity import runs_custom_function
 from ...front.front import ParetoFront
 from ...problem.problem import Problem
-from ...search.assemble import assemble, columns_of, empty_front, span_of
+from ...search.assemble_front import assemble, columns_of, empty_front, span_of
 from ...search.candidates import FrontCandidates
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
-from ...search.search import Archive, Run
+from ...search.sample_and_zoom import Archive, Run
 from .auto import add_projected
 
 _PROJECTING = 0.3  # s, to move designs onto the constraints

@@ -29,11 +29,11 @@ from dataclasses import replace
 import numpy as np
 
 from ....model.arrays import Array
+from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
-from ...problem.violation import FEASIBLE
 from ...search.evaluation import Evaluator
+from ...search.sample_and_zoom import SAMPLES, Archive, Run, explore
 from ...search.sampling import distant_rows, first_samples
-from ...search.search import SAMPLES, Archive, Run, explore
 from ..local import is_budget_spent
 from ..registry import Method
 from .scp import Descent

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....model.arrays import Array
-from ...search.pieces import Rows, rows_of_designs, values_corrected_for_curvature, weighted_gradient_change
+from ...search.piece_rows import Rows, rows_of_designs, values_corrected_for_curvature, weighted_gradient_change
 from ...search.polish import Evaluates
 from .subproblem import Step, Subproblem
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ....model.arrays import Array
-from ....model.extras import import_extra
+from ....model.optional_packages import import_extra
 
 _ABSENT = -1e3
 """Value of absent rows: no step within the unit box makes them active."""

@@ -11,10 +11,10 @@ from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.signals import Signal
-from ....model.tolerance.exact import worst_position_error
+from ....model.tolerance.exact_worst_case import worst_position_error
 from ....objectives.kinds import ANGLE, LENGTH, display_unit
-from ....optimise.problem.costs import Costs, costs_of_tolerances
 from ....optimise.problem.problem import Problem
+from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.input_words import Kind
 from ....optimise.sizing.tolerance_allocation import Allocation, allocate
 from ...render.blocks import (

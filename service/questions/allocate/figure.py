@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
+from ....model.tolerance.error_sources import SOURCES, angles_where_error_counts
 from ....model.tolerance.first_order import FirstOrder, first_order_position_errors
-from ....model.tolerance.sources import SOURCES, angles_where_error_counts
 from ....objectives.kinds import LENGTH, System
-from ....optimise.problem.costs import Costs, costs_of_tolerances
+from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
 from ...render.numerals import format_number, with_unit

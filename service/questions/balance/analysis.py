@@ -8,8 +8,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ....model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
 from ....model.cycle.multi_cylinder import MultiCylinderCurves, multi_cylinder_curves
-from ....model.cycle.shaking import ShakingCurves, shaking_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Counterweight

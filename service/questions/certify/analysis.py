@@ -8,11 +8,11 @@ from typing import Any
 from ....model.arrays import Array
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
-from ....objectives.tables.varying_column import columns_of_numbers
+from ....objectives.tables.variable_columns import columns_of_numbers
 from ....optimise.certificate.certificate import Certificate, Step
 from ....optimise.certificate.certify import certify_designs
 from ....optimise.certificate.defaults import EPSILON, SECONDS
-from ....optimise.certificate.infeasible import prove_infeasible
+from ....optimise.certificate.infeasibility_certificate import prove_infeasible
 from ....optimise.front.front import ParetoFront
 from ....optimise.problem.problem import Problem
 from ...designs.display_units import convert_record

@@ -9,10 +9,10 @@ import numpy as np
 
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import Member, member_machines, single_cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import Member, member_machines, single_cylinder
-from ....model.machine.two_turns import cycle_turns
-from ....model.signals.panels import Extreme
+from ....model.machine.two_turn_machine import cycle_turns
+from ....model.signals.panel_polynomials import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn

@@ -11,7 +11,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.transient.flywheel import design_flywheel
-from ....model.transient.steady import Runner, SteadyRunning
+from ....model.transient.steady_running import Runner, SteadyRunning
 from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, sentence, value_from_record, words

@@ -12,10 +12,10 @@ from ....model.cycle.cycle import breakpoints, cycle
 from ....model.cycle.efficiency import cycle_energies
 from ....model.cycle.locked_angles import locking_verdict
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import is_treated_as_shaft, single_cylinder
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import is_treated_as_shaft, single_cylinder
-from ....model.machine.two_turns import cycle_turns
+from ....model.machine.two_turn_machine import cycle_turns
 from ....model.signals.averages import average_torque
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind

@@ -10,8 +10,8 @@ from dataclasses import replace
 from typing import Annotated
 
 from ....model.errors import AssemblyError
-from ....model.linkage.from_slider import CrankSolution
-from ....model.linkage.inverse import Solution as Stroke
+from ....model.linkage.crank_angles_from_slider import CrankSolution
+from ....model.linkage.inverse_kinematics import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_points, require_swing, swing_between_crank_angles

@@ -1,7 +1,7 @@
 """Crank-speed law that a servo should follow, for given lengths."""
 
 from ....objectives.kinds import ANGULAR_ACCELERATION, ANGULAR_SPEED, LENGTH, SPEED, TIME, TORQUE
-from ....optimise.motion_law.words import RANGE, LawObjective, Timing
+from ....optimise.motion_law.input_words import RANGE, LawObjective, Timing
 from ..design_question import DesignQuestion, QuestionCommand
 from ..inputs import Input
 

@@ -12,12 +12,12 @@ import numpy as np
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.motion_law.cam_table import cam_table
-from ....model.transient.equation import TURN
+from ....model.transient.crank_equation import TURN
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ANGULAR_SPEED, SPEED, TORQUE, Kind, System
+from ....optimise.motion_law.input_words import LawObjective, Timing
 from ....optimise.motion_law.law_limits import LawRequest
 from ....optimise.motion_law.optimal_law import OptimalLaw, optimal_law
-from ....optimise.motion_law.words import LawObjective, Timing
 from ....optimise.problem.problem import Problem
 from ...designs.display_units import convert_rows
 from ...designs.rounding_noise import row_without_noise

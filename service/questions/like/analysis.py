@@ -10,7 +10,7 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....optimise.decisions.like import Ends, distance, intersect_ranges, nearest_optimal_design
+from ....optimise.decisions.similar_design import Ends, distance, intersect_ranges, nearest_optimal_design
 from ....optimise.front.front import ParetoFront
 from ....optimise.front.hypervolume import scaling
 from ....optimise.problem.problem import Problem

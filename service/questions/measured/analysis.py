@@ -10,14 +10,14 @@ import numpy as np
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turns import cycle_turns
+from ....model.machine.two_turn_machine import cycle_turns
 from ....objectives.column_keys import kind_of_key
 from ....objectives.count_text import counted
 from ....objectives.kinds import ANGLE
+from ....objectives.tables.curve_deviation import Deviation, deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
-from ....objectives.tables.deviation import Deviation, deviations
-from ....objectives.tables.measured import Measured
+from ....objectives.tables.measured_curves import Measured
 from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import (
     Block,

@@ -12,16 +12,16 @@ from scipy.optimize import minimize_scalar
 from ....model.arrays import Array
 from ....model.cycle.crank_speed import crank_speed_and_acceleration
 from ....model.cycle.cycle import breakpoints, cycle
+from ....model.cycle.moving_mass_effects import shaking_curves
 from ....model.cycle.multi_cylinder import multi_cylinder_curves
 from ....model.cycle.self_locking import locking_margin
-from ....model.cycle.shaking import shaking_curves
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import cylinder_machines
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import cylinder_machines
-from ....model.machine.two_turns import TURN, cycle_turns
+from ....model.machine.two_turn_machine import TURN, cycle_turns
 from ....model.signals.averages import average, average_torque
-from ....model.signals.first_greatest import angle_in_cycle, first_greatest
+from ....model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
 from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal

@@ -12,9 +12,9 @@ from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cyl
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.arrangement import Arrangement
+from ....model.machine.cylinder_machines import member_machines
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.members import member_machines
 from ....objectives.average_torque import MEAN_TORQUE
 from ....objectives.flow import FLOW, FLOW_RIPPLE, pumps_of
 from ....objectives.kinds import TORQUE, VOLUME_FLOW

@@ -13,7 +13,7 @@ from ....objectives.column_keys import column_key_in_system, metric_key, split_u
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
 from ....objectives.units import kind_of_symbol, quote
 from ....optimise.front.progress import stage_text
-from ....optimise.front.rounded import Rounded, drop_conversion_rounding
+from ....optimise.front.rounded_design import Rounded, drop_conversion_rounding
 from ...designs.columns import find_column
 from ...designs.display_units import convert_record
 from ...designs.selection import parse_value
@@ -87,8 +87,8 @@ def _rounded_result(rounded: Rounded, row: int) -> Answer:
 
 def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
-    from ....model.machine.numbers import unit_of
-    from ....objectives.tables.varying_column import varying_column
+    from ....model.machine.raw_numbers_of_designs import unit_of
+    from ....objectives.tables.variable_columns import varying_column
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
@@ -116,7 +116,7 @@ def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
 
 def _read_step(text: str, kind: Kind, key: str) -> float:
     """Return a step, SI, parsed as in a job."""
-    from ....optimise.job.grids import read_step
+    from ....optimise.job.value_grids import read_step
 
     small = SMALL_LENGTH if kind is LENGTH else kind
     return read_step(text, lambda given: parse_value(key, str(given), small, sign="positive"))

@@ -10,9 +10,9 @@ import numpy as np
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.transient.forward import State, simulate
-from ....model.transient.record import Transient, Verdict
-from ....model.transient.steady import SteadyRunning, steady_running
+from ....model.transient.forward_dynamics import State, simulate
+from ....model.transient.simulated_motion import Transient, Verdict
+from ....model.transient.steady_running import SteadyRunning, steady_running
 from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Unit, column, sentence, value_from_record

@@ -16,7 +16,7 @@ from ....model.machine.links import Counterweight, RigidLink
 from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turns import cycle_turns
+from ....model.machine.two_turn_machine import cycle_turns
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, TORQUE
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel

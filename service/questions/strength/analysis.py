@@ -11,17 +11,17 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Bar
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turns import TURN, cycle_turns
-from ....model.signals.first_greatest import angle_in_cycle
+from ....model.machine.two_turn_machine import TURN, cycle_turns
+from ....model.signals.first_of_equal_maxima import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody
-from ....objectives.bars import LINKS, NEAR, STATIC
+from ....objectives.bar_pieces import LINKS, NEAR, STATIC
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
 from ....objectives.link_strength import STATIC_SAFETY, eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
-from ....objectives.tables.missing_values import missing_value_reason
+from ....objectives.tables.missing_value_reasons import missing_value_reason
 from ...designs.violations import violations_of
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, number_list, value_from_record, words

@@ -23,7 +23,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.motion_law.cam_table import CamTable, cam_table
 from slidercrank.model.motion_law.law_turn import LawTurn
 from slidercrank.model.motion_law.motion_law import MotionLaw
-from slidercrank.model.transient.equation import CrankEquation
+from slidercrank.model.transient.crank_equation import CrankEquation
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from tests.model.law_cases import random_case
 

@@ -13,10 +13,10 @@ from scipy import stats
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.tolerance.exact import position_deviation_extremes, worst_position_error
+from slidercrank.model.tolerance.error_distributions import Contact, Shape, Spreads, error_distribution
+from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
 from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
 from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variance_contributions, yield_within
-from slidercrank.model.tolerance.spreads import Contact, Shape, Spreads, error_distribution
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
 TURN = np.array([0.2, 1.3, 2.9, 4.0, 5.5])

@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.transient.flywheel import design_flywheel
-from slidercrank.model.transient.steady import Runner
+from slidercrank.model.transient.steady_running import Runner
 from tests.model.bodies import bodies
 from tests.model.cases import Array
 

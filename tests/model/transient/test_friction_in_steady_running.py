@@ -19,8 +19,8 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.transient.flywheel import design_flywheel
-from slidercrank.model.transient.forward import State, simulate
-from slidercrank.model.transient.steady import Runner, SteadyRunning, steady_running
+from slidercrank.model.transient.forward_dynamics import State, simulate
+from slidercrank.model.transient.steady_running import Runner, SteadyRunning, steady_running
 from tests.model.cases import MACHINES, linkage_of, random_designs, random_friction, random_machine
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)

@@ -20,8 +20,8 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.transient.equation import CrankEquation
-from slidercrank.model.transient.forward import State, simulate
+from slidercrank.model.transient.crank_equation import CrankEquation
+from slidercrank.model.transient.forward_dynamics import State, simulate
 from tests.model.cases import MACHINES, Array, linkage_of, random_designs, random_friction, random_machine
 from tests.model.test_friction import FORCES, inertia_forces, residual
 from tests.model.virtual_work import path, slider_load

@@ -17,7 +17,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.transient.steady import Runner, SteadyRunning
+from slidercrank.model.transient.steady_running import Runner, SteadyRunning
 from tests.model.cases import Array
 from tests.model.transient.test_flywheel import Energies, random_machine
 from tests.model.virtual_work import drive_torque

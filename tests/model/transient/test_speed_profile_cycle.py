@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from slidercrank.model.cycle.crank_speed import crank_speed_and_acceleration
 from slidercrank.model.cycle.cycle import cycle
+from slidercrank.model.cycle.moving_mass_effects import shaking_curves
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
-from slidercrank.model.cycle.shaking import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
@@ -23,9 +23,9 @@ from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 from slidercrank.model.signals.averages import average_torque
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.transient.equation import CrankEquation
+from slidercrank.model.transient.crank_equation import CrankEquation
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
-from slidercrank.model.transient.steady import steady_running
+from slidercrank.model.transient.steady_running import steady_running
 from tests.model.cases import SMOOTH, linkage_of, random_designs, random_friction, random_machine
 from tests.model.test_cylinder import random_case as compressor_case
 

@@ -20,10 +20,10 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import average_torque
-from slidercrank.model.transient import turn
+from slidercrank.model.transient import steady_cycle
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
-from slidercrank.model.transient.steady import Runner
+from slidercrank.model.transient.steady_running import Runner
 from tests.model.cases import Array
 
 CRANK, ROD, SPEED = 0.06, 0.3, 24.0 * math.pi / 30.0
@@ -77,7 +77,7 @@ def _fluctuation(flywheel: float, slider: float) -> float:
 def test_the_flywheel_of_a_press_is_that_of_its_energies_on_few_panels(
     slider: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(turn, "_MOST", 100)
+    monkeypatch.setattr(steady_cycle, "_MOST", 100)
     found = design_flywheel(replace(PRESS, slider_mass=slider), LINKAGE, 0.4)
     assert found.running.fluctuation == pytest.approx(0.4, rel=1e-9)
     # The trapezoidal rule on 80,000 stretches is good to a millionth.
@@ -92,7 +92,7 @@ def test_without_any_inertia_there_are_no_speeds_and_it_is_said_why() -> None:
 
 
 def test_more_panels_than_a_bound_end_in_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(turn, "_MOST", 0)
+    monkeypatch.setattr(steady_cycle, "_MOST", 0)
     with pytest.raises(InputError, match=r"that 4\d panels do not resolve, for example at a crank angle of"):
         Runner(replace(PRESS, slider_mass=50.0), LINKAGE).under_constant_torque(700.0)
 

@@ -15,20 +15,25 @@ from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.machine.varying import Varying
+from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
-from slidercrank.optimise.certificate.cover import choose_covering, excess, greedy_cover, hypervolume_gap_bound
+from slidercrank.optimise.certificate.covering_designs import (
+    choose_covering,
+    excess,
+    greedy_cover,
+    hypervolume_gap_bound,
+)
 from slidercrank.optimise.discrete.combinations import judge
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.job import parse_job
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
-from tests.optimise.certificate.test_boxes import MACHINES, V
+from tests.optimise.certificate.test_box_bounds import MACHINES, V
 from tests.optimise.problems import degrees, problem, shipped_front
 
 pytestmark = pytest.mark.usefixtures("little")

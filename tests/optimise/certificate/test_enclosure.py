@@ -18,9 +18,9 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.optimise.certificate.cycle import CycleCurve
+from slidercrank.optimise.certificate.enclosed_cycle_curve import CycleCurve
+from slidercrank.optimise.certificate.enclosed_machine import interpolate_force
 from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
-from slidercrank.optimise.certificate.machine import interpolate_force
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "sum": lambda x, y, z: 3.0 - (x + y) * 2.0 + z / 7.0 - x,

@@ -17,12 +17,12 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
-from slidercrank.objectives.tables.swinging import swing_quantities
-from slidercrank.optimise.certificate.boundable import unbounded_reason
+from slidercrank.objectives.tables.swing_columns import swing_quantities
+from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective, Sense
 from tests.optimise import problems
-from tests.optimise.certificate.test_boxes import assert_close_to_designs, check
+from tests.optimise.certificate.test_box_bounds import assert_close_to_designs, check
 from tests.optimise.problems import degrees, problem
 
 LOADED = replace(

@@ -10,11 +10,11 @@ import pytest
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.methods.minimax.minimax import descent_starts
 from slidercrank.optimise.methods.minimax.scp import Descent, Point, residual_of
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem, Settings
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.search import explore
+from slidercrank.optimise.search.sample_and_zoom import explore
 from slidercrank.optimise.solve import solve
 from tests.optimise.convex.random_problems import random_problem
 from tests.optimise.independent import feasible

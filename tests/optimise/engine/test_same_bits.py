@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.arrays import Array
-from slidercrank.model.tolerance.spreads import Shape
+from slidercrank.model.tolerance.error_distributions import Shape
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import Case, RobustQuantity, Side
 from slidercrank.optimise.engine.engine import Engine
@@ -18,16 +18,16 @@ from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust
+from slidercrank.optimise.search.batch_quantities import evaluate_pieces, join_batches, screen_quantities
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.judging import evaluate_pieces, join_batches, screen_quantities
 from slidercrank.optimise.search.polish import polish
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
 from tests.optimise.problems import problem, search_little, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module
-from tests.optimise.test_robust import TOLERANT, plain
+from tests.optimise.test_robust_problem import TOLERANT, plain
 
 JOB = robust(
     replace(plain(1), settings=replace(plain(1).settings, samples=200)),

@@ -16,11 +16,11 @@ from slidercrank.optimise.methods import nsga as evolutionary
 from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.population import Brood, Generation, generation_seed
 from slidercrank.optimise.methods.registry import methods
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.violation import FEASIBLE
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.search import Archive, Run
+from slidercrank.optimise.search.sample_and_zoom import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem
 

@@ -20,7 +20,7 @@ from slidercrank.optimise.methods.registry import FAMILIES, Method, budget, meth
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.search import Archive, Run
+from slidercrank.optimise.search.sample_and_zoom import Archive, Run
 from slidercrank.optimise.solve import solve
 from tests.optimise.methods.asking import asking
 from tests.optimise.problems import MACHINE, Bounds, degrees, problem

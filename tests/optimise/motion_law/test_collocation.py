@@ -14,9 +14,9 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.optimise.motion_law.input_words import LawObjective
 from slidercrank.optimise.motion_law.law_limits import LawRequest
 from slidercrank.optimise.motion_law.optimal_law import optimal_law
-from slidercrank.optimise.motion_law.words import LawObjective
 
 pytest.importorskip("casadi")
 

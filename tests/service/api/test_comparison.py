@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.compare import compare
+from slidercrank.optimise.decisions.front_comparison import compare
 from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.questions.compare.analysis import differences

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.optimise.job.file import MOST
+from slidercrank.optimise.job.job_file import MOST
 from slidercrank.optimise.search.polish import polish
 from slidercrank.service.preview import feasibility
 from tests.service.api.serving import refused

@@ -9,7 +9,7 @@ import httpx
 import numpy as np
 import pytest
 
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.designs.changed_design import variation_of
 from slidercrank.service.designs.choice_options import minimised_values

@@ -7,7 +7,7 @@ import tomllib
 
 import numpy as np
 
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.service.runs.result import Result, StoredObjective, rows_of
 from slidercrank.service.store import Store
 from tests.service import fronts

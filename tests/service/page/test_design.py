@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.accessibility import require_accessible

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
-from slidercrank.objectives.tables.analysis import analyse
+from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.store import Store
 from slidercrank.service.store.upkeep import back_up

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.objectives.tables.measured import Measured, measured_from
+from slidercrank.objectives.tables.measured_curves import Measured, measured_from
 from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.design_curves import cycle_csv
 from slidercrank.service.designs.measured_file import read_measured

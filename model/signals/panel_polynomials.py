@@ -1,0 +1,153 @@
+"""Curves over the crank angle as polynomials on panels: means, extremes and integrals to rounding.
+
+On every panel, each curve is its polynomial of degree 15 through the Gauss-Legendre nodes. Panels are halved until the
+last coefficients have died out, or are rounding errors of the crank angle on a steep curve. Extremes are at panel ends,
+where one-sided limits count, or where the derivative of the polynomial is zero.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ..arrays import Array, Mask
+from ..quadrature import (
+    ANGLE_ROUNDING,
+    DEGREE,
+    FIT,
+    MOST_HALVINGS,
+    NODES,
+    Samples,
+    gauss,
+    last_coefficients_magnitude,
+    resolve,
+)
+from .first_of_equal_maxima import first_greatest
+
+Curves = Callable[[Array], Array]
+
+_PRODUCT = 24  # number of nodes that integrate the product of three polynomials exactly
+_RESOLVED = 1e-12  # remaining magnitude of the last coefficients on a resolved panel, relative to that of the curve
+_SHORTEST = 1e-12  # rad
+_PRODUCT_NODES, _PRODUCT_WEIGHTS = gauss(_PRODUCT)
+_AT_PRODUCT_NODES = legendre.legvander(2.0 * _PRODUCT_NODES - 1.0, DEGREE)
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """An extreme value of a curve and its crank angle, rad."""
+
+    value: float
+    angle: float
+
+
+def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
+    """Return the minimum or maximum, whichever has the larger magnitude; if equal, the first in the cycle."""
+    sizes = np.abs([end.value for end in ends])
+    first = ends[int(first_greatest(sizes, np.array([end.angle for end in ends]), period))]
+    return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
+
+
+@dataclass(frozen=True)
+class Panels:
+    """Curves on p panels. low, width: (p,), rad. coefficients: (p, 16, m), those of Legendre polynomials."""
+
+    low: Array
+    width: Array
+    coefficients: Array
+
+    def mean(self, curve: int, time: int | None = None) -> float:
+        """Return the mean over the crank angle or over time. time: curve of the time per crank angle, in any unit."""
+        if time is not None:
+            return self._mean_product(self.coefficients[:, :, curve], self.coefficients[:, :, time]) / self.mean(time)
+        return self.integral(curve) / float(np.sum(self.width))
+
+    def mean_square(self, curve: int, *, subtract: float = 0.0, time: int | None = None) -> float:
+        """Return the mean, as in `mean`, of the square of the curve minus a number."""
+        c = self.coefficients[:, :, curve].copy()
+        c[:, 0] -= subtract
+        if time is None:
+            return self._mean_product(c, c)
+        values, weight = c @ _AT_PRODUCT_NODES.T, self.coefficients[:, :, time] @ _AT_PRODUCT_NODES.T
+        integrals = (values**2 * weight) @ _PRODUCT_WEIGHTS
+        return float(np.sum(self.width * integrals) / np.sum(self.width)) / self.mean(time)
+
+    def _mean_product(self, first: Array, second: Array) -> float:
+        """Return the mean over the crank angle of the product of two curves, given by coefficients (p, 16)."""
+        products = np.sum(first * second / (2.0 * np.arange(DEGREE + 1) + 1.0), axis=1)
+        return float(np.sum(self.width * products) / np.sum(self.width))
+
+    def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
+        """Return the minimum and the maximum; among equal values the first (`first_greatest`)."""
+        return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
+
+    def integral(self, curve: int) -> float:
+        """Return the integral over the crank angle."""
+        return float(np.sum(self.width * self.coefficients[:, 0, curve]))
+
+    def integral_range(self, curve: int) -> float:
+        """Return the range of the integral of the curve minus its mean; J for a torque."""
+        c = self.coefficients[:, :, curve].copy()
+        c[:, 0] -= self.mean(curve)
+        integrals = np.array([legendre.legint(row, lbnd=-1) for row in c]) * (0.5 * self.width)[:, None]
+        starts = np.concatenate([[0.0], np.cumsum(integrals.sum(axis=1))])
+        values = [*starts]
+        for start, row, integral in zip(starts, c, integrals, strict=False):
+            values += [start + legendre.legval(x, integral) for x in _roots(row)]
+        return float(max(values) - min(values))
+
+    def _greatest(self, coefficients: Array, sign: float) -> Extreme:
+        c = sign * coefficients
+        x = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]])
+        samples = legendre.legval(x, c.T)  # (p, 18)
+        top, spread = samples.max(axis=1), np.ptp(samples, axis=1)
+        panel, place = np.unravel_index(int(np.argmax(samples)), samples.shape)
+        best, tops, places, rows = float(samples[panel, place]), [], [], []
+        for i in np.flatnonzero(top + spread >= best):
+            rate = legendre.legder(c[i])
+            stationary, slopes = _roots(rate), legendre.legval([-1.0, 1.0], rate)
+            ends = [end for end, falls in ((-1.0, slopes[0] <= 0.0), (1.0, slopes[1] >= 0.0)) if falls]
+            candidates = np.concatenate([stationary, ends])
+            tops.append(legendre.legval(candidates, c[i]))
+            places.append(candidates)
+            rows.append(np.full(len(candidates), i))
+        values, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
+        angles = self.low[row] + 0.5 * (1.0 + at) * self.width[row]
+        first = int(first_greatest(values, angles, float(np.sum(self.width))))
+        return Extreme(sign * max(best, float(values.max())), float(angles[first]))
+
+
+def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
+    """Return curves (m,) on panels between ascending ends, rad.
+
+    curves: function of crank angles (n,) that returns (m, n), smooth between the ends. sizes: reference magnitudes (m,)
+    below which values are negligible.
+    """
+    low, width = ends[:-1], np.diff(ends)
+    low, width = low[width > _SHORTEST], width[width > _SHORTEST]
+
+    def sample(low: Array, width: Array) -> Samples:
+        angles = low[:, None] + width[:, None] * NODES
+        values = curves(angles.ravel()).reshape(-1, *angles.shape)
+        steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
+        rough: Mask = np.any(np.maximum(_RESOLVED * sizes, steep) < last_coefficients_magnitude(values).T, axis=1)
+        return rough, [np.einsum("ki,mpi->pkm", FIT, values)]
+
+    lows, widths, coefficients = resolve(sample, low, width, limit=len(low) + MOST_HALVINGS)
+    order = np.argsort(lows, kind="stable")
+    return Panels(lows[order], widths[order], coefficients[order])
+
+
+def _roots(coefficients: Array) -> Array:
+    """Return the real roots within the panel."""
+    size = np.abs(coefficients).max()
+    if not size > 0.0:
+        return np.zeros(0)
+    trimmed = legendre.legtrim(coefficients, 1e-15 * size)
+    roots = legendre.legroots(trimmed) if len(trimmed) > 1 else np.zeros(0)
+    roots = roots[np.abs(roots.imag) < 1e-6].real
+    return np.asarray(roots[np.abs(roots) <= 1.0])

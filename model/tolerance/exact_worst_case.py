@@ -1,0 +1,158 @@
+"""Exact worst case: the maximum and the minimum slider position that the tolerances allow.
+
+On the open branch, with the crank pin at (a, b) = r (cos theta, sin theta),
+
+    x = a + sqrt(l^2 - (e - b)^2),
+
+to be maximised and minimised over the box of crank r, rod l, offset e and crank angle theta (clearances widen the box,
+exactly: see `position_error`). The crossed branch is its mirror image, x(theta) -> -x(pi - theta).
+
+1. dx/dl = 1 / cos(phi) > 0: the maximum x has the longest rod, the minimum x the shortest rod. 2. x is concave in (a,
+b, e) together, so at a fixed crank angle it is concave in (r, e) together.
+   - Minimum x: at a corner of (r, e).
+   - Maximum x: possibly in the interior. dx/de = 0 where the rod lies along the line, e = r sin(theta), and dx/dr = 0
+     where the crank is normal to the rod, r = e / sin(theta) + l cos(theta) / |sin(theta)|. Both together need
+     cos(theta) = 0; x = l is then the same all along e = r sin(theta), also on an edge. 3. dx/dtheta = 0 only at the
+     dead centres of a fully rotating linkage. At the outer one, theta = asin(e / (l + r)), x has its maximum over the
+     turn; at the inner one, theta = pi + asin(e / (l - r)), its minimum.
+   - At a dead centre, crank and rod are in line, so dx/dr is not 0. With dx/de = 0 as well, e = 0 and theta = 0.
+
+So the maximum x is at one of 8 corners in (r, e, theta), 4 points with only e in the interior, 4 with only r, 4 with
+only theta, and one with e and theta. The minimum x is at one of 8 corners or 4 points with only theta in the interior.
+All are evaluated; those outside are moved into the box. Each is then a position that does occur, and the extreme is
+among them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Array
+from ..errors import InputError
+from ..linkage.linkage import Linkage
+from ..linkage.single_linkage import single_rotating_linkage
+from ..machine.mechanism import Mechanism
+from ..signals.first_of_equal_maxima import angle_in_cycle
+from .error_sources import angles_where_error_counts, limit_box
+
+_CELLS = 4  # highest samples around which the maximum deviation is refined
+_TURN = 2.0 * np.pi
+
+
+@dataclass(frozen=True)
+class Extremes:
+    """Minimum and maximum deviation of the slider position, m, at crank angles, rad: each (m,)."""
+
+    crank_angle: Array
+    least: Array
+    greatest: Array
+
+    @property
+    def size(self) -> Array:
+        """Larger of the two magnitudes, (m,), m: the exact worst case."""
+        return np.maximum(-self.least, self.greatest)
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The exact worst case over the part of the cycle that counts: its magnitude, m, and the crank angle, rad."""
+
+    size: float
+    crank_angle: float
+
+
+def position_deviation_extremes(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Extremes:
+    """Return the exact extremes of the slider's deviation at crank angles (m,), rad, for one linkage.
+
+    Along +x, from the position of the nominal linkage at the nominal angle. Raises `AssemblyError` unless every linkage
+    within the tolerances rotates fully.
+    """
+    linkage = single_rotating_linkage(mechanism, linkage)
+    angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    if angles.ndim != 1:
+        raise InputError(f"crank angles must be one number or a list of them; got an array of shape {angles.shape}")
+    ideal = linkage.at(angles).slider_position
+    (r, l, e, turn) = limit_box(mechanism, linkage)
+    if linkage.branch == "open":
+        return Extremes(
+            angles,
+            _least_position(r, l[0], e, angles, turn) - ideal,
+            _greatest_position(r, l[1], e, angles, turn) - ideal,
+        )
+    mirrored = np.pi - angles
+    least, greatest = -_greatest_position(r, l[1], e, mirrored, turn), -_least_position(r, l[0], e, mirrored, turn)
+    return Extremes(angles, least - ideal, greatest - ideal)
+
+
+def worst_position_error(mechanism: Mechanism, linkage: Linkage) -> Worst:
+    """Return the exact worst case over the part of the cycle in which the position error counts.
+
+    Continuous crank angle: the highest samples are refined until the value is exact to rounding.
+    """
+    from scipy.optimize import minimize_scalar
+
+    best = Worst(0.0, 0.0)
+
+    def negative_size(angle: float) -> float:
+        return -float(position_deviation_extremes(mechanism, linkage, angle).size[0])
+
+    for angles in angles_where_error_counts(mechanism, linkage):
+        sizes = position_deviation_extremes(mechanism, linkage, angles).size
+        padded = np.concatenate([[-1.0], sizes, [-1.0]])
+        tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
+        for i in tops[np.argsort(sizes[tops])[-_CELLS:]]:
+            low, high = angles[max(i - 1, 0)], angles[min(i + 1, len(angles) - 1)]
+            optimum = minimize_scalar(negative_size, bounds=(low, high), method="bounded", options={"xatol": 1e-10})
+            for size, angle in ((sizes[i], angles[i]), (-optimum.fun, optimum.x)):
+                if size > best.size:
+                    best = Worst(float(size), angle_in_cycle(float(angle), _TURN))
+    return best
+
+
+def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
+    l_sin = e - r * np.sin(angles)
+    return r * np.cos(angles) + np.sqrt(l * l - l_sin * l_sin)
+
+
+def _greatest_position(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+    """Maximum position on the open branch for ranges r, e (2,) and middle + turn (2,) of the crank angle."""
+    ends = middle + turn[:, None]
+    best = np.full(middle.shape, -np.inf)
+
+    def take(crank: Array | float, offset: Array | float, angles: Array) -> None:
+        crank, offset = np.clip(crank, *r), np.clip(offset, *e)
+        np.maximum(best, _position(crank, l, offset, angles), out=best)
+
+    for angles in ends:
+        sine, cosine = np.sin(angles), np.cos(angles)
+        for crank in r:
+            take(crank, crank * sine, angles)
+        safe = np.where(sine == 0.0, 1.0, sine)
+        for offset in e:
+            take(np.where(sine == 0.0, r[0], offset / safe + l * cosine / np.abs(safe)), offset, angles)
+        for crank, offset in product(r, e):
+            take(crank, offset, angles)
+    for crank, offset in product(r, e):
+        take(crank, offset, _clip_angle(np.arcsin(offset / (l + crank)), middle, turn))
+    take(r[1], 0.0, _clip_angle(0.0, middle, turn))
+    return best
+
+
+def _least_position(r: Array, l: float, e: Array, middle: Array, turn: Array) -> Array:
+    """Minimum position on the open branch; arguments as for `_greatest_position`."""
+    best = np.full(middle.shape, np.inf)
+    for crank, offset in product(r, e):
+        dead = _clip_angle(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
+        for angles in (*(middle + turn[:, None]), dead):
+            np.minimum(best, _position(crank, l, offset, angles), out=best)
+    return best
+
+
+def _clip_angle(angle: float, middle: Array, turn: Array) -> Array:
+    """Return a crank angle clipped to middle + turn, up to whole turns."""
+    away = angle - middle
+    return middle + np.clip(away - _TURN * np.round(away / _TURN), *turn)

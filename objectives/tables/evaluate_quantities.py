@@ -1,0 +1,167 @@
+"""Quantities of many designs by name as one array, with their derivatives with respect to the numbers in a design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...model.arrays import Mask
+from ...model.errors import InputError
+from ...model.machine.mechanism import Mechanism
+from ...model.signals.peaks import ANGLES
+from ...model.swing.closure import swings_without_dead_point
+from ...model.swing.swing import Swing
+from ...model.swing.swing_batch import can_swing_despite_friction
+from ...model.turning_cylinder.batch import lever_passes
+from ..cycle_peak import screen_quantities
+from ..formula.quantity import leaves_of, values_with_formulas
+from ..formula.resolve_names import resolve_quantities
+from ..quantity import Array, Quantity, Values
+from .design_input import (
+    designs_as_array,
+    has_finite_numbers,
+    names_of_design_numbers,
+    require_machine,
+    warn_of_lengths,
+)
+from .swing_columns import require_in_motion, require_of_swing, require_same_driver
+
+
+@overload
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: Literal[False] = False,
+    own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
+) -> Array: ...
+@overload
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: Literal[True],
+    own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
+) -> tuple[Array, Array]: ...
+def evaluate(
+    mechanism: Mechanism,
+    designs: ArrayLike,
+    quantities: Sequence[str],
+    *,
+    gradients: bool = False,
+    own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
+) -> Array | tuple[Array, Array]:
+    """Return quantities (n, q) for designs (n, 3 + k), SI; with `gradients`, the Jacobian too.
+
+    A design is crank, rod, offset, m, followed by the values of the machine's k variables. Any number of axes may
+    precede the last: one design (3 + k,) gives (q,). A pandas table has these names as columns. quantities: names or
+    formulas as in job files. own: custom quantities that may be named besides the built-in ones. swing: motion that
+    designs must make instead of a full turn.
+
+    The row of a design that does not rotate fully, or that contains NaN, is NaN. A quantity that is zero for every
+    design of the machine, such as a torque without masses and loads, is 0 here but undefined in `analyse`. Where
+    friction locks the linkage, quantities computed from forces take their worst value, as a search needs it: infinity,
+    or zero for a safety factor. `analyse` then gives the reason instead of a value.
+
+    Peaks come from the vectorised search of `screening`. If that does not support the signal, or the torque peak is at
+    a kink, they come from the exact search in `peaks`. If two peaks tie, the slope is that of one of them.
+
+    Raises `InputError` for an unknown name, for arrays of another width, and for a quantity that the machine does not
+    define (a position error without tolerances). Also raises it for a full-turn quantity with a swing, and for the
+    gradient of a function that has none. Warns once for each machine about lengths that are probably in mm.
+
+    >>> from slidercrank import Mechanism, evaluate
+    >>> evaluate(Mechanism(), [[0.04, 0.1, 0.02], [0.08, 0.1, 0.03]], ["stroke", "time_ratio"]).round(4)
+    array([[0.082 , 1.1334],
+           [   nan,    nan]])
+    """
+    require_machine(mechanism)
+    array = designs_as_array(designs, names_of_design_numbers(mechanism))
+    warn_of_lengths(mechanism, array)
+    return evaluated_as_array(mechanism, array, quantities, gradients=gradients, own=own, swing=swing)
+
+
+def evaluated_as_array(
+    mechanism: Mechanism,
+    designs: Array,
+    quantities: Sequence[str],
+    *,
+    gradients: bool = False,
+    own: Sequence[Quantity] = (),
+    swing: Swing | None = None,
+) -> Array | tuple[Array, Array]:
+    """Return the values from `evaluate` for designs (..., 3 + k) as an array."""
+    if isinstance(quantities, str):
+        raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
+    quantities = list(quantities)
+    require_same_driver(mechanism, swing)
+    require_in_motion(quantities, own, swing)
+    chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
+    for item in chosen:
+        if swing is not None:
+            require_of_swing(item.name, item, of_lever=mechanism.lever is not None)
+        reason = item.undefined_because([mechanism])
+        if reason:
+            raise InputError(f"{item.name}: {reason}")
+    rows, shape = np.ascontiguousarray(designs.reshape(-1, designs.shape[-1])), designs.shape[:-1]
+    lacking = [item.name for item in chosen if not item.has_gradient]
+    if gradients and lacking:
+        raise InputError(
+            f'{lacking[0]} has gradient = "none"; got gradients=True; leave it out, or set "finite differences"'
+        )
+    turns = can_move(mechanism, swing, rows)
+    turns &= has_finite_numbers(rows)
+    all_turn = bool(turns.all())
+    evaluations = _evaluate_leaves(mechanism, chosen, rows if all_turn else rows[turns], gradients)
+    values = np.full((len(rows), len(chosen)), np.nan)
+    jacobian = np.full((*values.shape, rows.shape[1]), np.nan) if gradients else None
+    target_rows: slice | Mask = slice(None) if all_turn else turns
+    for column, part in enumerate(evaluations):
+        values[target_rows, column] = part.values
+        if jacobian is not None and part.gradients is not None:
+            jacobian[target_rows, column] = part.gradients
+    values = values.reshape(*shape, len(chosen))
+    return values if jacobian is None else (values, jacobian.reshape(*values.shape, rows.shape[1]))
+
+
+def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
+    if swing is not None:
+        return (lever_passes if swing.driver == "cylinder" else swings_without_dead_point)(mechanism, swing, designs)
+    crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
+    with np.errstate(invalid="ignore"):
+        return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
+
+
+def can_run_despite_friction(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
+    """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
+    if swing is None or swing.driver == "cylinder":
+        return can_move(mechanism, swing, designs)
+    return can_swing_despite_friction(mechanism, swing, designs)
+
+
+def _evaluate_leaves(
+    mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool
+) -> list[Values]:
+    leaves = leaves_of(quantities)
+    values = screen_quantities(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
+    for leaf in leaves:
+        if leaf.name not in values:
+            continue
+        item = values[leaf.name]
+        missed = ~np.isfinite(item.values)
+        if missed.any():
+            exact = leaf.evaluate(mechanism, designs[missed], gradients=gradients)
+            item.values[missed] = exact.values
+            if item.gradients is not None:
+                item.gradients[missed] = exact.gradients
+    values |= {q.name: q.evaluate(mechanism, designs, gradients=gradients) for q in leaves if q.name not in values}
+    return values_with_formulas(quantities, values, mechanism, designs, gradients=gradients)

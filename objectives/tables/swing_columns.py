@@ -1,0 +1,155 @@
+"""Quantities of a swing, and their columns for designs that need not rotate fully."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...model.errors import InputError
+from ...model.kinematics.negligible_offset import offset_without_rounding
+from ...model.linkage.linkage import Linkage
+from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.machine.loads.load import Enters
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing, require_swing
+from ...model.turning_cylinder.machine import lever_linkage
+from ..formula.quantity import leaves_of
+from ..lever_quantity import LeverQuantity
+from ..quantity import Array, Quantity
+from ..registry import FACTS, QUANTITIES
+from ..swing_quantity import SwingQuantity
+from .variable_columns import varying_column
+
+
+def swing_facts() -> tuple[SwingQuantity, ...]:
+    """Return the facts of all quantities that a swing may have."""
+    return tuple(fact for fact in FACTS.values() if isinstance(fact, SwingQuantity))
+
+
+def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
+    """Return the quantities that are defined for a swing."""
+    return tuple(replace(fact, swing=swing) for fact in swing_facts() if fact.unfit(swing) is None)
+
+
+def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
+    """Return the reason why a motion does not have a swing quantity; None if it does, and for other names."""
+    fact = FACTS.get(name)
+    if not isinstance(fact, SwingQuantity):
+        return None
+    if swing is None:
+        if isinstance(fact, LeverQuantity):
+            return (
+                'needs a lever that swings; this crank rotates fully; set [mechanism] inversion = "turning cylinder" '
+                'and [motion] kind = "swing", or leave it out'
+            )
+        return (
+            'needs a swinging crank; this crank rotates fully; add [motion] kind = "swing" with from and to, '
+            "or leave it out"
+        )
+    return fact.unfit(swing)
+
+
+def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
+    """Raise `InputError` if a motion does not have a named swing quantity. custom: quantities of the problem."""
+    custom_names = {item.name for item in custom}
+    for name in names:
+        reason = None if name in custom_names else reason_undefined_for_swing(name, swing)
+        if reason is not None:
+            raise InputError(f"{name}: {reason}")
+
+
+def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
+    """Raise `InputError` unless a cylinder drives a lever, and nothing else does."""
+    by_cylinder = swing is not None and swing.driver == "cylinder"
+    if (mechanism.lever is not None) == by_cylinder:
+        return
+    if by_cylinder:
+        raise InputError(
+            "a cylinder drives a lever; got one with a slider-crank; set [mechanism] inversion, or another driver"
+        )
+    got = "a crank that rotates fully" if swing is None else f"a swing that the {swing.driver} drives"
+    raise InputError(
+        f'inversion = "turning cylinder" needs a swing of its lever; got {got}; add [motion] kind = "swing" with from '
+        "and to"
+    )
+
+
+def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:
+    """Return one linkage with dimensions as floats, which rotates fully, or makes a swing.
+
+    Raises `AssemblyError` or `InputError` if it does not.
+    """
+    require_same_driver(mechanism, swing)
+    if swing is None:
+        return single_rotating_linkage(mechanism, linkage)
+    return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
+
+
+def require_loads(mechanism: Mechanism) -> None:
+    """Raise `InputError` for features that need a full turn: loads from a dead centre, cylinders, a speed profile."""
+    of_turns = {
+        "cylinders": mechanism.arrangement,
+        "speed_profile": mechanism.speed_profile,
+        "acceleration": mechanism.acceleration or None,
+    }
+    for key, value in of_turns.items():
+        if value is not None:
+            raise InputError(f"mechanism.{key}: it needs a crank that rotates fully; got a swing; leave it out")
+    for load in mechanism.loads:
+        if load.enters in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
+            raise InputError(
+                "the cycle of a cylinder needs a crank that rotates fully; got a swing; leave it out, or give the "
+                "forces on its piston over the slider position, from the crank pivot"
+            )
+        datum = getattr(load, "datum", "")
+        if datum.endswith("dead centre"):
+            instead = "zero crank angle" if load.enters is Enters.ANGLE_TABLE else "the crank pivot"
+            raise InputError(
+                f"a load on a swing must not be measured from the {datum}, which a swing need not reach; measure "
+                f"it from {instead}, state a pressure as the force on its piston, or leave it out"
+            )
+        if load.cycle_turns > 1:
+            raise InputError(
+                "a cycle of 720 deg needs a crank that rotates fully; got a swing with such a load; state the load "
+                "over 360 deg, or leave it out"
+            )
+
+
+def require_of_swing(key: str, quantity: Quantity, *, of_lever: bool = False) -> None:
+    """Raise `InputError` for a quantity that needs a fully rotating crank."""
+    for leaf in leaves_of([quantity]):
+        if leaf.turning:
+            swing_names = ", ".join(fact.name for fact in swing_facts() if isinstance(fact, LeverQuantity) == of_lever)
+            raise InputError(
+                f'{key}: {leaf.name} needs a crank that rotates fully; got [motion] kind = "swing"; use a quantity '
+                f"of a swing ({swing_names}), or leave it out"
+            )
+
+
+def quantities_for_swing(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
+    """Return the quantities of designs with a swing, in display order. custom: quantities of the problem."""
+    every: Iterable[Quantity] = (*QUANTITIES.values(), *custom)
+    quantities = [item for item in every if not any(leaf.turning for leaf in leaves_of([item]))]
+    return tuple(sorted(quantities, key=lambda item: item.place))
+
+
+def swing_columns(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quantity]) -> dict[str, NDArray[Any]]:
+    """Return the columns (n,) for designs with a swing (n, 3 + k), as `analysis_columns` does for a full turn."""
+    dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64)).copy()
+    dimensions[:, 2] = offset_without_rounding(dimensions[:, 1], dimensions[:, 2])
+    columns: dict[str, NDArray[Any]] = {
+        name: 1e3 * dimensions[:, place] for place, name in enumerate(("crank_mm", "rod_mm", "offset_mm"))
+    }
+    for place, item in enumerate(mechanism.varying):
+        key, unit = varying_column(item)
+        columns[key] = unit.factor * dimensions[:, 3 + place]
+    for quantity in quantities_for_swing(custom):
+        if quantity.undefined_because([mechanism]):
+            columns[quantity.field] = np.full(len(dimensions), np.nan)
+        else:
+            columns[quantity.field] = quantity.unit.factor * quantity.evaluate(mechanism, dimensions).values
+    return columns

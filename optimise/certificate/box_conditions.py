@@ -1,0 +1,96 @@
+"""Conditions on boxes of designs: which boxes can meet them, in which part, and a point likely to meet them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...model.arrays import Array
+from ..problem.constraint_violation import FEASIBLE
+from ..problem.requirements import Constraint
+from .enclosure import INFLATION, Enclosure
+
+_INSIDE = 1e-9  # relative distance of a trial design from the limits
+_ROUNDS = 3  # attempts to move it into the box's feasible part
+
+
+class Limits:
+    """Conditions `enclosure <= FEASIBLE` on n boxes, added one by one, and which boxes may meet them."""
+
+    def __init__(self, n: int, k: int) -> None:
+        self.alive = np.ones(n, dtype=bool)
+        self.rows: list[tuple[Array, Array, Array]] = []  # centre (n,), slopes (k, n), rest (n,)
+        self.k = k
+
+    def require_nonpositive(self, value: Enclosure) -> None:
+        """Require each part of a number (n, p) to be defined and at most `FEASIBLE` somewhere in the box."""
+        if value.empty is not None:
+            self.alive &= ~value.empty.any(axis=1)
+        self.alive &= ~(value.ends()[0] > FEASIBLE).any(axis=1)
+        for part in range(value.centre.shape[1]):
+            is_finite = np.isfinite(value.greatest_magnitude[:, part])
+            self.rows.append(
+                (
+                    np.where(is_finite, value.centre[:, part], -np.inf),
+                    np.where(is_finite, value.slopes[:, :, part], 0.0),
+                    np.where(is_finite, value.rest[:, part], 0.0),
+                )
+            )
+
+    def add_constraint(
+        self, constraint: Constraint, value: Enclosure, least: Array | None, greatest: Array | None
+    ) -> None:
+        """Require a constraint on the greatest part of a quantity. least, greatest: further bounds on it."""
+        upper, lower = constraint.upper, constraint.lower
+        if upper is not None:
+            scale = abs(upper) or 1.0
+            self.require_nonpositive((value - upper) * (1.0 / scale))
+            if least is not None:
+                self.alive &= ~(least - upper > FEASIBLE * scale)
+        if lower is not None:
+            scale = abs(lower) or 1.0
+            if value.centre.shape[1] == 1:
+                self.require_nonpositive((lower - value) * (1.0 / scale))
+            if greatest is not None:
+                self.alive &= ~(lower - greatest > FEASIBLE * scale)
+
+    def add_curve_constraint(self, constraint: Constraint, value: Enclosure) -> None:
+        """Require an upper bound on every part of a greatest value, or a lower bound on a least value."""
+        if constraint.lower is None:
+            self.add_constraint(constraint, value, None, None)
+        else:
+            self.require_nonpositive((constraint.lower - value) * (1.0 / (abs(constraint.lower) or 1.0)))
+
+    def contracted(self) -> tuple[Array, Array]:
+        """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
+        low, high = -np.ones((self.k, len(self.alive))), np.ones((self.k, len(self.alive)))
+        for centre, slopes, rest in self.rows:
+            # centre + slopes . d - rest <= FEASIBLE, with all other coordinates at their best.
+            best = np.minimum(slopes * low, slopes * high)
+            slack = FEASIBLE - centre + rest + INFLATION * (np.abs(centre) + np.abs(slopes).sum(axis=0))
+            for i in range(self.k):
+                slope = slopes[i]
+                limit = (slack - best.sum(axis=0) + best[i]) / np.where(slope == 0.0, np.nan, slope)
+                limit = np.where(np.isfinite(limit), limit, np.where(slope < 0.0, -np.inf, np.inf))
+                high[i] = np.where(slope > 0.0, np.minimum(high[i], limit + INFLATION), high[i])
+                low[i] = np.where(slope < 0.0, np.maximum(low[i], limit - INFLATION), low[i])
+        self.alive &= (low <= high).all(axis=0)
+        return np.minimum(low, 1.0), np.maximum(high, -1.0)
+
+    def trial_points(self, low: Array, high: Array) -> Array:
+        """Return points (k, n) moved from the middle across the conditions that fail there, one after another."""
+        d = 0.5 * (low + high)
+        for _ in range(_ROUNDS):
+            for centre, slopes, rest in self.rows:
+                violation = centre + (slopes * d).sum(axis=0) + rest + _INSIDE
+                steep = (slopes * slopes).sum(axis=0)
+                step = np.where((violation > 0.0) & (steep > 0.0), violation / np.where(steep > 0.0, steep, 1.0), 0.0)
+                d = np.clip(d - step * slopes, low, high)
+        return d
+
+    def width_effects(self, low: Array, high: Array) -> Array:
+        """Return the effect of the width along each axis on the conditions that are not certain to hold, (n, k)."""
+        widest = np.zeros((len(self.alive), self.k))
+        for centre, slopes, rest in self.rows:
+            open_ = centre + np.maximum(slopes * low, slopes * high).sum(axis=0) + rest > 0.0
+            widest = np.fmax(widest, (np.abs(slopes) * (high - low) * open_).T)
+        return widest

@@ -1,0 +1,145 @@
+"""A machine over boxes of designs: its parameters, and the loads on slider and crank."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from ...model.arrays import Array
+from ...model.dynamics.torque import load_without_pieces
+from ...model.machine.design import AREA, DESIGN, LOAD_ROWS, Design, derive_design, design_at
+from ...model.machine.loads.cylinder import Cylinder
+from ...model.machine.loads.load import Enters
+from ...model.machine.loads.registry import force_of
+from ...model.machine.mechanism import Mechanism
+from ...model.machine.raw_machine_vector import Loads
+from ...model.machine.raw_numbers_of_designs import nominal_number, raw_numbers_by_slot
+from .enclosed_gas_force import gas_force
+from .enclosure import UNIT, Enclosure, interval, select
+
+_TURN = 2.0 * np.pi
+_derive = cast(Any, derive_design)
+
+Numbers = Mapping[int, Enclosure]
+"""Machine parameters that designs set, enclosed over boxes, by slot (`Raw`, `PINS`)."""
+
+
+def parameters_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Numbers:
+    """Return the machine parameters that designs set, from the columns (n, 1) of a design's own numbers."""
+    design = np.empty((1, len(columns)), dtype=object)
+    design[0, :] = columns
+    return {slot: value[0] for slot, value in raw_numbers_by_slot(mechanism, design).items()}
+
+
+def parameter_lookup(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
+    """Return a function from slot to machine parameter, enclosed over boxes if designs set it."""
+    return lambda slot: numbers[slot] if slot in numbers else nominal_number(mechanism, slot)
+
+
+def unboundable_load_reason(mechanism: Mechanism) -> str:
+    """Return why a machine's loads have no bound over a range of designs; empty if they do."""
+    for item in mechanism.varying:
+        for path in item.paths:
+            part, _, place = path.partition(".")
+            if part == "loads" and isinstance(mechanism.loads[int(place.split(".")[0])], Cylinder):
+                return f"the cycle of a cylinder has no bound over a range of {item.name}"
+    return ""
+
+
+class BoxMachine:
+    """Parameters and loads of a machine over boxes of designs, without friction. raw, loads: as for a signal."""
+
+    def __init__(self, mechanism: Mechanism, raw: Array, loads: Loads) -> None:
+        self.mechanism, self.raw, self.loads = mechanism, raw, loads
+
+    def design(self, numbers: Numbers) -> tuple[Design, Any]:
+        """Return the derived design, and its parameter block for the loads."""
+        raw = self.raw.astype(object)[:, None]
+        for slot, value in numbers.items():
+            if slot < len(raw):
+                raw[slot, 0] = value
+        block = np.empty((DESIGN + LOAD_ROWS * len(self.loads.kind), 1), dtype=object)
+        _derive(raw, self.loads.kind, self.loads.datum, block)
+        return design_at(block, 0), block
+
+    def load(self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure) -> Any:
+        """Return the load on the slider, N outward. outward: has the sign of the slider's outward velocity."""
+        load: Any = load_without_pieces(m, d, select_by_stroke(outward, d.outward_force, d.inward_force))
+        way = select_by_stroke(outward, 1.0, -1.0)
+        for k, code in enumerate(self.loads.kind.tolist()):
+            row = DESIGN + LOAD_ROWS * k
+            if code >= Enters.FORMULA:
+                velocity = m.x_1 * d.branch * d.speed
+                load = load + force_of(code, m.x * d.branch, velocity, way, block[row, 0], block[row + 1, 0])
+            elif code in (Enters.CYLINDER, Enters.BURNING_CYLINDER):
+                stroke = d.outer - d.inner
+                z = (m.x * d.branch - block[row + 1, 0]) * block[row, 0]
+                load = load + gas_force(cast(Cylinder, self.mechanism.loads[k]), z / stroke, stroke, outward)
+            if self.loads.start[k] < self.loads.start[k + 1] and not self.loads.factor[k, 2]:
+                load = load + self._table_force(k, m, d, block, theta, outward)
+        return load
+
+    def crank_torque_of_loads(
+        self, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure, way: float | Array
+    ) -> Any:
+        """Return the loads' torque on the crank, N m. way: 1 if the crank turns counter-clockwise, -1 if clockwise."""
+        torque: Any = 0.0
+        for k, load in enumerate(self.mechanism.loads):
+            if load.on_crank and self.loads.kind[k] == Enters.CRANK_TORQUE:
+                constant, resisting, stiffness, free = block[DESIGN + LOAD_ROWS * k + AREA :, 0][:4]
+                torque = torque + constant - way * resisting
+                if isinstance(stiffness, Enclosure) or stiffness:
+                    torque = torque - stiffness * (theta - free)
+            elif load.on_crank:
+                torque = torque + self._table_force(k, m, d, block, theta, outward)
+        return torque
+
+    def _table_force(
+        self, k: int, m: Any, d: Design, block: Any, theta: Array | Enclosure, outward: Enclosure
+    ) -> Enclosure | Any:
+        part = slice(self.loads.start[k], self.loads.start[k + 1])
+        at, force = self.loads.knots[part], self.loads.force[part]
+        factor = self.loads.factor[k, 2] or select_by_stroke(outward, *self.loads.factor[k, :2].tolist())
+        if self.loads.kind[k] != Enters.ANGLE_TABLE:
+            row = DESIGN + LOAD_ROWS * k
+            return factor * interpolate_force((m.x * d.branch - block[row + 1, 0]) * block[row, 0], at, force)
+        if self.loads.datum[k] == 0 and not isinstance(theta, Enclosure):
+            return factor * np.interp(theta - _TURN * np.floor((theta - at[0]) / _TURN), at, force)
+        counted = theta - block[DESIGN + LOAD_ROWS * k + 1, 0] if self.loads.datum[k] else theta
+        centre = counted.centre if isinstance(counted, Enclosure) else counted
+        turns = counted - _TURN * np.floor((centre - at[0]) / _TURN)
+        # One turn before and one after, because a box may extend beyond the ends of the table. Where the table steps at
+        # its seam, the end of one turn and the start of the next are the two sides of the step.
+        at = np.concatenate([at - _TURN, at, at + _TURN])
+        return factor * interpolate_force(turns, at, np.tile(force, 3))
+
+
+def interpolate_force(x: Enclosure, at: Array, force: Array) -> Enclosure:
+    """Return the table's force over an enclosed position: the chord, and the greatest distance of the knots from it."""
+    low, high = x.ends()
+    first, last = np.interp(low, at, force), np.interp(high, at, force)
+    wide = high > low
+    slope = np.where(wide, (last - first) / np.where(wide, high - low, 1.0), 0.0)
+    highest, lowest = np.zeros_like(low), np.zeros_like(low)
+    for knot, value in zip(at, force, strict=True):
+        off = np.where((low < knot) & (knot < high), value - (first + slope * (knot - low)), 0.0)
+        highest, lowest = np.maximum(highest, off), np.minimum(lowest, off)
+    chord = (x - low) * slope + (first + 0.5 * (highest + lowest))
+    rounding = UNIT * (np.abs(force).max() + np.abs(slope) * x.greatest_magnitude)
+    return Enclosure(chord.centre, chord.slopes, chord.rest + 0.5 * (highest - lowest) + 4.0 * rounding, chord.empty)
+
+
+def select_by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
+    """Return one number for the outward stroke, another for the inward one, and both where the stroke is uncertain."""
+    low, high = outward.ends()
+    k = len(outward.slopes)
+    if not isinstance(out, Enclosure) and not isinstance(back, Enclosure):
+        least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
+        greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
+        return interval(least, greatest, k)
+    sides = [0.0 * outward + side for side in (out, back)]
+    (least, greatest), (back_least, back_greatest) = (side.ends() for side in sides)
+    either = interval(np.minimum(least, back_least), np.maximum(greatest, back_greatest), k)
+    return select(low > 0.0, sides[0], select(high < 0.0, sides[1], either))

@@ -1,0 +1,90 @@
+"""Costs of making parts to tolerances."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ...model.errors import InputError
+from ...model.linkage.dimensions import DIMENSIONS
+from ...model.linkage.linkage import Linkage
+from ...model.machine.mechanism import Mechanism
+from ...model.tolerance.error_sources import limits_of_sources
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """Cost of holding a tolerance t: fixed + cost (at / t)^exponent.
+
+    Exponent 1 gives the reciprocal model a + b / t (b = cost at), others give the power model a + b / t^k; both in M.
+    F. Spotts, "Allocation of tolerances to minimize cost of assembly", J. Engineering for Industry 95, 1973, and the
+    survey of K. W. Chase and W. H. Greenwood, "Design issues in mechanical tolerance analysis", Manufacturing Review
+    1(1), 1988. Any currency, the same in all costs.
+
+    cost: variable cost at the tolerance `at`. at: reference tolerance, m, or rad for the crank angle. fixed: fixed
+    cost. least, greatest: range of the process, m or rad.
+    """
+
+    cost: float
+    at: float
+    fixed: float = 0.0
+    exponent: float = 1.0
+    least: float = 0.0
+    greatest: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("cost", "at", "exponent"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(f"the {name} of a tolerance's cost must be positive and finite; got {value:g}")
+        if not math.isfinite(self.fixed) or self.fixed < 0.0:
+            raise InputError(f"the fixed cost of a tolerance must be zero or more and finite; got {self.fixed:g}")
+        if not 0.25 <= self.exponent <= 4.0:
+            raise InputError(
+                f"the exponent of a tolerance's cost must be from 0.25 to 4; got {self.exponent:g}; "
+                "processes have 0.5 to 3"
+            )
+        if not (math.isfinite(self.least) and 0.0 <= self.least < self.greatest):
+            raise InputError(
+                "the least tolerance must be zero or more and below the greatest; "
+                f"got {self.least:g} to {self.greatest:g}; a given tolerance belongs to the mechanism, without a cost"
+            )
+
+    def cost_at(self, tolerance: float) -> float:
+        """Return the cost of a tolerance, m or rad; infinite at zero."""
+        return self.fixed + self.cost * (self.at / tolerance) ** self.exponent if tolerance > 0.0 else math.inf
+
+    def slope(self, tolerance: float) -> float:
+        """Return the derivative of the cost with respect to the tolerance, per m or rad; never positive."""
+        return -self.exponent * (self.cost_at(tolerance) - self.fixed) / tolerance
+
+
+@dataclass(frozen=True, kw_only=True)
+class Costs:
+    """Costs of the tolerances; None leaves a tolerance at the mechanism's value."""
+
+    crank: Cost | None = None
+    rod: Cost | None = None
+    offset: Cost | None = None
+    crank_angle: Cost | None = None
+
+    def __post_init__(self) -> None:
+        if not self.by_name:
+            raise InputError("costs must name at least one of crank, rod, offset and crank_angle; got none")
+
+    @property
+    def by_name(self) -> dict[str, Cost]:
+        """The stated costs by name, in the order of `NAMES`."""
+        return {name: cost for name in NAMES if (cost := getattr(self, name)) is not None}
+
+
+NAMES = (*DIMENSIONS, "crank_angle")
+"""Sources whose tolerance can be chosen, in the order of `model.tolerance.sources.SOURCES`."""
+
+
+def costs_of_tolerances(costs: Costs, linkage: Linkage, before: Mechanism) -> dict[str, float] | None:
+    """Return the cost of each tolerance of a mechanism, by name; None if a tolerance with a cost is zero."""
+    limits_by_name = dict(zip(NAMES, limits_of_sources(before, linkage)[: len(NAMES)], strict=True))
+    if not all(limits_by_name[name] > 0.0 for name in costs.by_name):
+        return None
+    return {name: cost.cost_at(float(limits_by_name[name])) for name, cost in costs.by_name.items()}
