@@ -5,7 +5,7 @@ from __future__ import annotations
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Path, Query, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
@@ -17,6 +17,7 @@ from ..designs.display_units import convert_rows
 from ..designs.judged_requirements import faults_in_words, ranges_of
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
+from ..store.bookmark_history import Action, history_of
 from ..store.remarks import Bookmark, bookmark_design, bookmarks_of, remove_bookmark, update_bookmark
 from .computing import QuickRoute
 from .exports import download, file_endpoint_options
@@ -30,6 +31,7 @@ router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_r
 
 _NAME = Annotated[str, Field(max_length=200)]
 _TEXT = Annotated[str, Field(max_length=4000)]
+_AUTHOR = Annotated[str, Field(max_length=100, examples=["Anna"])]
 _LENGTHS = ("crank_mm", "rod_mm", "offset_mm")
 BookmarkNumber = Annotated[
     int, Path(ge=1, le=2**31, description="number of a bookmark, from 1", examples=[1]), PLAIN_DIGITS
@@ -40,7 +42,7 @@ class NewBookmark(BaseModel, extra="forbid", strict=True):
     """Design to bookmark: one on the front, one with other dimensions, or dimensions alone.
 
     If the design already has a bookmark, that bookmark takes over the given name, note, star, decision and reason.
-    decided: revokes an earlier decision.
+    decided: revokes an earlier decision. author: name of the person, for the history.
 
     design: its number. dimensions: column values from a table of designs that replace those of the design; without a
     design, all lengths, extra variables and choices. Lengths outside the ranges of the job are allowed.
@@ -55,12 +57,14 @@ class NewBookmark(BaseModel, extra="forbid", strict=True):
     star: bool = False
     decided: bool = False
     reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
+    author: _AUTHOR = ""
 
 
 class BookmarkChange(BaseModel, extra="forbid", strict=True):
     """Changes to a bookmark; omitted fields stay unchanged.
 
-    decided: revokes an earlier decision. reason: why, or why not.
+    decided: revokes an earlier decision. reason: why, or why not. author: name of the person, for the history. Earlier
+    notes, reasons and decisions stay in the history.
     """
 
     name: Annotated[str, Field(min_length=1, max_length=200)] = Field("", examples=["Round numbers"])
@@ -68,6 +72,7 @@ class BookmarkChange(BaseModel, extra="forbid", strict=True):
     star: bool = Field(False, examples=[True])
     decided: bool = Field(False, examples=[True])
     reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
+    author: _AUTHOR = ""
 
 
 class BookmarkedDesign(BaseModel):
@@ -90,19 +95,36 @@ class BookmarkedDesign(BaseModel):
     numbers: dict[str, float | list[str]] | None = Field(
         examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0}]
     )
-    decision: str = Field(examples=["Chosen: Round numbers (least torque)"])
+    decision: str = Field(examples=["Decided: Round numbers (least torque)"])
     at: float
     cells: Cells
     broken: list[str]
     outside: list[str]
 
 
+class HistoryEntryModel(BaseModel, from_attributes=True):
+    """Change to a bookmark. number: increases within the job. bookmark: its number, null once it is deleted.
+
+    name: name of the design at that time. text: the note or reason, if any. author: name that was given, or empty. at:
+    seconds since 1970.
+    """
+
+    number: int = Field(examples=[1])
+    bookmark: int | None
+    name: str
+    action: Action
+    text: str
+    author: str
+    at: float
+
+
 class BookmarkList(BaseModel):
-    """Bookmarks of a job, oldest first."""
+    """Bookmarks of a job, oldest first. history: all notes, reasons, decisions and deletions, oldest first."""
 
     job: int = Field(examples=[7])
     columns: list[ColumnModel]
     designs: list[BookmarkedDesign]
+    history: list[HistoryEntryModel]
 
 
 @router.get("/jobs/{number}/kept")
@@ -110,7 +132,8 @@ def list_bookmarks(stored_front: FrontDep, store: StoreDep) -> BookmarkList:
     """Return the bookmarked designs of a job with all their numbers."""
     designs = [_bookmark_model(stored_front, bookmark) for bookmark in bookmarks_of(store, stored_front.job.id)]
     columns = column_models(all_columns(designs[0].cells if designs else ()))
-    return BookmarkList(job=stored_front.job.id, columns=columns, designs=designs)
+    history = [HistoryEntryModel.model_validate(entry) for entry in history_of(store, stored_front.job.id)]
+    return BookmarkList(job=stored_front.job.id, columns=columns, designs=designs, history=history)
 
 
 @router.post("/jobs/{number}/kept", status_code=HTTPStatus.CREATED)
@@ -135,9 +158,11 @@ def change_bookmark(
 
 
 @router.delete("/jobs/{number}/kept/{kept}", status_code=HTTPStatus.NO_CONTENT)
-def delete_bookmark(stored_front: FrontDep, kept: BookmarkNumber, store: StoreDep) -> None:
-    """Delete a bookmark."""
-    remove_bookmark(store, stored_front.job.id, kept)
+def delete_bookmark(
+    stored_front: FrontDep, kept: BookmarkNumber, store: StoreDep, author: Annotated[_AUTHOR, Query()] = ""
+) -> None:
+    """Delete a bookmark; the history keeps its notes, reasons and decisions."""
+    remove_bookmark(store, stored_front.job.id, kept, author)
 
 
 @router.get("/jobs/{number}/kept.csv", **file_endpoint_options("text/csv"))
@@ -146,8 +171,18 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
     rows: list[Any] = []
     for bookmark in bookmarks_of(store, stored_front.job.id):
         varied = _bookmark_variation(stored_front, _design(stored_front, bookmark))
-        head = {"number": bookmark.number, "name": bookmark.name, "star": bookmark.star, "decided": bookmark.decided}
-        head |= {"note": bookmark.note, "reason": bookmark.reason, "outside_the_job": ", ".join(varied.outside)}
+        head = {
+            "number": bookmark.number,
+            "design": bookmark.design,
+            "name": bookmark.name,
+            "star": bookmark.star,
+            "decided": bookmark.decided,
+        }
+        head |= {
+            "note": "; ".join(bookmark.notes),
+            "reason": bookmark.reason,
+            "outside_the_job": ", ".join(varied.outside),
+        }
         rows.append(head | convert_rows([varied.row], units)[0])
     return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv")
 
@@ -192,7 +227,9 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
     varied = _bookmark_variation(stored_front, design)
     origin = stored_design(stored_front.problem, stored_front.result, bookmark.design) if bookmark.design else None
     same = origin is not None and bookmark.is_of(origin.variant, origin.values)
-    fields = {name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions")}
+    fields = {
+        name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions", "history")
+    }
     return BookmarkedDesign(
         **fields,
         changed=not same,

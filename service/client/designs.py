@@ -87,6 +87,11 @@ class Designs:
         designs: list[Record] = self._connection.ask(f"jobs/{number}/kept")["designs"]
         return designs
 
+    def bookmark_history(self, number: int) -> list[Record]:
+        """Return the notes, reasons, decisions and deletions of a job's bookmarks, oldest first."""
+        history: list[Record] = self._connection.ask(f"jobs/{number}/kept")["history"]
+        return history
+
     def keep(
         self,
         number: int,
@@ -97,13 +102,13 @@ class Designs:
     ) -> Record:
         """Bookmark a design on a front, or one with other dimensions such as {"rod_mm": 330}, and return the bookmark.
 
-        remarks: name, note, star, decided, reason. An existing bookmark of the same design takes them over.
+        remarks: name, note, star, decided, reason, author. An existing bookmark of the same design takes them over.
         """
         body = {"design": design, "dimensions": dict(dimensions or {}), **remarks}
         return self._connection.post(f"jobs/{number}/kept", body, again=False)
 
     def change_bookmark(self, number: int, bookmark: int, **changes: Any) -> Record:
-        """Change name, note, star, decided or reason of a bookmark and return it."""
+        """Change name, note, star, decided or reason of a bookmark and return it; author: of the change."""
         path = f"jobs/{number}/kept/{bookmark}"
         changed: Record = self._connection.request("PATCH", path, again=True, json=changes).json()
         return changed

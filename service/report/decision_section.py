@@ -1,6 +1,8 @@
-"""Section on the decision: the chosen design, its reason, and the reasons against the others."""
+"""Section on the decision: the chosen design, its reason, the reasons against the others, and earlier decisions."""
 
 from __future__ import annotations
+
+from datetime import UTC, datetime
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
@@ -17,7 +19,9 @@ def decision_section(subject: Subject) -> Section | None:
     if chosen is None:
         return None
     no_reason = "" if chosen.bookmark.reason else "; no reason was given"
-    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision(chosen.faults)}{no_reason}.")]
+    decisions = _decisions(subject)
+    by = f" {decisions[-1][0]}." if decisions else ""
+    blocks: list[Block] = [Paragraph(f"{chosen.bookmark.decision(chosen.faults)}{no_reason}.{by}")]
     if subject.bookmark != chosen.bookmark:
         blocks.append(Paragraph("This report is about another design.", "note"))
     ordered = [chosen, *(alternative for alternative in subject.alternatives if alternative is not chosen)]
@@ -47,10 +51,28 @@ def decision_section(subject: Subject) -> Section | None:
             small=True,
         )
     )
+    if len(decisions) > 1:
+        heads = ("by, at", "decision", "reason")
+        blocks.append(Table("Decisions, oldest first", heads, tuple(decisions), (0.3, 0.3, 0.4), small=True))
     return Section("Decision", tuple(blocks))
 
 
+def _decisions(subject: Subject) -> list[tuple[str, str, str]]:
+    """Return author with time, decision and reason of every decision and withdrawal, oldest first."""
+    entries = [entry for alternative in subject.alternatives for entry in alternative.bookmark.history]
+    words = {"decided": "for {}", "withdrawn": "{} withdrawn"}
+    return [
+        (
+            ", ".join(filter(None, (entry.author, f"{datetime.fromtimestamp(entry.at, UTC):%Y-%m-%d %H:%M} UTC"))),
+            words[entry.action].format(entry.name),
+            entry.text,
+        )
+        for entry in sorted(entries, key=lambda entry: entry.number)
+        if entry.action in words
+    ]
+
+
 def _reason_and_misses(alternative: Alternative) -> str:
-    """Return the reason, the note, and the requirements that a design misses."""
-    note = alternative.bookmark.note and f"note: {alternative.bookmark.note}"
-    return "; ".join(part for part in (alternative.bookmark.reason, note, *alternative.faults) if part)
+    """Return the reason, the notes, and the requirements that a design misses."""
+    notes = (f"note: {note}" for note in alternative.bookmark.notes)
+    return "; ".join(part for part in (alternative.bookmark.reason, *notes, *alternative.faults) if part)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict, Unpack
 
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from ...model.errors import InputError, NotFound
+from .bookmark_history import HistoryEntry, entries_of, record_changes, record_deletion
 from .database import Database
 from .database_clock import now
 from .job_rows import the_job
@@ -27,13 +28,14 @@ Wished = Mapping[str, tuple[str, float | None]]
 
 
 class Remarks(TypedDict, total=False):
-    """Remarks on a bookmarked design. decided: revokes the earlier decision of its job."""
+    """Remarks on a bookmarked design. decided: revokes the earlier decision of its job. author: who makes them."""
 
     name: str
     note: str
     star: bool
     decided: bool
     reason: str
+    author: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +44,7 @@ class Bookmark:
 
     design: number of the front design that it is or is derived from; None for neither. variant: variant of the job's
     choices. dimensions: crank, rod, offset, m, and each extra variable, SI. decided: whether it was chosen, at most one
-    per job. reason: reason for or against it.
+    per job. reason: reason for or against it. history: its notes, reasons and decisions, oldest first.
     """
 
     job: int
@@ -56,6 +58,13 @@ class Bookmark:
     variant: int
     dimensions: tuple[float, ...]
     at: float
+    history: tuple[HistoryEntry, ...] = ()
+
+    @property
+    def notes(self) -> list[str]:
+        """Its notes, oldest first, each with its author if known."""
+        notes = (entry for entry in self.history if entry.action == "note" and entry.text)
+        return [f"{entry.author}: {entry.text}" if entry.author else entry.text for entry in notes]
 
     def is_of(self, variant: int, dimensions: Sequence[float]) -> bool:
         """Whether it is the bookmark of the design with these dimensions, within rounding."""
@@ -65,14 +74,18 @@ class Bookmark:
     def decision(self, faults: Sequence[str]) -> str:
         """Return the decision for this design in words, with its reason and faults; empty if there is none."""
         reason = f" ({self.reason})" if self.reason else ""
-        return "; ".join((f"Chosen: {self.name}{reason}", *faults)) * self.decided
+        return "; ".join((f"Decided: {self.name}{reason}", *faults)) * self.decided
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
     """Return the bookmarks of a job, oldest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
         the_job(connection, job)
-        return _all_bookmarks(connection, job)
+        history = entries_of(connection, job)
+        return [
+            replace(bookmark, history=tuple(entry for entry in history if entry.bookmark == bookmark.number))
+            for bookmark in _all_bookmarks(connection, job)
+        ]
 
 
 def bookmark_design(
@@ -84,7 +97,7 @@ def bookmark_design(
     design: int | None = None,
     **remarks: Unpack[Remarks],
 ) -> Bookmark:
-    """Bookmark a design of a job and return it. Raises `NotFound` for a missing job, `InputError` beyond the limit.
+    """Bookmark a design of a job and return it, without its history. Raises `NotFound`, `InputError` beyond the limit.
 
     A design has at most one bookmark: if it exists, it takes over the remarks that are not empty. A new bookmark
     without a name is called "Kept 3" and so on.
@@ -106,28 +119,31 @@ def bookmark_design(
 
 
 def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
-    """Change name, note, star, decided or reason of a bookmark and return it; only one can be decided."""
+    """Change a bookmark and return it, without its history; only one can be decided."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        _the_bookmark(connection, job, number)
         return _change_bookmark(connection, job, number, dict(remarks))
 
 
-def remove_bookmark(store: Database, job: int, number: int) -> None:
+def remove_bookmark(store: Database, job: int, number: int, author: str = "") -> None:
     """Delete a bookmark. Raises `NotFound`."""
     with store.writing() as connection:
         the_job(connection, job, lock=True)
-        _the_bookmark(connection, job, number)
+        record_deletion(connection, _the_bookmark(connection, job, number), author)
         connection.execute(delete(bookmarks).where(_is_bookmark(job, number)))
 
 
 def _change_bookmark(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
+    before = _the_bookmark(connection, job, number)
     if remarks.get("decided"):
         connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
     values = {name: database_text(value) if isinstance(value, str) else value for name, value in remarks.items()}
+    author = values.pop("author", "")
     if values:
         connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
-    return _the_bookmark(connection, job, number)
+    after = _the_bookmark(connection, job, number)
+    record_changes(connection, before, after, author)
+    return after
 
 
 def _all_bookmarks(connection: Connection, job: int) -> list[Bookmark]:

@@ -7,6 +7,7 @@
     exact         the same designs in SI with their slopes, one file per front; fronts of early stores have none
     artefacts     files of a job
     kept          bookmarked designs of a front, with their names, notes and reasons
+    kept_history  changes to them: notes, reasons and decisions, with author and time
     workers       workers, and when each was last heard from
 
 Every change to a job, and to any row that belongs to it, is written in a transaction that updates its row in `jobs`
@@ -127,6 +128,19 @@ bookmarks = sa.Table(
     sa.Column("design", sa.Integer),
     sa.Column("variant", sa.Integer, nullable=False),
     sa.Column("dimensions", sa.Text, nullable=False),
+    sa.Column("at", sa.Double, nullable=False),
+)
+
+history = sa.Table(
+    "kept_history",
+    metadata,
+    _job_column(),
+    sa.Column("number", sa.Integer, primary_key=True, autoincrement=False),
+    sa.Column("bookmark", sa.Integer),
+    sa.Column("name", sa.Text, nullable=False),
+    sa.Column("action", sa.Text, nullable=False),
+    sa.Column("text", sa.Text, nullable=False),
+    sa.Column("author", sa.Text, nullable=False),
     sa.Column("at", sa.Double, nullable=False),
 )
 

@@ -67,7 +67,7 @@ def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solv
     first = kept(client, solved, design=2, name="Stock", note="rod from stock", star=True)
     dimensions = {key: first["cells"][key] for key in LENGTHS}  # the design again, as a table gives it
     again = kept(client, solved, dimensions=dimensions, decided=True, reason="least torque")
-    expected = first | {"decided": True, "reason": "least torque", "decision": "Chosen: Stock (least torque)"}
+    expected = first | {"decided": True, "reason": "least torque", "decision": "Decided: Stock (least torque)"}
     assert again == expected
     other = kept(client, solved, design=3, name="Longer", decided=True)
     assert client.get(f"{solved.path}/kept").json()["designs"] == [first | {"reason": "least torque"}, other]
@@ -75,10 +75,10 @@ def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solv
 
 def test_a_decision_names_the_requirements_that_the_design_misses(client: httpx.Client, solved: Solved) -> None:
     met = kept(client, solved, design=2, name="Met", decided=True)
-    assert met["decision"] == "Chosen: Met"
+    assert met["decision"] == "Decided: Met"
     missed = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", decided=True, reason="stock")
     assert missed["broken"] == ["stroke_mm"]
-    assert missed["decision"] == "Chosen: Long (stock); misses stroke; outside the job: rod"
+    assert missed["decision"] == "Decided: Long (stock); misses stroke; outside the job: rod"
     undecided = kept(client, solved, design=4, dimensions={"rod_mm": 650.0})
     assert undecided["decision"] == ""
 
@@ -123,6 +123,36 @@ def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client:
     assert [row["reason"] for row in rows] == ["most robust", "in stock"]
     assert rows[0]["note"] == "'=cmd"
     assert float(rows[1]["time_ratio"]) == pytest.approx(solved.result.designs[1]["time_ratio"], rel=1e-9)
+
+
+def test_notes_and_decisions_of_several_people_stay_in_the_history(client: httpx.Client, solved: Solved) -> None:
+    first = kept(client, solved, design=1, name="Short", note="fits", author="Anna", decided=True, reason="stiff")
+    second = kept(client, solved, design=2, name="Long")
+    path = f"{solved.path}/kept"
+    client.patch(f"{path}/{first['number']}", json={"note": "too heavy", "author": "Ben"})
+    client.patch(f"{path}/{first['number']}", json={"note": "too heavy", "decided": True})  # as it was: no entry
+    client.patch(f"{path}/{second['number']}", json={"decided": True, "reason": "light", "author": "Ben"})
+    client.patch(f"{path}/{second['number']}", json={"reason": "lightest"})
+    client.patch(f"{path}/{second['number']}", json={"decided": False, "author": "Anna"})
+    expected = [
+        (1, "Short", "note", "fits", "Anna"),
+        (1, "Short", "decided", "stiff", "Anna"),
+        (1, "Short", "note", "too heavy", "Ben"),
+        (2, "Long", "decided", "light", "Ben"),
+        (2, "Long", "decided", "lightest", ""),
+        (2, "Long", "withdrawn", "", "Anna"),
+    ]
+
+    def history() -> list[tuple[Any, ...]]:
+        entries = client.get(path).json()["history"][-len(expected) :]
+        return [tuple(entry[key] for key in ("bookmark", "name", "action", "text", "author")) for entry in entries]
+
+    assert history() == expected
+    table = csv.DictReader(io.StringIO(client.get(f"{path}.csv").text))
+    assert [(row["design"], row["note"]) for row in table] == [("1", "Anna: fits; Ben: too heavy"), ("2", "")]
+    assert client.delete(f"{path}/1", params={"author": "Ben"}).status_code == 204
+    detached = [(None, *entry[1:]) if entry[0] == 1 else entry for entry in expected[1:]]
+    assert history() == [*detached, (None, "Short", "deleted", "", "Ben")]
 
 
 @pytest.mark.parametrize(

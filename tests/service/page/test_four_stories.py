@@ -84,13 +84,13 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     assert "Press for bushings: Rounded A" in report.read_text(encoding="utf-8")
     page.get_by_role("link", name="beside the front").press("Enter")
     head = page.locator(".run-head")
-    expect(head).to_contain_text("Chosen: Rounded A (round numbers)", timeout=PATIENCE)
+    expect(head).to_contain_text("Decided: Rounded A (round numbers)", timeout=PATIENCE)
     of_head = downloaded(page, head.get_by_role("link", name="Report of the decision"), tmp_path)
     assert "Press for bushings: Rounded A" in of_head.read_text(encoding="utf-8")
     page.get_by_role("navigation", name="Main").get_by_role("link", name="Runs").press("Enter")
     expect(page.get_by_role("listitem")).to_contain_text("decided for Rounded A", timeout=PATIENCE)
     page.go_back()
-    head.get_by_role("link", name="Chosen: Rounded A").press("Enter", timeout=PATIENCE)
+    head.get_by_role("link", name="Decided: Rounded A").press("Enter", timeout=PATIENCE)
     expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
 
 
@@ -138,7 +138,7 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
             theirs.keyboard.press("Tab")
         theirs.get_by_label("Choose Design 2").press("Space")
         expect(theirs.locator(".decision")).to_contain_text("(fits the old frame)", timeout=PATIENCE)
-        expect(mine.locator(".decision")).to_contain_text("Chosen: Design 2 (fits the old frame)", timeout=PATIENCE)
+        expect(mine.locator(".decision")).to_contain_text("Decided: Design 2 (fits the old frame)", timeout=PATIENCE)
         expect(mine.get_by_role("button", name="Star of Design 2")).to_have_attribute("aria-pressed", "true")
     assert wrong == []
 

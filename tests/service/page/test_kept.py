@@ -69,7 +69,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     page.get_by_label("Why, or why not, Long rod").fill("the rod is in stock")
     page.get_by_label("Why, or why not, Long rod").press("Tab")
     page.get_by_label("Choose Long rod").check()
-    expect(page.locator(".decision")).to_contain_text("Chosen: Long rod (the rod is in stock); misses stroke")
+    expect(page.locator(".decision")).to_contain_text("Decided: Long rod (the rod is in stock); misses stroke")
     (one,) = httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]
     told = (one["name"], one["note"], one["star"], one["decided"], one["reason"], one["outside"])
     table = page.locator(".kept .scroll")
@@ -86,7 +86,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
         assert float(str(line.locator(f"[data-key={key}]").get_attribute("data-value"))) == one["cells"][key]
     report = page.get_by_role("link", name="Report of the decision").get_attribute("href")
     text = httpx.get(f"{address}/{report}", timeout=120.0).text
-    assert "Chosen: Long rod (the rod is in stock); misses stroke; outside the job: rod." in text
+    assert "Decided: Long rod (the rod is in stock); misses stroke; outside the job: rod." in text
     assert "note: from stock; misses stroke; outside the job: rod" in text
     assert "This report is about another design." not in text
     other = httpx.get(f"{api}/designs/1/report.html", timeout=120.0).text
