@@ -13,7 +13,7 @@ from ...objectives.kinds import System
 from ..designs.display_units import convert_record
 from ..questions.design_question import BoundQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS
-from ..runs.result import csv_text
+from ..runs.result import curves_csv
 from ..runs.run_folder import write_file
 from ..text.options import (
     DesignOfRun,
@@ -56,7 +56,7 @@ def design_command(name: str) -> Callable[..., None]:
         for note in () if json else notes:
             print_message(note)
         if curves is not None:
-            write_file(curves, csv_text(bound_question.output_of("curves", units)))
+            write_file(curves, curves_csv(bound_question.output_of("curves", units)))
             print_message(f"{curves}: {says.curves}")
         if figure is not None:
             write_figure(figure, lambda: bound_question.output_of("figure", units))
@@ -97,7 +97,7 @@ def sizing_command(name: str) -> Callable[..., None]:
         for note in _print_blocks(bound_question, units, json):
             print_message(note)
         if curves is not None:
-            write_file(curves, csv_text(bound_question.output_of("curves", units)))
+            write_file(curves, curves_csv(bound_question.output_of("curves", units)))
             print_message(f"{curves}: {says.curves}")
         if folder is not None and says.figure is not None:
             write_figure(folder / f"{says.figure[0]}.png", lambda: bound_question.output_of("figure", units), units)

@@ -24,7 +24,7 @@ from ...objectives.tables.swing_curves import (
     motion_and_drive_curves,
     require_even_point_count,
 )
-from ..runs.result import csv_text, json_ready, rows_of
+from ..runs.result import curves_csv, json_ready, rows_of
 from .display_units import convert_rows
 from .stored_designs import StoredDesign
 
@@ -84,7 +84,7 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
         for curve in curves
         if machine or curve.name in _MOTION
     }
-    return csv_text(convert_rows(rows_of(columns), system))
+    return curves_csv(convert_rows(rows_of(columns), system))
 
 
 @dataclass(frozen=True)
@@ -207,5 +207,5 @@ def design_csv(design: StoredDesign, system: System = "metric") -> str:
         return cycle_csv(design.mechanism, design.linkage, system)
     if design.mechanism.lever is not None:
         machine, _ = lever_machine(design.mechanism, design.linkage, design.part.motion)
-        return csv_text(convert_rows(lever_rows(machine, lever_swing(design.mechanism, design.part.motion)), system))
-    return csv_text(convert_rows(swing_rows(design.mechanism, design.linkage, design.part.motion), system))
+        return curves_csv(convert_rows(lever_rows(machine, lever_swing(design.mechanism, design.part.motion)), system))
+    return curves_csv(convert_rows(swing_rows(design.mechanism, design.linkage, design.part.motion), system))

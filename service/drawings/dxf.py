@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import math
+import re
+import struct
 from typing import TYPE_CHECKING, Any
 
 from ...model.optional_packages import NamingExtra
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts.base import BaseLayout
 
+_NON_ASCII = re.compile(r"[^\x00-\x7f]")
 _VERSION = "R2000"  # readable by all programs, and the first version with units
 _MILLIMETRES = 4
 _STYLE = "SLIDERCRANK"
@@ -31,7 +34,12 @@ def dxf_file(drawing: Drawing) -> bytes:
     """Return the drawing as the content of a DXF file, with non-ASCII characters escaped so that any encoding works."""
     out = io.StringIO()
     document(drawing).write(out)
-    return out.getvalue().encode("ascii", errors="dxfreplace")  # of ezdxf: \\U+00F6
+    return _NON_ASCII.sub(_escape, out.getvalue()).encode("ascii")
+
+
+def _escape(character: re.Match[str]) -> str:
+    """Return a character as DXF escapes it in every encoding: \\U+00B1 for a plus-minus sign."""
+    return "".join(f"\\U+{unit:04X}" for (unit,) in struct.iter_unpack(">H", character[0].encode("utf-16-be")))
 
 
 def document(drawing: Drawing) -> Document:

@@ -271,6 +271,13 @@ def json_text(value: Any) -> str:
     return json.dumps(json_ready(value), indent=2, allow_nan=False) + "\n"
 
 
+def curves_csv(rows: Iterable[Row]) -> str:
+    """Return curves as CSV; see `csv_text`. Fourteen digits hide the rounding errors of angles such as 3 deg."""
+    return csv_text(
+        {key: float(f"{cell:.14g}") if isinstance(cell, float) else cell for key, cell in row.items()} for row in rows
+    )
+
+
 def csv_text(rows: Iterable[Row], *, spreadsheet: bool = False) -> str:
     """Return the rows as CSV (RFC 4180 with plain line ends): JSON keys as header, numbers at full precision.
 

@@ -168,7 +168,8 @@ def test_topics_that_a_design_does_not_have_leave_the_others_and_the_cycle(tmp_p
     assert "balance" in json.loads(done.stdout)
     assert not {"start_up", "clearance"} & set(json.loads(done.stdout))
     assert done.stderr.count("start_up: ") == done.stderr.count("clearance: ") == 1
-    assert cycle.is_file()
+    rows = cycle.read_text(encoding="utf-8").splitlines()[1:]
+    assert [row.partition(",")[0] for row in rows] == [f"{angle}.0" for angle in range(360)]
 
 
 def test_a_quantity_of_the_job_in_an_unusual_unit_has_its_title_and_unit(tmp_path: Path, command: Command) -> None:
