@@ -57,6 +57,7 @@ def test_curves_of_a_swing_go_forth_and_back(served: Served, job: str) -> None:
     assert np.degrees(angle[[0, 36]]) == pytest.approx([11.16, 101.16])
     x = r * np.cos(angle) + np.sqrt(l * l - (e - r * np.sin(angle)) ** 2)
     np.testing.assert_allclose(curves["slider_position_mm"], x, rtol=1e-9)
+    assert found["slider_ends_mm"] == pytest.approx(x[[0, 36]], rel=1e-9)
     np.testing.assert_allclose(curves["slider_position_mm"][1:36], curves["slider_position_mm"][:36:-1], rtol=1e-9)
     assert max(abs(curves["drive_N"])) == pytest.approx(row["peak_actuator_force_N"], rel=1e-3)
     assert ("power_W" in curves) == (job == TIMED)
