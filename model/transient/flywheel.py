@@ -109,10 +109,5 @@ def design_flywheel(
         inertia = float(brentq(surplus, sizes[least - 1], sizes[least], xtol=1e-13 * enough, rtol=1e-13))
     running = run(inertia)
     motor = Drive(motor=ConstantTorque(torque=abs(float(running.motor_torque[0])))) if drive is None else drive
-    return FlywheelDesign(
-        inertia=inertia,
-        estimate=estimate,
-        target=fluctuation,
-        running=running,
-        drive=replace(motor, flywheel=inertia),
-    )
+    sized = replace(motor, flywheel=inertia)
+    return FlywheelDesign(inertia=inertia, estimate=estimate, target=fluctuation, running=running, drive=sized)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -81,7 +81,7 @@ def summarise(
     rub, travel = cylinder.seal_friction, longest - shortest
     rest = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
     greatest = _greatest_points(machine, swing, cylinder, errors)
-    push, pull = (_or_zero(greatest[name]) for name in ("push", "pull"))
+    push, pull = (replace(point, value=max(point.value, 0.0)) for point in (greatest["push"], greatest["pull"]))
     cylinder.require_pressure(push.value, pull.value)
     lift = machine.energy_to_lift(swing.start, swing.end)
     speed = None if swing.duration is None else greatest["speed"]
@@ -108,15 +108,13 @@ def summarise(
         speed=speed,
         power=None if speed is None else power,
         pressures=cylinder.pressures(push.value, pull.value),
-        flows=None if speed is None or cylinder.areas is None else _flows(cylinder.areas, speed.value),
+        flows=None
+        if speed is None or cylinder.areas is None
+        else (cylinder.areas[0] * speed.value, cylinder.areas[1] * speed.value),
         buckling_margin=buckling,
         time_ratio=sizes.time_ratio,
         fitting_sizes=fitting,
     )
-
-
-def _flows(areas: tuple[float, float], speed: float) -> tuple[float, float]:
-    return areas[0] * speed, areas[1] * speed
 
 
 def _fitting_sizes(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder) -> tuple[float, float] | None:
@@ -150,11 +148,6 @@ def _greatest_points(
     at = lever_curves(machine, swing, np.where(place < 2.0, place, place - 2.0))
     points = map(LeverPoint, value.tolist(), at.lever_angle.tolist(), at.length.tolist())
     return dict(zip(names, points, strict=True))
-
-
-def _or_zero(point: LeverPoint) -> LeverPoint:
-    """Return a point whose value is zero if it is negative."""
-    return LeverPoint(max(point.value, 0.0), point.lever_angle, point.length)
 
 
 def _least_transmission(ends: LeverCurves) -> LeverPoint:

@@ -12,6 +12,7 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from itertools import takewhile
 
 from pydantic import ValidationError
 
@@ -177,7 +178,8 @@ def explain_toml_error(text: str, error: str) -> str:
         path = path if in_list else _path_of([*lines[: number - 1], edited])
         if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _mistake_in_value(lines[: number - 1], edited)):
             return f"line {number}, {refused}"
-        typed, write = (_quote_line(one, _common_prefix_length(code, edited)) for one in (code, edited))
+        same = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(code, edited, strict=False)))
+        typed, write = (_quote_line(one, same) for one in (code, edited))
         return f"{_line_prefix(number, path)}{'; '.join(rules)}; got {typed}; write {write}"
     like = like or "key = value, a heading like [objectives], or # and a comment"
     return (
@@ -411,13 +413,6 @@ def _path_of(lines: Sequence[str]) -> Path:
 def _line_prefix(number: int, path: Path) -> str:
     """Return the prefix of a message on a line and its key."""
     return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
-
-
-def _common_prefix_length(first: str, second: str) -> int:
-    """Return the length of the common prefix of two texts."""
-    return next(
-        (n for n, (a, b) in enumerate(zip(first, second, strict=False)) if a != b), min(len(first), len(second))
-    )
 
 
 def _quote_line(line: str, place: int = 0) -> str:

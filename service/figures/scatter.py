@@ -28,7 +28,9 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     marked = marked_designs(front)
     count = len(axes) - 1
     if count == 1:
-        colour = max(dimension_axes(front, system), key=lambda axis: _spread(axis.values))
+        colour = max(
+            dimension_axes(front, system), key=lambda axis: np.ptp(axis.values) / (np.abs(axis.values).max() or 1.0)
+        )
         return _single_panel(front, axes, colour, marked)
     side = max(1.55, min(2.6, 8.4 / count))
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
@@ -121,7 +123,3 @@ def _draw_heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"
     heading(figure, front.problem.name, text, left=0.2)
-
-
-def _spread(values: np.ndarray) -> float:
-    return float(np.ptp(values) / np.abs(values).max()) if np.any(values) else 0.0

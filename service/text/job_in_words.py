@@ -246,11 +246,14 @@ def _strength_lines(strength: Strength | None) -> list[str]:
     if strength is None:
         return []
     names = ("elasticity", "yield_strength", "ultimate_strength", "endurance", "bearing_pressure")
-    numbers = {name.replace("_", " "): getattr(strength.material, name) for name in names}
+    pressures = {name.replace("_", " "): getattr(strength.material, name) for name in names}
     pins = {name.replace("_", " "): getattr(strength, name) for name in ("crank_pivot", "crank_pin", "slider_pin")}
     lines = [
         f"material of crank and rod: {strength.material.density:.6g} kg/m^3",
-        *(f"{name} of the material: {_pressure_text(value)}" for name, value in numbers.items()),
+        *(
+            f"{name} of the material: " + (f"{1e-9 * value:.6g} GPa" if value >= 1e10 else f"{1e-6 * value:.6g} MPa")
+            for name, value in pressures.items()
+        ),
         f"pins: {', '.join(f'{name} {1e3 * value:.6g} mm' for name, value in pins.items())}",
         f"stress concentration of the eyes: {strength.eye_concentration:.6g}",
         f"mean stresses in fatigue: by {strength.criterion.capitalize()}",
@@ -258,10 +261,6 @@ def _strength_lines(strength: Strength | None) -> list[str]:
     if strength.wear_coefficient is not None:
         lines.append(f"wear coefficient: {1e6 * strength.wear_coefficient:.6g} mm^2/N")
     return lines
-
-
-def _pressure_text(value: float) -> str:
-    return f"{1e-9 * value:.6g} GPa" if value >= 1e10 else f"{1e-6 * value:.6g} MPa"
 
 
 def _tolerance_lines(mechanism: Mechanism) -> list[str]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from ....model.arrays import Array
 from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -119,7 +120,6 @@ def numbers(
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
     spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
-    yields = [(name, value, yield_within(simulation.greatest, value)) for name, value in deviation_limits.items()]
     return {
         "worst_case_mm": 1e3 * worst_case,
         "worst_case_angle_deg": float(np.degrees(at[0])),
@@ -150,17 +150,20 @@ def numbers(
             },
             "histogram": _error_histogram(simulation.greatest),
         },
-        "yields": [
-            {
-                "limit": name,
-                "limit_mm": 1e3 * value,
-                "yield_percent": 100.0 * share.share,
-                "yield_low_percent": 100.0 * share.low,
-                "yield_high_percent": 100.0 * share.high,
-                "confidence_percent": 100.0 * share.confidence,
-            }
-            for name, value, share in yields
-        ],
+        "yields": [_yield_record(simulation.greatest, name, value) for name, value in deviation_limits.items()],
+    }
+
+
+def _yield_record(greatest: Array, name: str, value: float) -> Yield:
+    """Return the fraction of machines with errors within a limit, m, and its confidence interval."""
+    share = yield_within(greatest, value)
+    return {
+        "limit": name,
+        "limit_mm": 1e3 * value,
+        "yield_percent": 100.0 * share.share,
+        "yield_low_percent": 100.0 * share.low,
+        "yield_high_percent": 100.0 * share.high,
+        "confidence_percent": 100.0 * share.confidence,
     }
 
 
