@@ -20,6 +20,7 @@ from ...objectives.tables.curve_extremes import curve_extremes
 from ...optimise.problem.job_remark import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
+from .cycle import OutlinesModel, outlines_model
 from .job_files import ChangeModel, Understood, describe_problem
 from .job_requests import Submission, problem_of_tables
 from .problem_documents import validation_message
@@ -145,7 +146,8 @@ class SwingCurve(BaseModel):
 class SwingExample(BaseModel):
     """Linkage within the ranges that makes the swing. feasible: whether it meets all checked requirements.
 
-    slider_ends_mm: slider positions at the start and end of the swing.
+    slider_ends_mm: slider positions at the start and end of the swing. outlines: null for a crank with rod and slider;
+    of a lever, travel and positions are those of its cylinder.
     """
 
     crank_mm: float = Field(examples=[1400.0])
@@ -155,21 +157,21 @@ class SwingExample(BaseModel):
     travel_mm: float = Field(examples=[2200.0])
     slider_ends_mm: tuple[float, float] = Field(examples=[(2940.0, 740.0)])
     motion: SwingCurve
+    outlines: OutlinesModel | None = None
 
 
 class SwingPreview(BaseModel):
     """Values that the ranges of a swing job allow, from samples.
 
-    closing_share: fraction of the box that makes the swing. travel_mm: slider travel between its ends.
+    closing_share: fraction of the box that makes the swing. travel_mm: slider travel between its ends; of a lever, that
+    of its cylinder.
     feasible_share: fraction of the uniform samples that meet all checked requirements.
     """
 
     from_deg: float | None = Field(description="start of the example's swing; null without one", examples=[11.16])
     to_deg: float | None = Field(description="end of the example's swing; null without one", examples=[101.16])
     closing_share: float = Field(examples=[0.6])
-    travel_mm: Ends | None = Field(
-        description="travel of the slider; null if no design makes the swing", examples=[[1900.0, 2400.0]]
-    )
+    travel_mm: Ends | None = Field(description="travel; null if no design makes the swing", examples=[[1900.0, 2400.0]])
     feasible_share: float = Field(examples=[0.3])
     sampled: int = Field(examples=[512])
     met_by_all: list[str] = Field(
@@ -321,20 +323,16 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
 
 
 def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
-    from ..preview.swinging import slider_positions
-
-    swing, design = possible.example_swing or possible.swing, np.array([lengths])
+    swing = possible.example_swing or possible.swing
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
     # One point per degree: from a full revolution those of the swing, plus one beyond each end at the end's position.
     angles = range(math.floor(low), math.floor(high) + 2)
     clipped_angles = np.radians(np.clip(angles, low, high))
-    places = {
-        angle % 360: float(slider_positions(at, possible.branch, design)[0])
-        for angle, at in zip(angles, clipped_angles, strict=True)
-    }
+    places = {angle % 360: possible.position_at(at) for angle, at in zip(angles, clipped_angles, strict=True)}
     curve = [places.get(angle, math.nan) for angle in range(360)]
-    ends = [float(slider_positions(end, possible.branch, design)[0]) for end in (swing.start, swing.end)]
+    ends = [possible.position_at(end) for end in (swing.start, swing.end)]
     crank, rod, offset = (1e3 * length for length in lengths)
+    lever = possible.example_lever
     return SwingExample(
         crank_mm=crank,
         rod_mm=rod,
@@ -346,6 +344,7 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
             crank_angle_deg=[float(angle) for angle in range(360)],
             slider_position_mm=[1e3 * x if math.isfinite(x) else None for x in curve],
         ),
+        outlines=None if lever is None else outlines_model(lever, Linkage(*lengths), swing),
     )
 
 

@@ -27,8 +27,16 @@ def _quantity(quantity: Quantity) -> dict[str, Any]:
         "unit": quantity.unit.symbol,
         "kind": quantity.kind.plain,
         "group": quantity.group.value,
-        "motion": "swing" if quantity.table == "motion" else "turn" if quantity.turning else "",
+        "motion": _motion_of(quantity),
     }
+
+
+def _motion_of(quantity: Quantity) -> str:
+    from ...objectives.lever_quantity import LeverQuantity
+
+    if isinstance(quantity, LeverQuantity):
+        return "lever"
+    return "swing" if quantity.table == "motion" else "turn" if quantity.turning else ""
 
 
 _LENGTH: dict[str, Any] = {

@@ -88,7 +88,12 @@ def _points(branches: Sequence[EliminationBranch], count: int, stream: int) -> I
 
 
 def _length_columns(problem: Problem) -> list[int]:
-    """Return the displayed columns of designs: the three lengths, and the start of a swing if it varies."""
+    """Return the displayed columns of designs: the three lengths, and the start of a swing if it varies.
+
+    All columns for a lever.
+    """
+    if problem.mechanism.lever is not None:
+        return list(range(3 + len(problem.mechanism.varying)))
     column = swing_start_column(problem.mechanism)
     return [0, 1, 2, *([] if column is None else [column])]
 

@@ -12,16 +12,21 @@ from pydantic import ValidationError
 
 from ...model.errors import InputError
 from ...model.kinematics.position import motion
+from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.end_angles import ends_of
-from ...model.swing.swing import STARTS, Swing
+from ...model.swing.swing import STARTS, Swing, with_start_of_machine
+from ...model.turning_cylinder.batch import lever_passes
+from ...model.turning_cylinder.machine import lever_sizes
+from ...objectives.lever_geometry import CYLINDER_TRAVEL
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swing_columns import swing_quantities
 from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
+from ...optimise.problem.violation import constraints_of
 from .feasibility import PATIENCE, Ends, example_design, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
 from .samples import Screening, designs_of, screened_samples
@@ -37,7 +42,8 @@ class PossibleSwing:
     design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
     met_by_all: requirements that every sample meets: exact values.
     example: crank, rod and offset, m; None if no design makes the swing. example_swing: its swing, between crank
-    angles. unchecked: requirements too slow to check, or that need the rest of the job.
+    angles. unchecked: requirements too slow to check, or that need the rest of the job. example_lever: machine of the
+    example if it is a lever; its travel is that of its cylinder.
     """
 
     swing: Swing
@@ -51,21 +57,30 @@ class PossibleSwing:
     example: tuple[float, float, float] | None
     example_feasible: bool
     unchecked: tuple[str, ...]
+    example_lever: Mechanism | None = None
+
+    def position_at(self, crank_angle: float) -> float:
+        """Return the slider position of the example, m, or the length of its cylinder, at a crank angle, rad."""
+        assert self.example is not None
+        if self.example_lever is not None:
+            return float(lever_sizes(self.example_lever, Linkage(*self.example)).length(crank_angle))
+        return float(slider_positions(crank_angle, self.branch, np.array([self.example]))[0])
 
 
 def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
     """Return the values that the ranges of a job allow; None for full rotation, and while the job is unreadable.
 
-    None for a lever too. full_problem: the problem of the whole job, if it is valid. Of several options the first is
-    used.
+    full_problem: the problem of the whole job, if it is valid; a lever needs it. Of several options the first is used.
     """
+    if table_in(tables, "mechanism").get("inversion") is not None:
+        return None if full_problem is None else _possible_lever(full_problem.part(0))
     try:
         part = MotionPart.model_validate(tables.get("motion", {}))
         swing, ranges = part.build(), ranges_of(tables)
         margin = with_swing_margin((), part.required_transmission_angle, swing)
     except (InputError, ValidationError):
         return None
-    if swing is None or ranges is None or table_in(tables, "mechanism").get("inversion") is not None:
+    if swing is None or ranges is None:
         return None
     crossed = table_in(tables, "mechanism").get("branch") == "crossed"
     cheap = ACTUATOR_TRAVEL if swing.stated_for == "crank" else SWING_ANGLE
@@ -121,6 +136,39 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
         example=lengths_of(example),
         example_feasible=bool(good.any()),
         unchecked=unchecked,
+    )
+
+
+def _possible_lever(problem: Problem) -> PossibleSwing | None:
+    """Return the values that the ranges of a lever allow; None if it does not swing."""
+    swing = problem.motion
+    if swing is None:
+        return None
+    light = replace(problem, objectives=(Objective(quantity=CYLINDER_TRAVEL.name, sense="minimise"),))
+    box, is_uniform = designs_of(replace(light, constraints=()))
+    passing = lever_passes(light.mechanism, swing, box)
+    screening = run_within(PATIENCE, lambda: screened_samples(light))
+    checked = light if screening is not None else replace(light, constraints=())
+    sample = screened_samples(checked) if screening is None else screening
+    good, closes = sample.is_feasible, np.isfinite(sample.violation)
+    basis = sample.designs[good] if good.any() else sample.designs[closes] if closes.any() else box[passing]
+    travel = light.quantity(CYLINDER_TRAVEL.name).evaluate(light.mechanism, basis).values if len(basis) else basis
+    example = example_design(sample.designs, sample.violation, box[passing])
+    machine = None if example is None else light.mechanism.with_values(example[3:].tolist())
+    placed = None if machine is None else with_start_of_machine(machine, swing)
+    return PossibleSwing(
+        swing=swing,
+        example_swing=placed,
+        branch=1.0,
+        closing=float(passing[is_uniform].mean()),
+        travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
+        feasible=sample.feasible,
+        sampled=sample.sampled,
+        met_by_all=sample.met_by_all,
+        example=lengths_of(example),
+        example_feasible=bool(good.any()),
+        unchecked=() if checked is light else tuple(constraint.quantity for constraint in constraints_of(problem)),
+        example_lever=machine,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -61,3 +62,15 @@ def test_designs_of_levers_are_answered_or_refused_in_one_sentence(tmp_path: Pat
             preview = client.post(f"{API}/preview", json={"job": LEVER})
             assert preview.status_code == 200, preview.text
             assert (preview.json()["wrong"], preview.json()["example"]) == ([], None)
+            swing = preview.json()["swing"]
+            example = swing["example"]
+            assert (swing["from_deg"], swing["to_deg"]) == pytest.approx((-20.0, 50.0))
+            crank, rod, offset = (1e-3 * example[f"{name}_mm"] for name in ("crank", "rod", "offset"))
+            first, last = (
+                1e3 * math.sqrt(crank**2 + rod**2 - 2.0 * crank * rod * math.cos(angle) - offset**2)
+                for angle in (math.radians(40.0), math.radians(110.0))
+            )
+            assert example["slider_ends_mm"] == pytest.approx([first, last])
+            assert swing["travel_mm"][0] <= example["travel_mm"] <= swing["travel_mm"][1]
+            assert example["feasible"]
+            assert example["outlines"]["lever"]["frame_angle_deg"] == pytest.approx(-60.0)

@@ -32,7 +32,10 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
         "dl",
         { class: "terms" },
         row("makes the swing", share(swing.closing_share, Boolean(swing.example)), "of the ranges"),
-        row("travel of the slider", between(swing.travel_mm, "mm")),
+        row(
+          `travel of the ${swing.example?.outlines ? "cylinder" : "slider"}`,
+          between(swing.travel_mm, "mm"),
+        ),
         row("meets everything", share(swing.feasible_share, swing.example?.feasible), tried(swing)),
       ),
       notesOf(swing.unchecked, understood, { open }),

@@ -10,6 +10,18 @@ import { speed } from "./speed.js";
 /** @import { Column } from "./points.js" */
 
 const PATH = ["motion"];
+const INVERSION = ["mechanism", "inversion"];
+const LEVER = "lever moved by a pivoting cylinder";
+/** What only a lever has. */
+const OF_LEVER = ["mechanism.frame_angle", "mechanism.pin_angle", "cylinder"];
+/** What a lever does not have. */
+const NOT_OF_LEVER = [
+  ...["speed", "cycle_time", "strokes_per_minute", "direction", "acceleration", "speed_profile"],
+  ...["rod", "slider", "cylinders", "branch"],
+]
+  .map((key) => `mechanism.${key}`)
+  .concat("load", "drive", "friction", "clearance", "costs", "target_motion", "sections", "robust")
+  .concat("tolerances.crank_angle", "tolerances.clearances");
 /** Ways to state the ends of a swing: keys, and initial values. @type {Record<string, Record<string, string>>} */
 const ENDS = {
   "two crank angles": { from: "0 deg", to: "60 deg" },
@@ -37,9 +49,14 @@ export function swings(form) {
   return form.at([...PATH, "kind"]) === "swing";
 }
 
+/** Return whether a job is of a lever that a cylinder moves. @param {Form.Whole} form */
+export function isLever(form) {
+  return form.at(INVERSION) !== undefined;
+}
+
 /** Return whether a quantity, or a kind of load, is of the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
 export function fits(form, { motion }) {
-  return motion === "" || motion === (swings(form) ? "swing" : "turn");
+  return motion === "" || motion === (isLever(form) ? "lever" : swings(form) ? "swing" : "turn");
 }
 
 /** Return what states the ends of the swing of a job. @param {Form.Whole} form */
@@ -70,13 +87,22 @@ function state(form, how) {
 
 /** Return the fields of the motion; turning: those that only a crank that rotates fully has. @param {Form.Whole} form @param {Dom.Child} turning */
 export function motion(form, turning) {
-  const kind = choice({ ...form, put: (_, value) => change(form, value) }, [...PATH, "kind"], {
-    options: ["swing"],
-    fallback: "rotates fully",
-    label: "the crank",
-    why: "The crank rotates fully at a given speed, or swings back and forth between two angles.",
-    changed: () => form.redraw(),
-  });
+  const lever = isLever(form);
+  const kind = choice(
+    {
+      ...form,
+      at: (path) => (lever ? LEVER : form.at(path)),
+      put: (_, value) => change(form, value),
+    },
+    [...PATH, "kind"],
+    {
+      options: ["swing", LEVER],
+      fallback: "rotates fully",
+      label: "the crank",
+      why: "The crank rotates fully at a given speed, swings back and forth between two angles, or is a lever that a cylinder on a second fixed pivot moves; the rod is then the frame between the pivots.",
+      changed: () => form.redraw(),
+    },
+  );
   if (!swings(form)) return [kind, speed(form), turning];
   /** @param {string} key @param {string} label */
   const motionField = (key, label) => byschema(form, [...PATH, key], { label });
@@ -92,7 +118,7 @@ export function motion(form, turning) {
     return fieldNode;
   };
   const how = stated(form);
-  const [usual, ...others] = Object.keys(ENDS);
+  const [usual, ...others] = Object.keys(ENDS).slice(0, lever ? 2 : undefined);
   const ways = choice(
     {
       ...form,
@@ -114,9 +140,11 @@ export function motion(form, turning) {
       motionField(key, LABELS[/** @type {keyof typeof LABELS} */ (key)]),
     ),
     how.includes("slider") ? motionField("crank_side", "side of the crank pin") : null,
-    choosing("driver", "driven end", (driver) =>
-      driver === "slider" ? [] : ["actuator_tolerance"],
-    ),
+    lever
+      ? ["frame_angle", "pin_angle"].map((key) => byschema(form, ["mechanism", key]))
+      : choosing("driver", "driven end", (driver) =>
+          driver === "slider" ? [] : ["actuator_tolerance"],
+        ),
     motionField("margin", "margin from dead points"),
     choosing("law", "motion over time", (law) => [
       ...(law === "" || law === "slow" ? ["duration"] : []),
@@ -140,18 +168,26 @@ export function motion(form, turning) {
       ? motionField("actuator_tolerance", "tolerance of the actuator")
       : null,
     turning,
-    h(
-      "details",
-      { class: "more" },
-      h("summary", {}, "Crank speed (ignored for a swing)"),
-      h("div", { class: "fields" }, speed(form)),
-    ),
+    !lever &&
+      h(
+        "details",
+        { class: "more" },
+        h("summary", {}, "Crank speed (ignored for a swing)"),
+        h("div", { class: "fields" }, speed(form)),
+      ),
   ];
 }
 
-/** Let the crank swing or rotate fully; remove what does not apply, and say so. @param {Form.Whole} form @param {unknown} kind */
+/** Let the crank swing or rotate fully, or be a lever; remove what does not apply, and say so. @param {Form.Whole} form @param {unknown} kind */
 function change(form, kind) {
+  const lever = kind === LEVER;
   form.put(PATH, kind === undefined ? undefined : structuredClone(FIRST));
+  for (const place of lever ? NOT_OF_LEVER : OF_LEVER) form.put(place.split("."), undefined);
+  form.put(INVERSION, lever ? "turning cylinder" : undefined);
+  if (lever) {
+    form.put([...PATH, "driver"], undefined);
+    form.put(["mechanism", "frame_angle"], form.at(["mechanism", "frame_angle"]) ?? "-60 deg");
+  }
   /** @type {string[]} */
   const gone = [];
   for (const table of ["constraints", "objectives"]) {
@@ -167,13 +203,12 @@ function change(form, kind) {
     const first =
       form
         .judging()
-        .find((one) => swings(form) && one.motion === "swing" && one.kind === "force") ??
-      form.judging().find((one) => fits(form, one) && one.offered.includes("objective"));
+        .find(
+          (one) => swings(form) && one.motion !== "" && fits(form, one) && one.kind === "force",
+        ) ?? form.judging().find((one) => fits(form, one) && one.offered.includes("objective"));
     if (first)
       form.put(["objectives", first.name], first.better === "high" ? "maximise" : "minimise");
   }
   if (gone.length)
-    say(
-      `Removed, as they apply to a crank that ${kind === undefined ? "swings" : "rotates fully"}: ${[...new Set(gone)].join(", ")}.`,
-    );
+    say(`Removed, as they apply to another motion: ${[...new Set(gone)].join(", ")}.`);
 }

@@ -6,7 +6,7 @@ import { byschema, choice, quantity } from "./controls.js";
 import { formulaObjectives, formulaRequirements, namedFormulas, namesGiven } from "./formula.js";
 import { link } from "./link.js";
 import { loads } from "./load.js";
-import { fits, motion, swings } from "./motion.js";
+import { fits, isLever, motion, swings } from "./motion.js";
 import { objective } from "./objective.js";
 import { isTable } from "./path.js";
 import { range } from "./range.js";
@@ -39,6 +39,7 @@ const FORM_TABLES = new Set([
   "target_motion",
   "drive",
   "costs",
+  "cylinder",
 ]);
 
 /** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
@@ -62,18 +63,20 @@ export function sections(form) {
             : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" }),
         ]),
       ),
-      more(
-        [
-          swings(form)
-            ? "Crossed branch"
-            : "Acceleration of the crank, uneven speed, crossed branch",
-          has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch"),
-        ],
-        turning(form, "mechanism.acceleration", () =>
-          byschema(form, ["mechanism", "acceleration"]),
+      cranked(form, "mechanism.branch", () =>
+        more(
+          [
+            swings(form)
+              ? "Crossed branch"
+              : "Acceleration of the crank, uneven speed, crossed branch",
+            has(form, "mechanism.acceleration", "mechanism.speed_profile", "mechanism.branch"),
+          ],
+          turning(form, "mechanism.acceleration", () =>
+            byschema(form, ["mechanism", "acceleration"]),
+          ),
+          turning(form, "mechanism.speed_profile", () => speedProfile(form)),
+          byschema(form, ["mechanism", "branch"]),
         ),
-        turning(form, "mechanism.speed_profile", () => speedProfile(form)),
-        byschema(form, ["mechanism", "branch"]),
       ),
       turning(form, "target_motion", () =>
         more(["Desired motion of the slider", targetMotionText(form)], targetMotion(form)),
@@ -96,8 +99,11 @@ export function sections(form) {
     section(
       "Masses and loads",
       fields(masses(form)),
-      more(["Material and pins", strengthGiven(form)], strength(form)),
-      loads(form),
+      isLever(form) && byschema(form, ["cylinder"], { label: "cylinder" }),
+      cranked(form, "sections", () =>
+        more(["Material and pins", strengthGiven(form)], strength(form)),
+      ),
+      cranked(form, "load", () => loads(form)),
       more(
         ["Counterweight", has(form, "mechanism.counterweight")],
         byschema(form, ["mechanism", "counterweight"]),
@@ -108,10 +114,12 @@ export function sections(form) {
           byschema(form, ["mechanism", "cylinders"]),
         ),
       ),
-      more(
-        ["Friction", has(form, "friction")],
-        byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }),
-        pins(form),
+      cranked(form, "friction", () =>
+        more(
+          ["Friction", has(form, "friction")],
+          byschema(form, ["friction", "guide"], { label: "coefficient of the guide" }),
+          pins(form),
+        ),
       ),
       turning(form, "drive", () =>
         more(
@@ -139,7 +147,11 @@ export function sections(form) {
     ),
     section(
       "Tolerances",
-      h("p", { class: "quiet" }, "They determine the position error."),
+      h(
+        "p",
+        { class: "quiet" },
+        `They determine the ${isLever(form) ? "error of the lever angle" : "position error"}.`,
+      ),
       tolerances(form),
     ),
     section(
@@ -185,6 +197,14 @@ function more(title, ...content) {
  */
 function turning(form, place, part) {
   return swings(form) && form.at(place.split(".")) === undefined ? null : part();
+}
+
+/**
+ * Return a part that a lever does not have; where its job has it, so that it can be taken out.
+ * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
+ */
+function cranked(form, place, part) {
+  return isLever(form) && form.at(place.split(".")) === undefined ? null : part();
 }
 
 /** Return the job's values at some paths in one line; "" for none. @param {Form.Whole} form @param {...string} places */
@@ -278,11 +298,13 @@ function masses(form) {
   };
   return [
     link(form, ["mechanism", "crank"], "crank"),
-    link(form, ["mechanism", "rod"], "rod"),
-    quantity(form, ["mechanism", "slider", "mass"], slider),
-    ["dead_centre", "touch_distance", "dwell_distance", "guide_distance"].map((key) =>
-      byschema(form, ["mechanism", "slider", key]),
-    ),
+    cranked(form, "mechanism.rod", () => link(form, ["mechanism", "rod"], "rod")),
+    cranked(form, "mechanism.slider", () => [
+      quantity(form, ["mechanism", "slider", "mass"], slider),
+      ["dead_centre", "touch_distance", "dwell_distance", "guide_distance"].map((key) =>
+        byschema(form, ["mechanism", "slider", key]),
+      ),
+    ]),
     byschema(form, ["mechanism", "gravity"]),
     byschema(form, ["mechanism", "gravity_direction"]),
   ];
@@ -325,15 +347,22 @@ function tolerances(form) {
   const dimension = (key) =>
     byschema(form, ["tolerances", key], { label: `${key.replace("_", " ")} tolerance` });
   return [
-    h("div", { class: "fields" }, ["crank", "rod", "offset", "crank_angle"].map(dimension)),
-    more(
-      [
-        "Clearances, and where the position matters",
-        has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke"),
-      ],
-      byschema(form, ["tolerances", "clearances"]),
-      byschema(form, ["tolerances", "during"]),
-      byschema(form, ["tolerances", "part_of_stroke"]),
+    h(
+      "div",
+      { class: "fields" },
+      ["crank", "rod", "offset"].map(dimension),
+      cranked(form, "tolerances.crank_angle", () => dimension("crank_angle")),
+    ),
+    cranked(form, "tolerances.clearances", () =>
+      more(
+        [
+          "Clearances, and where the position matters",
+          has(form, "tolerances.clearances", "tolerances.during", "tolerances.part_of_stroke"),
+        ],
+        byschema(form, ["tolerances", "clearances"]),
+        byschema(form, ["tolerances", "during"]),
+        byschema(form, ["tolerances", "part_of_stroke"]),
+      ),
     ),
     turning(form, "costs", () =>
       more(

@@ -54,17 +54,18 @@ export function sketch(signal) {
 
   /**
    * Draw an example, null for none, with a sentence below it.
-   * @param {(Page.Lengths & { motion: Api.Curves, slider_ends_mm: Page.Point, feasible: boolean }) | null} example @param {string} sentence @param {{ direction: number, dead_centres_deg?: Page.Point }} options
+   * @param {(Page.Lengths & { motion: Api.Curves, slider_ends_mm: Page.Point, feasible: boolean, outlines?: Api.Outlines | null }) | null} example @param {string} sentence @param {{ direction: number, dead_centres_deg?: Page.Point }} options
    */
   function draw(example, sentence, options) {
     hasLinkage = example !== null;
     place.hidden = button.hidden = !hasLinkage;
     caption.textContent = sentence;
     if (!example) return;
-    const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm, feasible } = example;
+    const { crank_mm, rod_mm, offset_mm, motion, slider_ends_mm, feasible, outlines } = example;
     drawn.show({ crank_mm, rod_mm, offset_mm }, motion, {
       ...options,
       slider_ends_mm,
+      outlines: outlines ?? undefined,
       angle,
       small: true,
     });
@@ -92,10 +93,10 @@ export function sketch(signal) {
       if (!ends || ends[0] !== from_deg || ends[1] !== to_deg) [angle, share] = [from_deg, 0];
       ends = [from_deg, to_deg];
       node.classList.add("swinging");
-      const { feasible, travel_mm } = example;
+      const { feasible, travel_mm, outlines } = example;
       draw(
         example,
-        `${feasible ? "A design that meets all checked requirements" : "A design that makes the swing but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the slider travels ${withUnit(travel_mm, "mm", 4)}`,
+        `${feasible ? "A design that meets all checked requirements" : "A design that makes the swing but does not meet every requirement"}: from ${withUnit(from_deg, "deg")} to ${withUnit(to_deg, "deg")}, the ${outlines ? "cylinder" : "slider"} travels ${withUnit(travel_mm, "mm", 4)}`,
         { direction: 0, dead_centres_deg: ends },
       );
     },
