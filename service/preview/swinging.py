@@ -24,9 +24,9 @@ from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRA
 from ...objectives.tables.swing_columns import swing_quantities
 from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
+from ...optimise.problem.constraint_violation import constraints_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
-from ...optimise.problem.violation import constraints_of
 from .feasibility import PATIENCE, Ends, example_design, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
 from .samples import Screening, designs_of, screened_samples
