@@ -46,7 +46,7 @@ class SectionLink(Built[Link]):
 
     width: PositiveLength = required("in the plane of motion", "30 mm")
     depth: PositiveLength = required("normal to the plane", "20 mm")
-    density: Density = required("of the material", "7800 kg/m^3")
+    density: Density = required("of the material", "7850 kg/m^3")
 
 
 class MassLink(Built[Link]):
@@ -175,7 +175,7 @@ class MechanismPart(CrankSpeedPart):
     crank: AnyLink | None = optional("section or mass of the crank; default massless", {"mass": "0.2 kg"})
     rod: AnyLink | None = optional(
         "section or mass of the connecting rod; default massless",
-        {"width": "30 mm", "depth": "20 mm", "density": "7800 kg/m^3"},
+        {"width": "30 mm", "depth": "20 mm", "density": "7850 kg/m^3"},
     )
     counterweight: CounterweightPart | None = optional(
         "counterweight, a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}

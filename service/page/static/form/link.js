@@ -17,7 +17,7 @@ const WAYS = {
   },
   section: {
     title: "bar of rectangular section",
-    first: { width: "30 mm", depth: "20 mm", density: "7800 kg/m^3" },
+    first: { width: "30 mm", depth: "20 mm", density: "7850 kg/m^3" },
     keys: ["width", "depth", "density"],
     more: [],
   },
