@@ -97,11 +97,13 @@ class _ContinuousSolver:
 
     def start_run(self, problem: Problem) -> Run:
         """Return a new run for a problem, with nothing computed yet."""
-        has_listener = self.fronts is not None or self.listener is not None
+        # The second run of a problem with discrete numbers ignores them: its designs are not delivered.
+        fronts = None if len(self.runs) == 1 else self.fronts
+        has_listener = fronts is not None or self.listener is not None
 
         def report_with_front(entry: Progress) -> None:
-            if self.fronts is not None:
-                self.fronts(run.latest_front())
+            if fronts is not None:
+                fronts(run.latest_front())
             if self.listener is not None:
                 self.listener(entry)
 

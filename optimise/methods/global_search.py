@@ -101,7 +101,7 @@ def _evolve_branch(
     k, count = evaluator.dimension, 0
     members = 1 << (_POPULATION * k - 1).bit_length()  # SciPy generates Sobol points in powers of two
     generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
-    run.rounds = len(run.round_reports) + 1 + generations // _REPORT_EVERY
+    run.plan_rounds(1 + generations // _REPORT_EVERY)
     exact = _ExactEvaluation(index, evaluator, improvements)
 
     def report_generation(intermediate_result: Any) -> bool:

@@ -136,7 +136,7 @@ class _Front:
     def solve(self, forms: list[Form], aimed: Callable[[Array], Form]) -> Archive:
         """Return the archive with the optima of the forms, and of those aimed at scaled objectives (m,) in gaps."""
         for _ in range(1 + _ROUNDS):
-            self.run.rounds = len(self.run.round_reports) + -(-len(forms) // _ROUND_SIZE)
+            self.run.plan_rounds(-(-len(forms) // _ROUND_SIZE))
             for begin in range(0, len(forms), _ROUND_SIZE):
                 if is_budget_spent(self.problem, self.evaluators):
                     return self.archive

@@ -152,6 +152,10 @@ class Run:
             0 if self.previous is None else self.previous._earlier_rounds + len(self.previous.round_reports)
         )
 
+    def plan_rounds(self, count: int) -> None:
+        """Expect this many further rounds."""
+        self.rounds = len(self.round_reports) + count
+
     def begin_round(self, stage: str) -> None:
         """Report a stage at every poll until the round ends, so that a long step is not silent."""
         self.checkpoints.polled = partial(self.report_stage, stage, 0, 1)
@@ -170,7 +174,7 @@ class Run:
         entry = Progress(
             stage,
             self._earlier_rounds + len(self.round_reports) + 1,
-            self._earlier_rounds + max(self.rounds, len(self.round_reports) + 1),
+            self._planned_rounds(len(self.round_reports) + 1),
             sum(evaluator.evaluations for evaluator in (*evaluators, *self.enumerated)),
             archive.feasible + int((~self.candidates.free).sum()),
             self._growth.add(feasible) if self.progress or self.stages else 0.0,
@@ -187,11 +191,15 @@ class Run:
     def latest_front(self) -> Array:
         """Return the objectives (n, m) of the front after the last round, SI, as minimised.
 
-        At most a few hundred designs.
+        At most a few hundred designs. Those that violate a constraint appear only until a design meets all of them;
+        the reported hypervolume is zero so far.
         """
-        if self.archive.is_feasible.all() and not len(self.candidates):
-            return _spread_sample(self.archive.values)
-        values = np.concatenate([self.archive.values, self.candidates.values])
+        archive = self.archive
+        if len(self.candidates) or archive.is_feasible.any():
+            archive = archive[archive.is_feasible]
+        if not len(self.candidates):
+            return _spread_sample(archive.values)
+        values = np.concatenate([archive.values, self.candidates.values])
         return _spread_sample(values[nondominated(values)])
 
     def stage_reporter(self, name: str) -> ReportProgress:
@@ -209,10 +217,15 @@ class Run:
             return
         if self.checkpoints.rounds < self.checkpoints.earlier_rounds or self.checkpoints.replaying:
             stage, done, total = REPEATING, self.checkpoints.repeated, self.checkpoints.resumed
-        last = self.round_reports[-1] if self.round_reports else Progress(stage, 0, self.rounds, 0, 0, 0.0, 0.0)
+        last = self.round_reports[-1] if self.round_reports else Progress(stage, 0, 0, 0, 0, 0.0, 0.0)
+        rounds, seconds = self._planned_rounds(len(self.round_reports)), self.checkpoints.seconds
         self._report(
-            replace(last, stage=stage, seconds=self.checkpoints.seconds, step=done, steps=max(done, total)), self.stages
+            replace(last, stage=stage, rounds=rounds, seconds=seconds, step=done, steps=max(done, total)), self.stages
         )
+
+    def _planned_rounds(self, at_least: int) -> int:
+        """Number of planned rounds, with those of earlier runs."""
+        return self._earlier_rounds + max(self.rounds, at_least)
 
     def _report(self, entry: Progress, listener: Callback | None) -> None:
         if listener is not None:

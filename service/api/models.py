@@ -87,6 +87,7 @@ class RowSummary(ResponseModel):
 
     designs: Count
     best: dict[str, float | str | None] = Field(description="the best value of each objective, by column")
+    seconds: float | None = Field(None, description="duration of the search, s")
 
 
 class JobSummary(RowSummary):
@@ -94,7 +95,6 @@ class JobSummary(RowSummary):
 
     hypervolume: float | None
     evaluations: Count
-    seconds: float | None
     axes: list[str] = Field(description="the columns of the points")
     points: list[list[float | str | None]] = Field(description="values for at most 64 designs of the front, by column")
 

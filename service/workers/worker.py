@@ -227,13 +227,14 @@ def _solve(
     problem = parse_with_allowed_functions(store.tables(claim.job.id), terms.allowed_quantities)
     problem = with_time_limit_per_call(problem, min(LONGEST_CALL, budget.limits.seconds or LONGEST_CALL))
 
-    latest: list[Array] = []
+    latest = (claim.job.progress or {}).get("front")  # of an earlier claim, until this search has its own
 
     def show(front: Array) -> None:
-        latest[:] = [front]
+        nonlocal latest
+        latest = front_progress(problem, front)
 
     def report(at: Progress) -> None:
-        claim.report(at, front_progress(problem, latest[0]) if latest else None)
+        claim.report(at, latest)
         budget.count(at.evaluations)
 
     def should_end() -> bool:
@@ -246,6 +247,7 @@ def _solve(
             front = search(resume=claim.records())
         except ForeignRecords as error:  # from an earlier release, or another type of machine
             claim.start_over(f"starts again: {error}")
+            latest = None
             front = search(resume=[])
         result = result_of(front, claim.job.run)
     if not claim.cancel_asked:

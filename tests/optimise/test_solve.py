@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import pytest
 
+from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.kernel.interruption import poll_interruption
 from slidercrank.model.machine.links import Bar
@@ -18,7 +19,9 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
+from slidercrank.optimise.methods.auto import partial_front
 from slidercrank.optimise.problem.requirements import Sense
+from slidercrank.optimise.search.candidates import COVERED
 from slidercrank.optimise.solve import solve
 
 from .problems import MACHINE, Bounds, degrees, problem
@@ -73,6 +76,25 @@ def test_cancelling_keeps_what_was_found(after: int) -> None:
     assert "cancelled" in front.message
     assert len(front) > 0
     assert len(rounds) <= after + 1
+
+
+@pytest.mark.usefixtures("little")
+def test_cancelling_in_the_polish_keeps_every_design_shown_or_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    for limit in ("_LEAST", "_MOST_SECONDS"):
+        monkeypatch.setattr(partial_front, limit, 200.0)  # however busy the machine is
+    shown: list[Array] = []
+    stages: list[str] = []
+    front = solve(
+        problem({"peak_torque": "minimise", "time_ratio": "maximise"}, HELD, designs=1000, samples=1024),
+        progress=lambda at: stages.append(at.stage),
+        fronts=shown.append,
+        cancelled=lambda: stages.count("polishing") >= 3,  # once the extreme designs are polished
+    )
+    assert front.status == "cancelled"
+    assert len(shown[-1]) > 20
+    tolerance = COVERED * np.ptp(shown[-1], axis=0)
+    excess = (front.values[None] - shown[-1][:, None] - tolerance).max(axis=2).min(axis=1)
+    assert (excess <= 0.0).all()
 
 
 @pytest.mark.slow

@@ -66,6 +66,14 @@ def test_choosing_and_finishing_are_told_after_the_last_round_with_how_far_they_
     assert {entry.steps for entry in after if entry.stage == "finishing designs"} == {len(front)}
 
 
+def test_not_all_planned_rounds_are_done_while_a_round_is_computed() -> None:
+    _, told, _ = whole()
+    polishing = [entry for entry in told if entry.stage == "polishing"]
+    assert any(entry.steps for entry in polishing)
+    assert all(entry.round < entry.rounds for entry in polishing if entry.steps)
+    assert polishing[-1].round == polishing[-1].rounds
+
+
 def test_a_search_that_goes_on_tells_what_it_repeats() -> None:
     _, _, kept = whole()
     past = kept[: len(kept) // 2 + 1]

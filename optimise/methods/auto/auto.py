@@ -72,11 +72,14 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
         rows = _rows_to_polish(problem, group, evaluators[0], run) if several else group.leading_rows(0, _STARTS)
         starts += group[rows].by_branch(evaluators)
         if several:
-            for index, ends in _polish_extremes(evaluators, group, candidates.span):
+            extremes = _starts_for_extremes(evaluators, group)
+            run.plan_rounds(len(extremes) + len({index for _, index, _ in extremes}) + _batch_count(starts))
+            for index, ends in _polish_extremes(evaluators, extremes, candidates.span):
                 if ends is not None:
                     candidates.add(index, ends)
                 run.report_round("polishing", free, archive)
     for attempt in range(ROUNDS):
+        run.plan_rounds(_batch_count(starts))
         for index, u in starts:
             for begin in range(0, len(u), BATCH):
                 run.begin_round("polishing")
@@ -137,19 +140,33 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     return rows[evaluator.step("choice", (values,), compute)[0]]
 
 
-def _polish_extremes(evaluators: list[Evaluator], group: Archive, span: Array) -> Iterator[tuple[int, Polished | None]]:
+def _batch_count(starts: list[tuple[int, Array]]) -> int:
+    return sum(-(-len(u) // BATCH) for _, u in starts)
+
+
+def _starts_for_extremes(evaluators: list[Evaluator], group: Archive) -> list[tuple[int, int, Array]]:
+    """Return objective, branch and points of the designs that lead in an objective."""
+    return [
+        (column, index, u)
+        for column in range(group.values.shape[1])
+        for index, u in group[group.leading_rows(column, _EXTREMES)].by_branch(evaluators)
+    ]
+
+
+def _polish_extremes(
+    evaluators: list[Evaluator], starts: list[tuple[int, int, Array]], span: Array
+) -> Iterator[tuple[int, Polished | None]]:
     """Yield the extreme designs of the front by branch: best in one objective, then in the others.
 
-    For each, several designs that lead in the objective are improved in it alone, then in all objectives with this one
-    held firmly. If the result still loses visibly, the best in the objective alone is an end too. Held less firmly, it
-    would move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
+    The starts, several designs that lead in each objective, are improved in it alone, then in all objectives with this
+    one held firmly. If the result still loses visibly, the best in the objective alone is an end too. Held less firmly,
+    it would move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
-    for column in range(len(span)):
-        for index, u in group[group.leading_rows(column, _EXTREMES)].by_branch(evaluators):
-            polished_batch = polish_recorded(evaluators[index], u, span, chosen=(column,))
-            parts.setdefault(index, []).append((column, polished_batch[_distinct_points(polished_batch.u)]))
-            yield index, None
+    for column, index, u in starts:
+        polished_batch = polish_recorded(evaluators[index], u, span, chosen=(column,))
+        parts.setdefault(index, []).append((column, polished_batch[_distinct_points(polished_batch.u)]))
+        yield index, None
     for index, batches in parts.items():
         first, *rest = (polished_batch for _, polished_batch in batches)
         alone = first.join(*rest)
@@ -256,8 +273,10 @@ def _midpoints_of_gaps(evaluators: list[Evaluator], best: FrontCandidates, count
 
 def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the archive of designs from sampling and zooming, from which the polish starts."""
-    # This holds if no gaps need filling.
-    run.rounds = len(run.round_reports) + 1 + len(WIDTHS) + -(-_candidate_count(problem) // BATCH)
+    # This holds if no gaps need filling and every branch has an extreme design for each objective.
+    m = len(problem.objectives)
+    extremes = (m + 1) * len(evaluators) if m > 1 else 0
+    run.plan_rounds(1 + len(WIDTHS) + extremes + -(-_candidate_count(problem) // BATCH))
     return explore(problem, evaluators, run)
 
 

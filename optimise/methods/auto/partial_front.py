@@ -10,6 +10,7 @@ import numpy as np
 from ....model.arrays import Array, IntArray
 from ....model.kernel.interruption import interrupted_by
 from ....objectives.own.quantity import runs_custom_function
+from ...front.dominance import nondominated
 from ...front.front import ParetoFront
 from ...problem.problem import Problem
 from ...search.assemble_front import assemble, columns_of, empty_front, span_of
@@ -19,8 +20,9 @@ from ...search.evaluation import Evaluator
 from ...search.sample_and_zoom import Archive, Run
 from .auto import add_projected
 
-_PROJECTING = 0.3  # s, to move designs onto the constraints
-_ANALYSING = 0.7  # s, to compute the quantities of all designs
+_LEAST, _MOST_SECONDS, _SHARE = 1.0, 5.0, 0.1
+"""Time in which a front is delivered: a tenth of the search, within limits, s."""
+_PROJECTING, _ANALYSING = 0.3, 0.7  # fractions of it, to move designs onto the constraints, and to compute quantities
 _FUNCTION_TIME = 0.8  # s since the search was told to stop, after which calls of custom functions are ended
 _BATCH = 16  # designs to move at a time
 _TRIED = 50  # designs to time first; custom functions get them in one call
@@ -28,11 +30,11 @@ _MOST = 1000  # maximum number of designs; selection among more would take longe
 
 
 def partial_front(problem: Problem, evaluators: list[Evaluator], run: Run, *, silent: bool = False) -> ParetoFront:
-    """Return the front of a search's polished designs, otherwise of those found, moved onto the constraints.
+    """Return the front of a search's polished designs and of its other designs, moved onto the constraints.
 
-    If this or the quantities of all designs would take longer than a moment, it has fewer designs, evenly spread; none
-    if custom functions do not return in time. silent: whether they did not return upon cancellation, and must not be
-    called again.
+    If this or the quantities of all designs would take longer than a moment, it has fewer designs, evenly spread. A
+    long search may take longer, because more would be lost. There are no designs if custom functions do not return in
+    time. silent: whether they did not return upon cancellation, and must not be called again.
     """
     begin = time.perf_counter() if run.checkpoints.ended is None else run.checkpoints.ended
     run.checkpoints.close()
@@ -60,26 +62,31 @@ _SLOW = (
 
 def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
     candidates, archive = run.candidates, run.archive
-    if len(archive) and not candidates.free.any():
-        candidates = candidates.only_enumerated(span_of(problem, np.concatenate([archive.values, candidates.values])))
-        _add_archive(problem, evaluators, archive, candidates)
+    seconds = min(max(_LEAST, _SHARE * run.checkpoints.seconds), _MOST_SECONDS)
+    if len(archive):
+        if not candidates.free.any():
+            span = span_of(problem, np.concatenate([archive.values, candidates.values]))
+            candidates = candidates.only_enumerated(span)
+        _add_archive(problem, evaluators, archive, candidates, _PROJECTING * seconds)
     if not len(candidates):
         return empty_front(problem, evaluators, run, "cancelled", "cancelled before any feasible design was found")
     candidates = candidates[_evenly_spread_rows(candidates.values, _MOST)]
     best = candidates.best()
     rows = best[_evenly_spread_rows(candidates.values[best], problem.settings.designs)]
-    return assemble(problem, evaluators, candidates, run, _rows_in_time(problem, evaluators, candidates, rows))
+    rows = _rows_in_time(problem, evaluators, candidates, rows, _ANALYSING * seconds)
+    return assemble(problem, evaluators, candidates, run, rows)
 
 
-def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates) -> None:
-    """Add designs of an archive, moved onto the constraints."""
+def _add_archive(
+    problem: Problem, evaluators: list[Evaluator], archive: Archive, candidates: FrontCandidates, seconds: float
+) -> None:
+    """Add designs of an archive, moved onto the constraints, unless a polished design is better."""
+    polished = candidates.values[candidates.free]
+    groups = (group[_undominated_rows(group.values, polished)] for group in archive.feasible_and_infeasible())
     # Designs that need no move come first.
-    first, *rest = (
-        group[_evenly_spread_rows(group.values, problem.settings.designs)]
-        for group in archive.feasible_and_infeasible()
-    )
+    first, *rest = (group[_evenly_spread_rows(group.values, problem.settings.designs)] for group in groups)
     chosen = first.join(*rest)
-    end = time.perf_counter() + _PROJECTING
+    end = time.perf_counter() + seconds
     # Each batch is spread over the whole front.
     batches = -(-len(chosen) // _BATCH)
     for begin in range(batches):
@@ -88,18 +95,26 @@ def _add_archive(problem: Problem, evaluators: list[Evaluator], archive: Archive
             break
 
 
+def _undominated_rows(values: Array, rivals: Array) -> IntArray:
+    """Return the rows of objectives (n, m) that no rival (k, m) dominates; all rows if there are no rivals."""
+    if not len(rivals):
+        return np.arange(len(values))
+    rows = nondominated(np.concatenate([rivals, values])) - len(rivals)
+    return rows[rows >= 0]
+
+
 def _rows_in_time(
-    problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: IntArray
+    problem: Problem, evaluators: list[Evaluator], candidates: FrontCandidates, rows: IntArray, seconds: float
 ) -> IntArray:
-    """Return the rows whose quantities can be computed within a moment, usually all of them."""
+    """Return the rows whose quantities can be computed in a time, usually all of them."""
     count = _TRIED if any(map(runs_custom_function, problem.own)) else 1
-    seconds_per_design, end = 1e-9, time.perf_counter() + 0.5 * _ANALYSING
+    seconds_per_design, end = 1e-9, time.perf_counter() + 0.5 * seconds
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
         sample = candidates[rows[:: -(-len(rows) // count)]]
         variants = np.array([evaluators[index].branch.variant for index in sample.branch], dtype=np.int64)
         columns_of(problem, variants, sample.dimensions(evaluators))
         count, seconds_per_design = 2 * count, (time.perf_counter() - begin) / len(sample)
-    return rows[_evenly_spread_rows(candidates.values[rows], max(1, int(_ANALYSING / seconds_per_design)))]
+    return rows[_evenly_spread_rows(candidates.values[rows], max(1, int(seconds / seconds_per_design)))]
 
 
 def _evenly_spread_rows(values: Array, count: int) -> IntArray:

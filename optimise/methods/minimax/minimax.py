@@ -47,7 +47,7 @@ def minimax(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     """Return the local optima at which the descents ended."""
     screened = explore(_limit_samples(problem), evaluators, run)
     scale, begin = descent_starts(problem, evaluators, screened)
-    run.rounds = len(run.round_reports) + len(begin)
+    run.plan_rounds(len(begin))
     descents = [Descent(evaluator, scale) for evaluator in evaluators]
     archive = Archive.empty(1)
     for index, u in begin:

@@ -9,6 +9,7 @@ import { chooseSystem, readySystem, system } from "./lib/numbers.js";
 import { readyKinds } from "./lib/units.js";
 import { rememberScroll, restoreScroll } from "./lib/scroll_position.js";
 import { sentenceOf } from "./lib/refusals.js";
+import { renewTimes } from "./jobs/times.js";
 
 /**
  * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
@@ -53,6 +54,8 @@ const NAVIGATION = [
   ["New run", "#/new"],
   ["Help", "#/help"],
 ];
+
+const RENEW = 20_000; // ms between two looks at the times on the page
 
 let leaving = new AbortController();
 
@@ -156,6 +159,7 @@ document.querySelector(".skip")?.addEventListener("click", (event) => {
   byId("main").focus();
 });
 window.addEventListener("hashchange", () => showView());
+setInterval(renewTimes, RENEW);
 watchDownloads();
 rememberScroll();
 showPreferences();

@@ -162,7 +162,7 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
         claim.report(progress(2), FRONT)
         with served(store, port=int(urlsplit(address).port or 0)):
             expect(page.get_by_text("2 of 9")).to_be_visible(timeout=PATIENCE)
-            page.get_by_role("button", name="Pause run 1").press("Enter")
+            page.get_by_role("button", name="Stop run 1").press("Enter")
             claim.finish(replace(solved.result, status="cancelled"))
             expect(page.get_by_role("heading", name="Stopped early")).to_be_visible(timeout=PATIENCE)
             page.get_by_role("button", name="Resume run 1").press("Enter")

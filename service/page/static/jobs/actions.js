@@ -1,4 +1,4 @@
-/** Actions on a job: finish, resume, clone and, in a menu, delete. */
+/** Actions on a job: stop, resume, clone and, in a menu, delete. */
 
 import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
@@ -8,21 +8,20 @@ import { say, sayProblem } from "../lib/notices.js";
 import { ENDED } from "./states.js";
 
 /**
- * Return the buttons of a job. A search that runs is finished with what it has found, and can go on later: in its own
- * view it is paused as well, which is the same under the name that one looks for. changed(job) is called with the job as it is after an action, changed(null) once it is gone,
- * whoever deleted it.
+ * Return the buttons of a job. A stopped search can continue later. changed(job) is called with the job as it is after an action,
+ * changed(null) once it is gone, whoever deleted it.
  * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed @param {{ primary?: boolean }} looks primary: of the view of this job
  */
 export function actions(job, changed, { primary = false } = {}) {
   const runName = `run ${job.id}, ${job.name}`;
-  /** @param {string} label @param {"cancel" | "resume"} path @param {string} sentence @param {string} name */
-  const act = (label, path, sentence, name = path) =>
+  /** @param {string} label @param {"cancel" | "resume"} path @param {string} sentence */
+  const act = (label, path, sentence) =>
     h(
       "button",
       {
         type: "button",
         class: primary && path === "resume" ? "primary" : null,
-        "data-act": name,
+        "data-act": path,
         "aria-label": `${label} ${runName}`,
         onclick: (event) =>
           run(event.currentTarget, async () => {
@@ -68,22 +67,13 @@ export function actions(job, changed, { primary = false } = {}) {
   };
   const ended = ENDED.includes(job.state);
   return [
-    primary &&
-      job.state === "running" &&
-      !job.cancel_asked &&
-      act(
-        "Pause",
-        "cancel",
-        `Run ${job.id} pauses after this round; Resume continues from there.`,
-        "pause",
-      ),
     !ended &&
       !job.cancel_asked &&
       (job.state === "running"
         ? act(
-            "Finish now",
+            "Stop",
             "cancel",
-            `Run ${job.id} ends with the designs found so far; it can be resumed later.`,
+            `Run ${job.id} stops with the designs found so far; Resume continues the search.`,
           )
         : act("Cancel", "cancel", `Run ${job.id} will not start.`)),
     ["cancelled", "failed"].includes(job.state) &&

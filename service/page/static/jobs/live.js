@@ -39,6 +39,11 @@ export function watch(place, job, { signal, changed }) {
   );
   const curve = h("div", { class: "course" });
   const front = h("div");
+  const near = h(
+    "p",
+    { class: "quiet", hidden: true },
+    "None of these meets every requirement yet: the search moves them until they do.",
+  );
   const log = h("ol", { class: "log", reversed: true, tabindex: 0, "aria-label": "What happened" });
   const why = h(
     "p",
@@ -59,6 +64,8 @@ export function watch(place, job, { signal, changed }) {
   let silent = setTimeout(explain, LONG);
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let stale;
+  /** @type {number | null} */
+  let left = null; // s
   /** @type {number | null} */
   let drawing = null;
 
@@ -88,6 +95,7 @@ export function watch(place, job, { signal, changed }) {
       h("h2", { id: "so-far-title" }, "Front so far"),
       pickers,
       front,
+      near,
     ),
     h(
       "div",
@@ -144,45 +152,57 @@ export function watch(place, job, { signal, changed }) {
           rounds.map(({ round, hypervolume }) => [round, hypervolume]),
           "Hypervolume",
           data.rounds,
+          curve.clientWidth,
         ),
       );
     });
   }
 
-  /** @param {Api.Progress} data @param {boolean} running */
+  /** Show a state; an event within a round keeps the estimate. @param {Api.Progress} data @param {boolean} running */
   function showState(data, running = true) {
-    bar.max = data.rounds;
+    bar.max = data.rounds || 1;
     bar.value = data.round;
-    const each = (data.seconds ?? 0) / data.round;
-    const left =
-      running && !data.steps && data.round > 1 && data.round < data.rounds
-        ? each * (data.rounds - data.round)
-        : null;
-    clearTimeout(stale);
-    show(left);
-    if (left !== null) stale = setTimeout(show, Math.max(AT_LEAST, 1000 * STALE * each), null);
-
-    /** @param {number | null} left */
-    function show(left) {
-      const gained = growth(rounds.map(({ hypervolume }) => hypervolume));
-      const rows = [
-        ["round", `${grouped(data.round)} of ${grouped(data.rounds)}`],
-        ["evaluated", grouped(data.evaluations)],
-        ["feasible", grouped(data.feasible)],
-        [
-          gained && gained.rounds > 1
-            ? `gained in the last ${gained.rounds} rounds`
-            : "gained in the last round",
-          gained?.text ?? "–",
-        ],
-        ["so far", duration(data.seconds ?? 0)],
-        ["left of the rounds", left === null ? "–" : `about ${duration(left)}`],
-      ];
-      fill(
-        figures,
-        rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
-      );
+    if (!data.steps || data.round === data.rounds) {
+      const [before] = rounds.slice(-2, -1);
+      const seconds = data.seconds ?? 0;
+      const each = before ? seconds - (before.seconds ?? 0) : seconds / data.round;
+      clearTimeout(stale);
+      left =
+        running && data.round > 1 && data.round < data.rounds
+          ? each * (data.rounds - data.round)
+          : null;
+      if (left !== null)
+        stale = setTimeout(
+          () => {
+            left = null;
+            showFigures(data);
+          },
+          Math.max(AT_LEAST, 1000 * STALE * each),
+        );
     }
+    showFigures(data);
+  }
+
+  /** @param {Api.Progress} data */
+  function showFigures(data) {
+    const gained = growth(rounds.map(({ hypervolume }) => hypervolume));
+    const rows = [
+      ["round", data.rounds ? `${grouped(data.round)} of ${grouped(data.rounds)}` : "–"],
+      ["evaluated", grouped(data.evaluations)],
+      ["feasible", grouped(data.feasible)],
+      [
+        gained && gained.rounds > 1
+          ? `gained in the last ${gained.rounds} rounds`
+          : "gained in the last round",
+        gained?.text ?? "–",
+      ],
+      ["so far", duration(data.seconds ?? 0)],
+      ["time left", left === null ? "not known" : `about ${duration(left)}`],
+    ];
+    fill(
+      figures,
+      rows.map(([name, value]) => h("div", {}, h("dt", {}, name), h("dd", {}, value))),
+    );
   }
 
   /** Look at the job soon: its front so far, and its state. @param {number} wait */
@@ -256,6 +276,7 @@ export function watch(place, job, { signal, changed }) {
       );
       return;
     }
+    near.hidden = rounds.at(-1)?.hypervolume !== 0;
     const frontPoints = found.points.map((point) => [point[axes.x], point[axes.y]]);
     /** @param {"x" | "y"} name @param {0 | 1} place */
     const heldRange = (name, place) => {
@@ -297,7 +318,9 @@ export function watch(place, job, { signal, changed }) {
         { class: "quiet" },
         waits
           ? `Waiting for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
-          : "The front appears after the first round.",
+          : now.progress?.round
+            ? "No finished design yet."
+            : "The front appears after the first round.",
       ),
     );
     if (waits) soon(AGAIN); // what it waits for changes without an event

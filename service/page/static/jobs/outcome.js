@@ -27,7 +27,7 @@ export function outcome(job) {
   if (job.state === "cancelled" && designs) {
     return said(
       "Stopped early",
-      `The designs found so far are below; a longer search finds better designs. ${capital(job.reason)}.`,
+      `The designs found so far are below; a longer search finds better designs. ${capital(inWords(job.reason))}.`,
       ["Resume it above to continue."],
     );
   }

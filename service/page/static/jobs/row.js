@@ -44,6 +44,24 @@ export function runRow(job, { picture, chosen, compare, changed }) {
 
 /** Return how far a job is, or what it found. @param {Api.JobRow} job */
 function standing(job) {
+  if (job.state === "running" && job.progress) {
+    const { stage, steps, feasible } = job.progress;
+    const [part, done, of] = steps
+      ? ["", job.progress.step, steps]
+      : ["round ", job.progress.round, job.progress.rounds];
+    return [
+      h("progress", {
+        max: of,
+        value: done,
+        "aria-label": `run ${job.id}: ${part}${done} of ${of}`,
+      }),
+      h(
+        "div",
+        { class: "quiet" },
+        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")} · by ${job.worker}`,
+      ),
+    ];
+  }
   const { decision } = job;
   if (job.summary?.designs) {
     const { designs, best } = job.summary;
@@ -61,24 +79,6 @@ function standing(job) {
         Object.entries(best)
           .map(([key, value]) => named(key, value))
           .join(" · "),
-      ),
-    ];
-  }
-  if (job.state === "running" && job.progress) {
-    const { stage, steps, feasible } = job.progress;
-    const [part, done, of] = steps
-      ? ["", job.progress.step, steps]
-      : ["round ", job.progress.round, job.progress.rounds];
-    return [
-      h("progress", {
-        max: of,
-        value: done,
-        "aria-label": `run ${job.id}: ${part}${done} of ${of}`,
-      }),
-      h(
-        "div",
-        { class: "quiet" },
-        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")} · by ${job.worker}`,
       ),
     ];
   }

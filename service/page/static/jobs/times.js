@@ -6,14 +6,12 @@ const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "
 const LEAST = 0.1; // s, of a duration that is shown
 const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
-/** Return when a job ended, or since when it runs or waits, in words: exact when pointed at. @param {Api.JobRow} job */
-export function moment({ state, submitted, started, finished }) {
+/** Return when a job ended after which search, or since when it runs or waits: exact when pointed at. @param {Api.JobRow} job */
+export function moment({ state, submitted, started, finished, summary }) {
   if (state === "running" && started) return ["started ", ago(started)];
   if (!finished) return ["submitted ", ago(submitted)];
-  return [
-    ago(finished),
-    started && finished - started >= LEAST ? `, after ${duration(finished - started)}` : null,
-  ];
+  const seconds = summary?.seconds ?? finished - (started ?? finished);
+  return [ago(finished), seconds >= LEAST ? `, after ${duration(seconds)}` : null];
 }
 
 /** Return when a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
@@ -32,6 +30,12 @@ export function ago(seconds) {
     { datetime: date.toISOString(), onpointerenter: exact },
     agoText(date, new Date()),
   );
+}
+
+/** Say all shown times anew, because they pass. */
+export function renewTimes() {
+  for (const shown of document.querySelectorAll("time"))
+    shown.textContent = agoText(new Date(shown.dateTime), new Date());
 }
 
 /**
@@ -63,6 +67,7 @@ export function clock(seconds) {
     hour: "2-digit",
     minute: "2-digit",
     second: "2-digit",
+    hourCycle: "h23",
   });
 }
 

@@ -115,6 +115,7 @@ const SAID = [
     (_, stroke) => `choose “${stroke}” as the slow stroke, under Motion`,
   ],
   [/ \((?:opposes|helps)\)/g, ""],
+  [/^cancelled: /, ""],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];
 

@@ -2,7 +2,7 @@ import { actions } from "../jobs/actions.js";
 import { downloads } from "../jobs/downloads.js";
 import { outcome } from "../jobs/outcome.js";
 import { badge, ENDED } from "../jobs/states.js";
-import { ago, duration, moment } from "../jobs/times.js";
+import { moment } from "../jobs/times.js";
 import { get, isAbort, Problem, statusOf } from "../lib/api.js";
 import { go, link, read } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
@@ -75,12 +75,11 @@ export async function show(place, { parts, signal }) {
 
   /** @param {Api.Job} job */
   function drawHead(job) {
-    const { summary } = job;
+    const summary = ENDED.includes(job.state) ? job.summary : null; // of a resumed search, it is no longer true
     const facts = [
       `run ${job.id}`,
       summary && counted(summary.designs, "design"),
       summary && `${grouped(summary.evaluations)} evaluated`,
-      summary?.seconds && `in ${duration(summary.seconds)}`,
     ];
     fill(
       head,
@@ -102,7 +101,7 @@ export async function show(place, { parts, signal }) {
           " · ",
           facts.filter(Boolean).join(" · "),
           " · ",
-          job.finished ? ago(job.finished) : moment(job),
+          moment(job),
           job.origin
             ? [
                 " · changed from ",
