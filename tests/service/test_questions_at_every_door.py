@@ -28,6 +28,7 @@ from slidercrank.service.questions.inputs import Input
 from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
+from tests.case_count import ALL_CASES, case_count
 from tests.doors.scripts import JOBS
 from tests.service import fronts, sized
 from tests.service.alike import assert_same
@@ -103,10 +104,11 @@ def test_every_topic_of_random_machines_has_the_same_answer_at_every_door(addres
                 assert answer == printed[name]
             if not given:
                 assert f"{name}: {answer}" in sent.json()["notes"] or answer == sent.json()["analysis"][name]
-        inches = CliRunner().invoke(command_line, ["analyse", str(file), *options, "--units", "inch"])
-        assert by_agent(tmp_path, job=tables, **sizes, topics=["all"], inputs=press, units="inch") == json.loads(
-            inches.stdout
-        )
+        if sort == MACHINES[0] or ALL_CASES:
+            inches = CliRunner().invoke(command_line, ["analyse", str(file), *options, "--units", "inch"])
+            assert by_agent(tmp_path, job=tables, **sizes, topics=["all"], inputs=press, units="inch") == json.loads(
+                inches.stdout
+            )
     assert answered == TOPICS.keys() - {"clearance"}
 
 
@@ -192,7 +194,7 @@ def some_input(one: Input, random: np.random.Generator) -> float | str:
 def test_random_designs_are_sized_alike_at_every_door(sizes: tuple[Client, int, Path], name: str) -> None:
     (client, number, job), random = sizes, np.random.default_rng(10)
     front, question = sc.solve(sc.load_job(job)), DESIGN_QUESTIONS[name]
-    for row in random.choice(len(front), 3, replace=False).tolist():
+    for row in random.choice(len(front), case_count(1, 3), replace=False).tolist():
         given = {one: some_input(one, random) for one in question.inputs if name != "law" or one.name in LAW}
         expected = client.ask(number, row + 1, name, **{one.key: value for one, value in given.items()})
         texts = {one: one.with_unit(value) for one, value in given.items()}
