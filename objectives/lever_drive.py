@@ -10,7 +10,7 @@ from .quantity import Group
 
 _peak = partial(LeverPeak, group=Group.DRIVE, picture="cylinder")
 _form = partial(LeverForm, group=Group.DRIVE, picture="cylinder")
-_pin = partial(LeverPeak, kind=FORCE, group=Group.FORCES, example="5 kN")
+_pin = partial(LeverPeak, kind=FORCE, group=Group.FORCES, example="5 kN", moved_by=("cylinder", "turning crank"))
 
 PEAK_CYLINDER_FORCE = _peak(
     name="peak_cylinder_force",
@@ -140,7 +140,7 @@ LEVER_PIN_FORCE = _pin(
     place=350,
     picture="crank pin force",
     sentence="The greatest force of the piston rod on the lever.",
-    formula="max over the swing of |F|",
+    formula="max over the motion of |F|",
 )
 LEVER_PIVOT_FORCE = _pin(
     name="lever_pivot_force",
@@ -149,7 +149,7 @@ LEVER_PIVOT_FORCE = _pin(
     place=351,
     picture="pivot force",
     sentence="The greatest force of the frame on the lever at its pivot.",
-    formula="max over the swing of |rate of its momentum - m g - F|",
+    formula="max over the motion of |rate of its momentum - m g - F|",
 )
 CYLINDER_PIVOT_FORCE = _pin(
     name="cylinder_pivot_force",
@@ -157,8 +157,8 @@ CYLINDER_PIVOT_FORCE = _pin(
     curves=("cylinder_pivot",),
     place=352,
     picture="pivot force",
-    sentence="The greatest force of the frame on the cylinder at its pivot.",
-    formula="max over the swing of |F + rate of its momentum - m g|",
+    sentence="The greatest force of the frame on the cylinder, or on the arm that a crank drives, at its pivot.",
+    formula="max over the motion of |F + rate of its momentum - m g|",
 )
 LEVER_ANGLE_ERROR = _peak(
     name="lever_angle_error",

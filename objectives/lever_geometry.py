@@ -10,6 +10,7 @@ from .lever_quantity import LeverForm
 from .quantity import Domain, Group
 
 _form = partial(LeverForm, group=Group.MOTION, picture="cylinder")
+_length = partial(_form, moved_by=("cylinder", "turning crank"))
 
 LEVER_TRANSMISSION_ANGLE = _form(
     name="lever_transmission_angle",
@@ -44,41 +45,41 @@ DEAD_POINT_MARGIN = _form(
     better="high",
     domain=Domain.of_acute_angle("the angle to a dead point lies between 0 and 90 deg", "15 to 40 deg"),
 )
-LEAST_CYLINDER_LENGTH = _form(
+LEAST_CYLINDER_LENGTH = _length(
     name="least_cylinder_length",
     kind=LENGTH,
     forms=(lambda c, _: c.ends[0], lambda c, _: c.ends[1]),
     least=True,
     place=332,
-    sentence="The least length of the cylinder between its pins over the swing.",
+    sentence="The least length of the cylinder between its pins over the motion.",
     advice="The closed length of the cylinder must not exceed it.",
-    formula="min over the swing of sqrt(r^2 + f^2 - 2 r f cos(psi) - e^2)",
+    formula="min over the motion of sqrt(r^2 + f^2 - 2 r f cos(psi) - e^2)",
     example="650 mm",
     better="",
 )
-GREATEST_CYLINDER_LENGTH = _form(
+GREATEST_CYLINDER_LENGTH = _length(
     name="greatest_cylinder_length",
     kind=LENGTH,
     forms=(lambda c, _: c.ends[0], lambda c, _: c.ends[1]),
     place=333,
-    sentence="The greatest length of the cylinder between its pins over the swing.",
+    sentence="The greatest length of the cylinder between its pins over the motion.",
     advice="Closed length and stroke of the cylinder must reach it.",
-    formula="max over the swing of sqrt(r^2 + f^2 - 2 r f cos(psi) - e^2)",
+    formula="max over the motion of sqrt(r^2 + f^2 - 2 r f cos(psi) - e^2)",
     example="1080 mm",
     better="",
 )
-CYLINDER_TRAVEL = _form(
+CYLINDER_TRAVEL = _length(
     name="cylinder_travel",
     title="travel of the cylinder",
     kind=LENGTH,
     forms=(lambda c, _: travel(c),),
     place=334,
-    sentence="The difference of the cylinder's lengths at both ends of the swing.",
+    sentence="The difference of the cylinder's greatest and least length over the motion.",
     advice="The stroke of the cylinder must not be less.",
-    formula="|L(end) - L(start)|",
+    formula="max L - min L",
     example="400 mm",
 )
-EXTENSION_RATIO = _form(
+EXTENSION_RATIO = _length(
     name="extension_ratio",
     title="extension ratio of the cylinder",
     kind=RATIO,
@@ -92,7 +93,7 @@ EXTENSION_RATIO = _form(
         lower=1.0, open=False, idle=True, rule="an extension ratio is 1 or more", remedy="1.3 to 1.7 are usual"
     ),
 )
-CYLINDER_LENGTH_MARGIN = _form(
+CYLINDER_LENGTH_MARGIN = _length(
     name="cylinder_length_margin",
     title="spare length of the cylinder",
     kind=LENGTH,
@@ -105,7 +106,7 @@ CYLINDER_LENGTH_MARGIN = _form(
     least=True,
     known=("closed_length",),
     place=336,
-    sentence="The length by which the swing stays off both ends of the cylinder's stroke; negative if it needs more.",
+    sentence="The length by which the motion stays off both ends of the cylinder's stroke; negative if it needs more.",
     advice="Without a requirement it is at least 0.",
     formula="min(L_min - closed length, closed length + stroke - L_max)",
     example="5 mm",

@@ -1,4 +1,4 @@
-"""Quantities of a lever moved by a cylinder that turns, over its swing."""
+"""Quantities of a lever and a cylinder that turns, over its swing, or over a full turn as a crank."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from ..model.kernel.arithmetic import STEP
 from ..model.kernel.batches import in_chunks
 from ..model.machine.mechanism import Mechanism
 from ..model.swing.swing import Swing
+from ..model.swing.swing_types import SwingDriver
 from ..model.turning_cylinder.batch import lever_batch, lever_passes
 from ..model.turning_cylinder.peaks import lever_peaks
 from ..model.turning_cylinder.states import LeverNumbers
+from ..model.turning_cylinder.turn_mean import rms_torque
 from .machine_needs import Consequence
-from .quantity import Array, Pieces, Values
+from .quantity import Array, Pieces, Quantity, Values
 from .swing_quantity import SwingQuantity
 
 Form = Callable[[LeverNumbers, Any], Any]
@@ -27,17 +29,28 @@ _PEAKS = 4
 
 @dataclass(frozen=True, kw_only=True)
 class LeverQuantity(SwingQuantity):
-    """A number of a lever's swing. known: numbers of its cylinder that it needs."""
+    """A number of a lever's motion.
+
+    known: numbers of its cylinder or arm that it needs. moved_by: drivers of the motions that have it.
+    """
 
     known: tuple[str, ...] = field(default=(), compare=False)
+    moved_by: tuple[SwingDriver, ...] = field(default=("cylinder",), compare=False)
 
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
-        if swing.driver != "cylinder":
+        if not swing.of_lever:
             return (
                 "it needs a lever moved by a cylinder that turns; got a slider-crank; set [mechanism] "
                 'inversion = "turning cylinder", or leave it out'
             )
+        if swing.driver not in self.moved_by:
+            if swing.of_full_turn:
+                return (
+                    "it needs a lever that its cylinder swings; got a crank that rotates fully; add [motion] "
+                    'kind = "swing" with from and to, or leave it out'
+                )
+            return "it needs a crank that rotates fully; got a swing of the lever; leave out [motion], or leave it out"
         if self.timed and swing.duration is None:
             return "it needs a swing with a duration; got a slow one; give [motion] a law and a duration"
         return None
@@ -47,13 +60,14 @@ class LeverQuantity(SwingQuantity):
         lever = mechanism.with_largest_variables.lever
         if consequence == "undefined" and lever is not None:
             for name in self.known:
-                if getattr(lever.cylinder, name) is None:
+                part = "arm" if name == "ram" else "cylinder"
+                if getattr(getattr(lever, part), name) is None:
                     words = name.replace("_", " ")
-                    return f"it needs the {words} of the cylinder; got none; give [cylinder] {name}"
+                    return f"it needs the {words} of the {part}; got none; give [{part}] {name}"
             if self.tolerated:
                 stated = mechanism.with_largest_variables.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
                 return None if stated else 'it needs tolerances; got none; add for example [tolerances] crank = "1 mm"'
-        return None
+        return Quantity.lacks(self, mechanism, consequence)
 
     def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
@@ -155,3 +169,24 @@ class LeverForm(LeverQuantity):
     def _of(self, numbers: LeverNumbers) -> Any:
         top = self._required_swing.fastest
         return np.stack([form(numbers, top) + 0j * numbers.crank for form in self.forms], axis=1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeverRms(LeverQuantity):
+    """The root mean square of the torque on a crank over its turn."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        designs, rows = self._passing(mechanism, dimensions)
+        batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
+        values, slopes = np.full(len(designs), np.nan), np.zeros(designs.shape)
+        by_number = np.zeros((len(rows), len(numbers.columns) if gradients else 0))
+
+        def work(begin: int, end: int) -> None:
+            values[rows[begin:end]], by_number[begin:end] = rms_torque(batch.part(begin, end), gradients=gradients)
+
+        in_chunks(len(rows), work, size=_CHUNK)
+        if not gradients:
+            return Values(values, None)
+        slopes[rows] = numbers.chain(by_number)
+        return Values(values, slopes)

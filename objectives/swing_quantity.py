@@ -46,7 +46,7 @@ class SwingQuantity(Quantity):
 
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
-        if swing.driver == "cylinder":
+        if swing.of_lever:
             return "it needs a crank with rod and slider; got a lever moved by a cylinder that turns; leave it out"
         if self.driver is not None and swing.driver != self.driver:
             return (

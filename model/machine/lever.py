@@ -1,4 +1,4 @@
-"""A lever moved by a cylinder that turns, as a machine: the slider-crank with its rod fixed as the frame."""
+"""A lever and a cylinder that turns, as a machine: the slider-crank with its rod fixed as the frame."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 
 from ..checks import require_kinds, require_numbers
 from ..errors import InputError
+from .arm import Arm
 from .lever_cylinder import Cylinder
 
 
@@ -16,30 +17,31 @@ class Lever:
     """Data of a lever besides crank (the lever), rod (the frame) and offset.
 
     frame_angle: direction from the lever's pivot to the cylinder's, rad from +x. pin_angle: angle from the crank's own
-    line to its pin, rad. cylinder: its known data.
+    line to its pin, rad. cylinder: its known data. arm: what the line turns if the crank rotates fully.
     """
 
     frame_angle: float
     pin_angle: float = 0.0
     cylinder: Cylinder = Cylinder()
+    arm: Arm = Arm()
 
     def __post_init__(self) -> None:
         require_numbers(self, "frame_angle", "pin_angle", phrase="the {} of a lever")
-        require_kinds(self, {"cylinder": Cylinder}, "the table [cylinder] of a job states it")
+        require_kinds(self, {"cylinder": Cylinder, "arm": Arm}, "tables of a job state them")
 
     @property
     def texts(self) -> list[str]:
         """Sentences on frame and cylinder."""
         pin = f", pin {math.degrees(self.pin_angle):.6g} deg from the crank's line" if self.pin_angle else ""
         frame = f"the rod is the frame, at {math.degrees(self.frame_angle):.6g} deg from the lever's pivot{pin}"
-        return [frame, *([f"cylinder: {self.cylinder.text}"] if self.cylinder != Cylinder() else [])]
+        arm = [] if self.arm == Arm() else [f"arm: {self.arm.text}"]
+        return [frame, *([] if self.cylinder == Cylinder() else [f"cylinder: {self.cylinder.text}"]), *arm]
 
 
 def require_lever_alone(machine: Any) -> None:
     """Raise `InputError` for features of a slider-crank that a lever does not have. machine: a `Mechanism`."""
     tolerances = machine.tolerances
     features = {
-        "mechanism.speed": machine.speed,
         "mechanism.acceleration": machine.acceleration,
         "mechanism.speed_profile": machine.speed_profile,
         "mechanism.rod": machine.rod != type(machine)().rod,
@@ -57,6 +59,6 @@ def require_lever_alone(machine: Any) -> None:
     stated = [name for name, value in features.items() if value]
     if stated:
         raise InputError(
-            'inversion = "turning cylinder" has a lever and a cylinder, but neither rod nor slider, and its cylinder '
-            f"drives it; got {', '.join(stated)}; leave it out"
+            'inversion = "turning cylinder" has a lever and a cylinder, but neither rod nor slider; '
+            f"got {', '.join(stated)}; leave it out"
         )

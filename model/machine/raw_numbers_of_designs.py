@@ -83,9 +83,11 @@ _LEVER = {
     **dict.fromkeys(("cylinder.closed_length", "cylinder.stroke", "cylinder.bore", "cylinder.rod"), "m"),
     **{"cylinder.supply_pressure": "Pa", "cylinder.seal_friction": "N", "cylinder.length_tolerance": "m"},
     **{"cylinder.barrel_mass": "kg", "cylinder.piston_rod_mass": "kg", "cylinder.modulus": "Pa"},
+    **{"arm.mass": "kg", "arm.centre": "m", "arm.inertia": "kg m^2", "arm.torque": "N m"},
+    **{"arm.ram": "m", "arm.ram_mass": "kg", "arm.ram_force": "N"},
 }
 LEVER = {name: 10**8 + 5 + len(_DRIVE) + place for place, name in enumerate(_LEVER)}
-"""Slots of a lever and its cylinder, which read their own."""
+"""Slots of a lever, its cylinder and its arm, which read their own."""
 _SLOTS |= {f"lever.{name}": (slot, _LEVER[name]) for name, slot in LEVER.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 

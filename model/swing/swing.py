@@ -37,10 +37,10 @@ class Swing:
     angles, "slider" if they are slider positions; then `side` says on which side of the line from crank pivot to slider
     pin the crank pin is, and `swing_between_crank_angles` gives the crank angles. follows: whether the end moves along
     with a start that designs choose (`machine.start`). driver: driver of the linkage, a torque on the crank or a force
-    on the slider along its line, or the cylinder of a lever, whose angles start and end then are. law: law of the
-    driver's motion over time, in each stroke. duration: time of one stroke, s; none for slow motion.
-    actuator_tolerance: tolerance of the slider position if the slider drives, m. points: points of a tabulated law:
-    fractions of time and travel, see `law.law_spline_pieces`.
+    on the slider along its line, or the cylinder of a lever, whose angles start and end then are. `CRANK_TURN` is the
+    full turn of a lever as a crank. law: law of the driver's motion over time, in each stroke. duration: time of one
+    stroke, s; none for slow motion. actuator_tolerance: tolerance of the slider position if the slider drives, m.
+    points: points of a tabulated law: fractions of time and travel, see `law.law_spline_pieces`.
     """
 
     start: float
@@ -68,6 +68,10 @@ class Swing:
             raise InputError(
                 f"a swing needs two different slider positions; got {1e3 * self.start:.6g} mm twice; change one"
             )
+        if self.of_full_turn:
+            if (self.start, self.end, self.law) != (0.0, _TURN, "slow"):
+                raise InputError("a turning crank makes one full turn, slowly; got another motion; use CRANK_TURN")
+            return
         if self.stated_for == "crank" and not 0.0 < angle < _TURN:
             raise InputError(
                 "a swing needs two different crank angles, less than a turn apart; "
@@ -118,6 +122,16 @@ class Swing:
                 f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; reduce the swing"
             )
 
+    @property
+    def of_lever(self) -> bool:
+        """Whether it is a motion of a machine with `lever`."""
+        return self.driver in ("cylinder", "turning crank")
+
+    @property
+    def of_full_turn(self) -> bool:
+        """Whether a crank that rotates fully drives a lever's line."""
+        return self.driver == "turning crank"
+
     @cached_property
     def table(self) -> Array:
         """Pieces (k, 7) of a tabulated law, see `law.law_spline_pieces`; empty for other laws."""
@@ -138,6 +152,10 @@ class Swing:
         low, high = sorted((self.start, self.end))
         occurrence = angle + _TURN * math.ceil((low - angle) / _TURN)
         return [occurrence] if occurrence <= high else []
+
+
+CRANK_TURN = Swing(start=0.0, end=_TURN, driver="turning crank")
+"""The motion of a machine with `lever` whose crank rotates fully, at the speed of the machine."""
 
 
 def without_inertia(swing: Swing) -> Swing:

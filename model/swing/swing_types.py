@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 Driver = Literal["crank", "slider"]
-SwingDriver = Literal[Driver, "cylinder"]
-"""Driver of a swing; the cylinder is that of a lever, a machine with `lever`."""
+SwingDriver = Literal[Driver, "cylinder", "turning crank"]
+"""Driver of a swing. Only a machine with `lever` has the last two: its cylinder, or its crank that rotates fully."""
 Stated = Literal["crank", "slider"]
 """Kind of both ends: crank angles, or slider positions."""
 Side = Literal["left", "right"]

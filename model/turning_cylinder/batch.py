@@ -1,7 +1,8 @@
-"""Many levers with their turning cylinders from the designs of a machine, and which of them can make a swing."""
+"""Many levers with their turning cylinders from the designs of a machine, and which of them can make a motion."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,7 +24,7 @@ from .states import LeverNumbers
 
 _FIELDS = Design._fields
 _MARGIN = 1e-9
-"""Distance, rad, from a dead point within which rounding decides."""
+"""Distance from a dead point, rad, or from locking, as a fraction of the frame, within which rounding decides."""
 
 
 @memoise_by_batch
@@ -45,7 +46,7 @@ def lever_batch(
         moved = own if slot < len(raw) else own | {slot: own[slot] + 1j * STEP}
         stepped.append(_lever_numbers(mechanism, swing, block, moved))
     law: Any = swing.law
-    return LeverBatch(plain, law, tuple(stepped)), numbers
+    return LeverBatch(plain, law, tuple(stepped), of_full_turn=swing.of_full_turn), numbers
 
 
 def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int, Any]) -> LeverNumbers:
@@ -61,8 +62,12 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
         return [block[:, _FIELDS.index(name)] for name in names]
 
     crank, frame, offset = of_block("r", "l", "e")
-    start = own.get(START["crank"], swing.start)
-    end = start + (swing.end - swing.start) if swing.follows else swing.end
+    if swing.of_full_turn:  # the lengths of the cylinder are least and greatest at psi = 0 and 180 deg
+        start = part("frame_angle") - part("pin_angle")
+        end = start + np.pi
+    else:
+        start = own.get(START["crank"], swing.start)
+        end = start + (swing.end - swing.start) if swing.follows else swing.end
     cylinder_numbers = {name.removeprefix("cylinder."): part(name) for name in LEVER if name.startswith("cylinder.")}
     cylinder = SimpleNamespace(**cylinder_numbers)
     bore, rod = cylinder.bore, cylinder.rod
@@ -81,14 +86,21 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
             *of_block("crank_error", "rod_error", "offset_error"),
             *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
             *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
-            *(cylinder.closed_length, cylinder.stroke),
+            *(cylinder.closed_length, cylinder.stroke, *of_block("speed"), *_arm_numbers(part)),
         ]
     )
     return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
 
 
+def _arm_numbers(part: Callable[[str], Any]) -> tuple[Any, ...]:
+    """Return the numbers of the arm as `LeverNumbers` has them. part: function of a number's name."""
+    mass, centre, inertia, *rest = (part(name) for name in LEVER if name.startswith("arm."))
+    moment = mass * centre
+    return mass, moment, inertia + moment * centre, *rest
+
+
 def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) make the whole swing without a dead point, with a possible cylinder.
+    """Return which designs (n, 3 + k) make the whole swing without a dead point, or a full turn of the crank.
 
     Where they vary, the bore must exceed the piston rod, and the closed length the stroke, in each design.
     """
@@ -102,11 +114,20 @@ def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
     if not len(rows):
         return passing
     c = lever_batch(mechanism, designs[rows], swing, gradients=False)[0].plain
+    if swing.of_full_turn:
+        gap = np.abs(c.crank - c.frame) - np.abs(c.offset)
+        passing[rows] = (gap > _MARGIN * c.frame) & ~_unbuildable(c)
+        return passing
     first, last = (end + c.pin_angle - c.frame_angle for end in (c.start, c.end))
     between = np.floor(first / np.pi) == np.floor(last / np.pi)
     off = np.minimum(*(np.abs(np.sin(angle)) for angle in (first, last))) > _MARGIN
     with np.errstate(invalid="ignore"):
         closing = np.minimum(*c.ends) > 0.0
-        unbuildable = (c.annular_area <= 0.0) | (c.stroke >= c.closed_length)  # NaN where it is not known
-    passing[rows] = between & off & closing & ~unbuildable & (np.abs(last - first) < np.pi)
+    passing[rows] = between & off & closing & ~_unbuildable(c) & (np.abs(last - first) < np.pi)
     return passing
+
+
+def _unbuildable(c: LeverNumbers) -> Mask:
+    """Return which levers have an impossible cylinder, as far as it is known."""
+    with np.errstate(invalid="ignore"):  # NaN where it is not
+        return np.asarray((c.annular_area <= 0.0) | (c.stroke >= c.closed_length))

@@ -1,4 +1,7 @@
-"""Closed forms of a lever's swing, for real numbers and complex steps. c: numbers of levers, see `states`."""
+"""Closed forms of a lever's swing and of a crank's full turn, for real numbers and complex steps.
+
+c: numbers of levers, see `states`.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ import numpy as np
 from ..kernel.arithmetic import magnitude
 from .lever import pin_distance
 from .states import LeverNumbers, lift
+from .turn import stroke_ends
 
 
 def transmission_angle(c: LeverNumbers, lever_angle: Any) -> Any:
@@ -46,3 +50,38 @@ def work_out(c: LeverNumbers) -> Any:
 def greatest_speed(c: LeverNumbers, fastest: float) -> Any:
     """Return the greatest speed of the cylinder, m/s. fastest: greatest ds/dt of the law."""
     return fastest * travel(c) * c.rate
+
+
+def arm_swing(c: LeverNumbers) -> Any:
+    """Return the angle, rad, that the line turns by in a stroke if the crank rotates fully; 2 pi if it rotates too.
+
+    At a reversal the line is a tangent of the pin's circle: its angle to OA has the sine (r - e) / f or (r + e) / f.
+    """
+    r, f, e = (number + 0j for number in (c.crank, c.frame, c.offset))
+    swings = np.real(r) < np.real(f)
+    near, far = (np.where(swings, (r + side * e) / np.where(swings, f, 1.0), 0.0) for side in (-1.0, 1.0))
+    return np.where(swings, np.arcsin(near) + np.arcsin(far), 2.0 * np.pi)
+
+
+def arm_time_ratio(c: LeverNumbers) -> Any:
+    """Return the time of the slow stroke over that of the fast one, if the crank rotates fully at constant speed."""
+    fast = sum(stroke_ends(c))
+    return (2.0 * np.pi - fast) / fast
+
+
+def arm_transmission_angle(c: LeverNumbers) -> Any:
+    """Return the least angle, rad, between AB and the normal of the line, along which crank and arm push each other."""
+    return np.arccos(magnitude(c.offset) / magnitude(c.crank - c.frame))
+
+
+def ram_stroke(c: LeverNumbers) -> Any:
+    """Return the stroke, m, of a ram: R ((r - e) / f + (r + e) / f) if its arm swings, 2 R if it rotates."""
+    return 2.0 * c.ram * np.where(np.real(c.crank) < np.real(c.frame), c.crank / c.frame, 1.0)
+
+
+def turn_work(c: LeverNumbers) -> Any:
+    """Return the work of the crank in a full turn, J: that of the arm's torque, of the ram's force and of friction."""
+    swing = arm_swing(c)
+    angle = np.where(np.real(c.crank) < np.real(c.frame), 2.0 * swing, swing)
+    ram = np.where(np.isnan(np.real(c.ram)), 0.0, ram_stroke(c))
+    return c.arm_torque * angle + c.ram_force * ram + 2.0 * c.rub * travel(c)

@@ -92,13 +92,15 @@ class LeverMachine:
 class LeverSwing:
     """A swing of the lever from one angle, rad, to another, and back the same way. duration: of one way, s.
 
-    The law is that of the cylinder's length over time; slow ignores inertia.
+    The law is that of the cylinder's length over time; slow ignores inertia. of_full_turn: whether it is the fast
+    stroke of a crank that rotates fully.
     """
 
     start: float
     end: float
     law: LeverLaw = "slow"
     duration: float | None = None
+    of_full_turn: bool = False
 
     def __post_init__(self) -> None:
         require_word("law", self.law, LeverLaw)

@@ -121,6 +121,15 @@ class TurningCylinder:
                 "the offset, or reduce the swing"
             )
 
+    def require_turn(self) -> None:
+        """Raise `AssemblyError` unless the crank rotates fully."""
+        if abs(self.crank - self.frame) <= abs(self.offset):
+            raise AssemblyError(
+                "the crank rotates fully only if |offset| < |frame - crank|, the rod being the frame; got a crank of "
+                f"{1e3 * self.crank:.6g} mm, a frame of {1e3 * self.frame:.6g} mm and an offset of "
+                f"{1e3 * self.offset:.6g} mm; change the crank or the frame, or reduce the offset"
+            )
+
     def at(self, lever_angle: Array) -> LeverMotion:
         """Return the motion of lever and cylinder at lever angles (n,), rad."""
         motion = motion_at(self, lever_angle)

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..arrays import Array
 from ..cycle.cycle import derived_design
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from ..swing.swing import Swing, with_start_of_machine
+from ..swing.swing import CRANK_TURN, Swing, with_start_of_machine
+from .batch import lever_batch
 from .forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from .lever import DimensionErrors, TurningCylinder
+from .states import LeverNumbers
+from .turn import TurnState, place_of_angle, stroke_ends, turn_state
 
 
 def lever_sizes(mechanism: Mechanism, linkage: Linkage) -> TurningCylinder:
@@ -24,8 +30,13 @@ def lever_sizes(mechanism: Mechanism, linkage: Linkage) -> TurningCylinder:
     )
 
 
-def lever_swing(mechanism: Mechanism, swing: Swing) -> LeverSwing:
-    """Return the swing of the lever of a design."""
+def lever_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> LeverSwing:
+    """Return the swing of the lever of a design, or the fast stroke of its crank if it rotates fully."""
+    if swing.of_full_turn:
+        sizes = lever_sizes(mechanism, linkage)
+        before, after = (float(angle) for angle in stroke_ends(sizes))
+        zero = sizes.frame_angle - sizes.pin_angle
+        return LeverSwing(zero - before, zero + after, of_full_turn=True)
     placed = with_start_of_machine(mechanism, swing)
     if placed.law == "table":
         raise InputError("the law of a lever's swing has a name; got a table; name a law such as cycloidal")
@@ -35,9 +46,12 @@ def lever_swing(mechanism: Mechanism, swing: Swing) -> LeverSwing:
 def lever_linkage(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
     """Return crank, frame and offset of one lever as floats.
 
-    Raises `InputError` for a dead point within its swing, `AssemblyError` where it does not close.
+    Raises `InputError` for a dead point within its swing, `AssemblyError` where it does not close or rotate fully.
     """
-    placed = lever_swing(mechanism, swing)
+    if swing.of_full_turn:
+        lever_sizes(mechanism, linkage).require_turn()
+        return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
+    placed = lever_swing(mechanism, linkage, swing)
     lever_sizes(mechanism, linkage).require_swing(placed.start, placed.end)
     return Linkage(float(linkage.crank), float(linkage.rod), float(linkage.offset), linkage.branch)
 
@@ -48,10 +62,11 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     design, sizes, placed = (
         derived_design(mechanism, linkage),
         lever_sizes(mechanism, linkage),
-        lever_swing(mechanism, swing),
+        lever_swing(mechanism, linkage, swing),
     )
     cylinder = mechanism.lever.cylinder
-    length = cylinder.closed_length or min(float(sizes.length(end)) for end in (placed.start, placed.end))
+    ends = sizes.length_range if placed.of_full_turn else (float(sizes.length(e)) for e in (placed.start, placed.end))
+    length = cylinder.closed_length or min(ends)
     machine = LeverMachine(
         sizes=sizes,
         lever=LeverBody(
@@ -66,3 +81,13 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     )
     errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
     return machine, DimensionErrors(*errors)
+
+
+def crank_turn(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> TurnState:
+    """Return the state of a design whose crank rotates fully, at crank angles (n,), rad. Raises `AssemblyError`."""
+    checked = lever_linkage(mechanism, linkage, CRANK_TURN)
+    design = np.array([[checked.crank, checked.rod, checked.offset]])
+    batch, _ = lever_batch(mechanism.nominal, design, CRANK_TURN, gradients=False)
+    numbers = LeverNumbers(*(float(number[0]) for number in batch.plain))
+    places = place_of_angle(numbers, crank_angle)
+    return turn_state(numbers, places, places)

@@ -1,7 +1,8 @@
-"""Greatest values of a lever's curves over its swing, for many levers, to machine precision and with exact derivatives.
+"""Greatest values of a lever's curves over its motion, for many levers, to rounding and with exact derivatives.
 
-`peak_search` searches one way, as the way back has the same forces at the same places. A law that starts with a jump of
-speed or acceleration has other forces at its ends than the cylinder that holds the lever there, so both count.
+`peak_search` searches a full turn, or one way of a swing, as the way back has the same forces at the same places. A law
+that starts with a jump of speed or acceleration has other forces at its ends than the cylinder that holds the lever
+there, so both count.
 """
 
 from __future__ import annotations
@@ -18,9 +19,11 @@ from ..signals.cycle_segments import Segments
 from ..signals.peak_search import find_maxima
 from ..swing.law import corners
 from ..swing.swing_types import LeverLaw
-from .states import LeverNumbers, LeverState, lever_state, size
+from .states import LeverNumbers, lever_state, size
+from .turn import PIECES, turn_state
 
-Curve = Callable[[LeverNumbers, LeverState], Any]
+Curve = Callable[[LeverNumbers, Any], Any]
+"""A curve from the numbers of levers and their `LeverState` or, for a full turn, `TurnState`."""
 CURVES: dict[str, Curve] = {
     "push": lambda c, s: c.rub + s.push,
     "pull": lambda c, s: c.rub - s.push,
@@ -36,19 +39,34 @@ CURVES: dict[str, Curve] = {
     "pivot": lambda c, s: size(s.pivot),
     "cylinder_pivot": lambda c, s: size(s.cylinder_pivot),
     "angle_error": lambda c, s: s.angle_error,
+    "arm_speed_ratio": lambda c, s: magnitude(s.turn_1),
+    "arm_speed": lambda c, s: magnitude(s.turn_1 * c.speed),
+    "arm_rise_ratio": lambda c, s: s.turn_2,
+    "arm_fall_ratio": lambda c, s: -s.turn_2,
+    "arm_rise": lambda c, s: s.turn_2 * c.speed * c.speed,
+    "arm_fall": lambda c, s: -s.turn_2 * c.speed * c.speed,
+    "sliding_speed": lambda c, s: magnitude(s.length_1 * c.speed),
+    "ram_speed": lambda c, s: magnitude(s.ram_1 * c.speed),
+    "torque_up": lambda c, s: s.torque,
+    "torque_down": lambda c, s: -s.torque,
 }
-"""Curves whose greatest value counts, with the friction of the seal: both ways together."""
+"""Curves whose greatest value counts, with the friction of the seal: of a swing, both ways together; of a full turn,
+those of the forces in the three pins and from `arm_speed_ratio` on."""
 _PANELS = 1.0
 _PEAKS = 4
 
 
 @dataclass(frozen=True)
 class LeverBatch:
-    """Levers that can make their swings. plain: numbers (n,). stepped: with an imaginary step of each variable."""
+    """Levers that can make their motion. plain: numbers (n,). stepped: with an imaginary step of each variable.
+
+    law: that of a swing.
+    """
 
     plain: LeverNumbers
     law: LeverLaw
     stepped: tuple[LeverNumbers, ...] = ()
+    of_full_turn: bool = False
 
     @property
     def count(self) -> int:
@@ -60,15 +78,20 @@ class LeverBatch:
         plain, *stepped = (
             LeverNumbers(*(number[begin:end] for number in numbers)) for numbers in (self.plain, *self.stepped)
         )
-        return LeverBatch(plain, self.law, tuple(stepped))
+        return LeverBatch(plain, self.law, tuple(stepped), self.of_full_turn)
+
+    @property
+    def cuts(self) -> Array:
+        """Breakpoints of the curves, which do not move: fractions of the time, or places of `turn_state`."""
+        return np.arange(PIECES + 1.0) if self.of_full_turn else np.array([0.0, *corners(self.law), 1.0])
 
 
 @dataclass(frozen=True)
 class LeverPeaks:
     """Local peaks of n levers, in any order.
 
-    values: (n, k), -inf where absent. places: (n, k), fraction of the time of the way out, NaN where absent; plus 2 for
-    a cylinder that holds the lever at an end. gradients: (n, k, v), by the variables of the batch.
+    values: (n, k), -inf where absent. places: (n, k), fraction of the time of the way out, plus 2 for a cylinder that
+    holds the lever at an end, or place of `turn_state`; NaN where absent. gradients: (n, k, v), by the variables.
     """
 
     values: Array
@@ -85,10 +108,10 @@ class _Rows:
     numbers: int
 
     def values(self, numbers: LeverNumbers, law: LeverLaw, row: IntArray, share: Any, probe: Array) -> Any:
-        """Return the curves (p, k) of rows at fractions of the time. numbers: of the batch."""
+        """Return the curves (p, k) of rows at places (p, k). numbers: of the batch."""
         curve, lever = np.divmod(row, self.batch.count)
         c = LeverNumbers(*(number[lever, None] for number in numbers))
-        state = lever_state(c, law, share, probe)
+        state: Any = turn_state(c, share, probe) if self.batch.of_full_turn else lever_state(c, law, share, probe)
         found = self.curves[0](c, state)
         for place, other in enumerate(self.curves[1:], 1):
             found = np.where((curve == place)[:, None], other(c, state), found)
@@ -129,10 +152,11 @@ def lever_peaks(
     """
     rows = _Rows(batch, tuple(CURVES[name] for name in curves), len(batch.stepped) if gradients else 0)
     count = batch.count * len(curves)
-    cuts = np.array([0.0, *corners(batch.law), 1.0])
+    cuts = batch.cuts
     pieces = len(cuts) - 1
     row, piece = np.repeat(np.arange(count), pieces), np.tile(np.arange(pieces), count)
-    following = np.where(piece + 1 < pieces, np.arange(len(row)) + 1, -1)
+    first = np.arange(len(row)) + 1 - pieces if batch.of_full_turn else -1
+    following = np.where(piece + 1 < pieces, np.arange(len(row)) + 1, first)
     segments = Segments(row, cuts[piece], cuts[piece + 1], np.arange(len(row)), following)
     found = find_maxima(rows, segments, np.full(count, _PANELS), limit=limit, signed=True)
     parts = [LeverPeaks(found.values, found.places, found.slopes)]

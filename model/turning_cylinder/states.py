@@ -21,7 +21,8 @@ class LeverNumbers(NamedTuple):
 
     rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
     annular area; NaN if there is no bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN if
-    there is none. supply: pressure; NaN if there is none, as closed_length and stroke.
+    there is none. supply: pressure; NaN if there is none, as closed_length and stroke. speed: of the crank, rad/s, if
+    it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; see `machine.arm`.
     """
 
     crank: Any
@@ -53,6 +54,14 @@ class LeverNumbers(NamedTuple):
     buckling: Any
     closed_length: Any = np.nan
     stroke: Any = np.nan
+    speed: Any = 0.0
+    arm_mass: Any = 0.0
+    arm_moment: Any = 0.0
+    arm_inertia: Any = 0.0
+    arm_torque: Any = 0.0
+    ram: Any = np.nan
+    ram_mass: Any = 0.0
+    ram_force: Any = 0.0
 
     def length(self, lever_angle: Any) -> Any:
         """Return the length of the cylinder, m, at lever angles, rad."""
@@ -116,6 +125,29 @@ def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> Lever
 
 def _forces(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> tuple[Any, Vector, Vector, Vector]:
     """Return push and the forces on the lever at B and O and on the cylinder at A. turn, rise: of the lever."""
+    bodies = bodies_at(c, angle, motion, turn, rise)
+    pin = scaled(c.crank, motion.radial)
+    force = difference(scaled(bodies.about_a, pin), scaled(bodies.about_o, motion.span))
+    force = scaled(1.0 / cross(motion.span, pin), force)
+    on_rod = difference(force, bodies.rod)
+    return dot(on_rod, motion.line), force, difference(bodies.carried, force), difference(on_rod, bodies.barrel)
+
+
+class Bodies(NamedTuple):
+    """What the accelerated bodies need. carried: force on the lever. rod, barrel: weight less m a of the cylinder.
+
+    about_o: moment of the lever about O. about_a: moment of `rod` and `barrel` about A less their I gamma''.
+    """
+
+    carried: Vector
+    rod: Vector
+    barrel: Vector
+    about_o: Any
+    about_a: Any
+
+
+def bodies_at(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> Bodies:
+    """Return what the bodies need at a lever angle. turn, rise: speed and acceleration of the lever."""
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * turn, motion.turn_2 * turn * turn + motion.turn_1 * rise
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -123,19 +155,18 @@ def _forces(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -
     x, y = motion.line
     half = 0.5 * c.barrel_length
     barrel = half * x - c.offset * y, half * y + c.offset * x
-    barrel_force = _scaled(c.barrel_mass, _difference(gravity, _turning(barrel, line_1, line_2)))
-    arm = _scaled(0.5 * c.rod_length, motion.line)
-    pin = _scaled(c.crank, motion.radial)
-    rod_acceleration = _difference(_turning(pin, turn, rise), _turning(arm, line_1, line_2))
-    rod_force = _scaled(c.rod_mass, _difference(gravity, rod_acceleration))
+    barrel_force = scaled(c.barrel_mass, difference(gravity, turning(barrel, line_1, line_2)))
+    arm = scaled(0.5 * c.rod_length, motion.line)
+    rod_acceleration = difference(turning(scaled(c.crank, motion.radial), turn, rise), turning(arm, line_1, line_2))
+    rod_force = scaled(c.rod_mass, difference(gravity, rod_acceleration))
     inertia = (c.barrel_mass * c.barrel_length * c.barrel_length + c.rod_mass * c.rod_length * c.rod_length) / 12.0
-    about_a = cross(barrel, barrel_force) + cross(_difference(motion.span, arm), rod_force) - inertia * line_2
-    about_o = c.inertia * rise - cross(moment, gravity)
-    force = _difference(_scaled(about_a, pin), _scaled(about_o, motion.span))
-    force = _scaled(1.0 / cross(motion.span, pin), force)
-    carried = _difference(_turning(moment, turn, rise), _scaled(c.lever_mass, gravity))
-    on_rod = _difference(force, rod_force)
-    return dot(on_rod, motion.line), force, _difference(carried, force), _difference(on_rod, barrel_force)
+    return Bodies(
+        carried=difference(turning(moment, turn, rise), scaled(c.lever_mass, gravity)),
+        rod=rod_force,
+        barrel=barrel_force,
+        about_o=c.inertia * rise - cross(moment, gravity),
+        about_a=cross(barrel, barrel_force) + cross(difference(motion.span, arm), rod_force) - inertia * line_2,
+    )
 
 
 def lift(c: LeverNumbers) -> Any:
@@ -156,17 +187,19 @@ def _potential(c: LeverNumbers, angle: Any) -> Any:
     return -(c.gravity_x * moment_x + c.gravity_y * moment_y)
 
 
-def _turning(vector: Vector, speed: Any, rate: Any) -> Vector:
+def turning(vector: Vector, speed: Any, rate: Any) -> Vector:
     """Return the acceleration of the tip of a vector that turns with a body."""
     square = speed * speed
     return -vector[0] * square - vector[1] * rate, vector[0] * rate - vector[1] * square
 
 
-def _scaled(factor: Any, vector: Vector) -> Vector:
+def scaled(factor: Any, vector: Vector) -> Vector:
+    """Return a vector times a number."""
     return factor * vector[0], factor * vector[1]
 
 
-def _difference(first: Vector, second: Vector) -> Vector:
+def difference(first: Vector, second: Vector) -> Vector:
+    """Return the first vector less the second."""
     return first[0] - second[0], first[1] - second[1]
 
 

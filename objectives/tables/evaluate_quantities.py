@@ -107,7 +107,7 @@ def evaluated_as_array(
     chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
         if swing is not None:
-            require_of_swing(item.name, item, of_lever=mechanism.lever is not None)
+            require_of_swing(item.name, item, swing)
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
@@ -135,7 +135,7 @@ def evaluated_as_array(
 def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
-        return (lever_passes if swing.driver == "cylinder" else swings_without_dead_point)(mechanism, swing, designs)
+        return (lever_passes if swing.of_lever else swings_without_dead_point)(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))
@@ -143,7 +143,7 @@ def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
 
 def can_run_despite_friction(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it despite friction."""
-    if swing is None or swing.driver == "cylinder":
+    if swing is None or swing.of_lever:
         return can_move(mechanism, swing, designs)
     return can_swing_despite_friction(mechanism, swing, designs)
 

@@ -13,6 +13,7 @@ from ...model.errors import InputError
 from ...model.kinematics.negligible_offset import offset_without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.machine.arm import Arm
 from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing
@@ -41,6 +42,11 @@ def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
     if not isinstance(fact, SwingQuantity):
         return None
     if swing is None:
+        if isinstance(fact, LeverQuantity) and "cylinder" not in fact.moved_by:
+            return (
+                "needs a crank that turns a cylinder or an arm; got a crank with rod and slider; set [mechanism] "
+                'inversion = "turning cylinder", or leave it out'
+            )
         if isinstance(fact, LeverQuantity):
             return (
                 'needs a lever that swings; this crank rotates fully; set [mechanism] inversion = "turning cylinder" '
@@ -63,19 +69,28 @@ def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: S
 
 
 def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
-    """Raise `InputError` unless a cylinder drives a lever, and nothing else does."""
-    by_cylinder = swing is not None and swing.driver == "cylinder"
-    if (mechanism.lever is not None) == by_cylinder:
-        return
-    if by_cylinder:
+    """Raise `InputError` unless a lever has a motion of levers, and no other machine has one."""
+    of_lever = swing is not None and swing.of_lever
+    if (mechanism.lever is not None) != of_lever:
+        if of_lever:
+            raise InputError(
+                "a cylinder drives a lever; got one with a slider-crank; set [mechanism] inversion, or another driver"
+            )
+        got = "no motion" if swing is None else f"a swing that the {swing.driver} drives"
         raise InputError(
-            "a cylinder drives a lever; got one with a slider-crank; set [mechanism] inversion, or another driver"
+            f"a lever needs a swing that its cylinder drives, or the full turn CRANK_TURN; got {got}; set one of them"
         )
-    got = "a crank that rotates fully" if swing is None else f"a swing that the {swing.driver} drives"
-    raise InputError(
-        f'inversion = "turning cylinder" needs a swing of its lever; got {got}; add [motion] kind = "swing" with from '
-        "and to"
-    )
+    if mechanism.lever is None or swing is None:
+        return
+    if not swing.of_full_turn and mechanism.with_largest_variables.speed:
+        raise InputError(
+            "mechanism.speed: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave "
+            "it out, and give [motion] a law and a duration"
+        )
+    if not swing.of_full_turn and mechanism.lever.arm != Arm():
+        raise InputError(
+            "arm: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave it out"
+        )
 
 
 def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:
@@ -119,15 +134,16 @@ def require_loads(mechanism: Mechanism) -> None:
             )
 
 
-def require_of_swing(key: str, quantity: Quantity, *, of_lever: bool = False) -> None:
-    """Raise `InputError` for a quantity that needs a fully rotating crank."""
+def require_of_swing(key: str, quantity: Quantity, swing: Swing) -> None:
+    """Raise `InputError` for a quantity that needs a slider-crank whose crank rotates fully."""
     for leaf in leaves_of([quantity]):
         if leaf.turning:
-            swing_names = ", ".join(fact.name for fact in swing_facts() if isinstance(fact, LeverQuantity) == of_lever)
-            raise InputError(
-                f'{key}: {leaf.name} needs a crank that rotates fully; got [motion] kind = "swing"; use a quantity '
-                f"of a swing ({swing_names}), or leave it out"
-            )
+            facts = (fact for fact in swing_facts() if isinstance(fact, LeverQuantity) == swing.of_lever)
+            names = ", ".join(fact.name for fact in facts if not swing.of_full_turn or fact.unfit(swing) is None)
+            needed = 'a crank that rotates fully; got [motion] kind = "swing"; use a quantity of a swing'
+            if swing.of_full_turn:
+                needed = "a crank with rod and slider; got a lever; use a quantity of a lever's full turn"
+            raise InputError(f"{key}: {leaf.name} needs {needed} ({names}), or leave it out")
 
 
 def quantities_for_swing(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:

@@ -34,7 +34,7 @@ def why_no_swing(problem: Problem) -> str:
     """Return why no design within the ranges swings as required, in words; "" if one in a large sample does."""
     motion = problem.motion
     assert motion is not None
-    if motion.driver == "cylinder":
+    if motion.of_lever:
         return _unswung_lever(problem, motion)
     closing = passing = 0
     stuck: list[tuple[Mechanism, Array]] = []
@@ -88,6 +88,11 @@ def _unswung_lever(problem: Problem, motion: Swing) -> str:
         machine = problem.part(branch.variant).mechanism
         if can_move(machine, motion, _samples(problem, branch, index)).any():
             return ""
+    if motion.of_full_turn:
+        return (
+            "in no design within the ranges does the crank rotate fully: |offset| must be less than |frame - crank|, "
+            "the rod being the frame; change the ranges, or reduce the offset"
+        )
     start, end = (f"{180.0 / math.pi * angle:.6g}" for angle in (motion.start, motion.end))
     return (
         f"no design within the ranges swings the lever from {start} to {end} deg: the two pivots and the pin must "

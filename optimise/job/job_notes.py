@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from ...model.swing.swing import CRANK_TURN
 from ...objectives.count_text import counted
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
@@ -48,7 +49,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
             'masses are given without gravity, so nothing has weight; add gravity = "9.81 m/s^2", or gravity = 0'
         )
     notes += _pin_notes(job)
-    if job.swing() is not None:
+    if job.swing() not in (None, CRANK_TURN):
         notes += [
             f"mechanism.{key}: a swing is set by [motion] instead; leave out the {words}"
             for key, words in _SPEED_WORDS.items()

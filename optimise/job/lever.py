@@ -1,16 +1,28 @@
-"""The inversion with a cylinder that turns in a job file: [cylinder], and what [mechanism] and [motion] say of it."""
+"""The inversion with a cylinder that turns in a job file: [cylinder], [arm], its keys in [mechanism] and [motion]."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from ...model.errors import JobError
+from ...model.machine.arm import Arm
 from ...model.machine.lever import Lever
 from ...model.machine.lever_cylinder import Cylinder
-from ...model.swing.swing import Swing
+from ...model.swing.swing import CRANK_TURN, Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart
-from .value_types import Checked, Clearance, Mass, NonNegativeForce, PositiveLength, Pressure, optional
+from .value_types import (
+    Checked,
+    Clearance,
+    DrivingTorque,
+    Inertia,
+    Length,
+    Mass,
+    NonNegativeForce,
+    PositiveLength,
+    Pressure,
+    optional,
+)
 
 TURNING_CYLINDER = "turning cylinder"
 
@@ -31,13 +43,31 @@ class CylinderPart(Checked[Cylinder]):
     length_tolerance: Clearance = optional("of the length of the cylinder", "1 mm", default=0.0)
 
 
-def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None) -> Lever | None:
+class ArmPart(Checked[Arm]):
+    """What a crank that rotates fully turns about the cylinder's pivot: a slotted arm, or an oscillating cylinder."""
+
+    makes = Arm
+
+    mass: Mass = optional("of the arm", "12 kg", default=0.0)
+    centre: Length = optional("from the pivot to the arm's mass centre, along its line", "250 mm", default=0.0)
+    inertia: Inertia = optional("about its mass centre", "0.5 kg m^2", default=0.0)
+    torque: DrivingTorque = optional("on the arm, against its motion", "50 N m", default=0.0)
+    ram: PositiveLength | None = optional(
+        "from the pivot to a pin that slides in a ram, which moves at right angles to the line between both pivots",
+        "500 mm",
+    )
+    ram_mass: Mass = optional("of the ram", "30 kg", default=0.0)
+    ram_force: NonNegativeForce = optional("against the motion of the ram on its slow stroke", "2 kN", default=0.0)
+
+
+def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None, arm: ArmPart | None) -> Lever | None:
     """Return the lever that a job states; None for a slider-crank. Raises `JobError` for keys of the other machine."""
     if mechanism.inversion is None:
         stated = {
             "mechanism.frame_angle": mechanism.frame_angle,
             "mechanism.pin_angle": mechanism.pin_angle or None,
             "cylinder": cylinder,
+            "arm": arm,
         }
         for key, value in stated.items():
             if value is not None:
@@ -52,22 +82,18 @@ def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None) -> Lever |
             "lever's pivot to the cylinder's; add for example frame_angle = \"-60 deg\""
         )
     known = Cylinder() if cylinder is None else cylinder.build()
-    return Lever(frame_angle=mechanism.frame_angle, pin_angle=mechanism.pin_angle, cylinder=known)
+    driven = Arm() if arm is None else arm.build()
+    return Lever(frame_angle=mechanism.frame_angle, pin_angle=mechanism.pin_angle, cylinder=known, arm=driven)
 
 
 def swing_of(mechanism: MechanismPart, motion: MotionPart) -> Swing | None:
-    """Return the swing of a crank or lever; None for a crank that rotates fully. Raises `JobError`."""
+    """Return the swing of a crank or lever; None for a slider-crank whose crank rotates fully. Raises `JobError`."""
     swing = motion.build()
     if mechanism.inversion is None:
         return swing
-    if swing is None:
-        raise JobError(
-            f'motion: inversion = "{TURNING_CYLINDER}" needs a swing of its lever; got a crank that rotates fully; '
-            'add [motion] kind = "swing" with from and to'
-        )
     if "driver" in motion.model_fields_set:
         raise JobError(
-            f"motion.driver: the cylinder drives the lever; got {swing.driver}; leave it out, and give the tolerance "
+            f"motion.driver: the cylinder drives the lever; got {motion.driver}; leave it out, and give the tolerance "
             "of the cylinder as length_tolerance in [cylinder]"
         )
-    return replace(swing, driver="cylinder")
+    return CRANK_TURN if swing is None else replace(swing, driver="cylinder")

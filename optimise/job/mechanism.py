@@ -200,7 +200,7 @@ class MechanismPart(CrankSpeedPart):
 
     inversion: Literal["turning cylinder"] | None = optional(
         "turning cylinder: the rod is fixed as the frame, and a cylinder that turns about its end moves the crank, a "
-        "lever; default: a slider-crank",
+        "lever, or a crank that rotates fully moves the cylinder or an arm; default: a slider-crank",
         "turning cylinder",
     )
     frame_angle: Angle | None = optional(

@@ -20,7 +20,7 @@ from .constraints_and_objectives import ConstraintsPart, ObjectivesPart, Stated,
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
 from .drive import DrivePart
 from .friction_and_clearance import ClearancePart, FrictionPart
-from .lever import CylinderPart, lever_of, swing_of
+from .lever import ArmPart, CylinderPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
@@ -113,6 +113,10 @@ class Job(Part):
         'cylinder of inversion = "turning cylinder": its size, pressure, friction and masses',
         {"bore": "40 mm", "rod": "25 mm", "supply_pressure": "160 bar"},
     )
+    arm: ArmPart | None = optional(
+        'arm that the crank of inversion = "turning cylinder" turns about the cylinder\'s pivot: masses, torque, ram',
+        {"inertia": "0.5 kg m^2", "ram": "500 mm", "ram_force": "2 kN"},
+    )
     load: tuple[Load, ...] = optional(
         "loads on the slider along its line, or on the crank; several add up",
         [{"force": "200 N", "opposes": "outward stroke"}],
@@ -204,7 +208,7 @@ class Job(Part):
             branch=mechanism.branch,
             strength=None if self.sections is None else self.sections.strength(),
             start=self.motion.start,
-            lever=lever_of(mechanism, self.cylinder),
+            lever=lever_of(mechanism, self.cylinder, self.arm),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

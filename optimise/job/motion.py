@@ -293,7 +293,7 @@ def with_swing_margin(
     """Return constraints with a swing's margin. Raises JobError if both tables require one."""
     if margin is None:
         return constraints
-    of_lever = swing is not None and swing.driver == "cylinder"
+    of_lever = swing is not None and swing.of_lever
     name = (LEVER_TRANSMISSION_ANGLE if of_lever else SWING_TRANSMISSION_ANGLE).name
     constraint = next((item for item in constraints if item.quantity == name), None)
     if constraint is not None and constraint.lower is not None:

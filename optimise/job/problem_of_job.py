@@ -132,7 +132,7 @@ def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
     paths = job.variables.paths
     require_target(job.target_motion, job.objectives, job.constraints)
     chosen = {path for part in job.choice for option in part.option for path in option.paths}
-    if motion is not None:
+    if motion is not None and not motion.of_full_turn:
         require_constant_swing_speed({*paths, *chosen})
     chosen |= {path for path, stated_value in paths.items() if is_choice(stated_value)}
     require_only_start_varies({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})

@@ -11,6 +11,7 @@ from ...model.cycle.gas_cycle import compressor_may_deliver_nothing
 from ...objectives.gas import VOLUMETRIC_EFFICIENCY
 from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
 from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
+from ...objectives.lever_turn import ARM_TRANSMISSION_ANGLE
 from ...objectives.quantity import Quantity
 from ...objectives.robust.quantity import RobustQuantity
 from ...objectives.self_locking import SELF_LOCKING_MARGIN
@@ -24,6 +25,13 @@ from .restatement import restate
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
+_FLOORS_OF_LEVER = (
+    LEVER_TRANSMISSION_ANGLE,
+    ARM_TRANSMISSION_ANGLE,
+    CYLINDER_LENGTH_MARGIN,
+    PRESSURE_MARGIN,
+    BUCKLING_MARGIN,
+)
 Side = tuple[float, float, float]
 """One side of a requirement: 1 for an upper or -1 for a lower bound, the bound, and the scale of an excess."""
 
@@ -53,8 +61,9 @@ def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
 
 def _with_floors_of_lever(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
     """Return constraints with the floors of a lever, as far as its cylinder is known."""
-    for quantity in (LEVER_TRANSMISSION_ANGLE, CYLINDER_LENGTH_MARGIN, PRESSURE_MARGIN, BUCKLING_MARGIN):
-        if not quantity.undefined_because([problem.mechanism]):
+    for quantity in _FLOORS_OF_LEVER:
+        fits = problem.motion is None or quantity.unfit(problem.motion) is None
+        if fits and not quantity.undefined_because([problem.mechanism]):
             constraints = _with_floor(problem, constraints, quantity)
     return constraints
 

@@ -227,7 +227,7 @@ class Problem:
             reason = reason_undefined_for_swing(name, swing)
             if reason is not None:
                 raise InputError(f"{table}.{name}: {reason}")
-            require_of_swing(f"{table}.{name}", self.quantity(name), of_lever=swing.driver == "cylinder")
+            require_of_swing(f"{table}.{name}", self.quantity(name), swing)
 
     def _add_formulas(self) -> None:
         """Add the formulas that objectives and constraints name."""

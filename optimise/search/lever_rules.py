@@ -1,4 +1,4 @@
-"""Dimensions that give the cylinder of a lever its exact lengths at the ends of a swing, in closed form.
+"""Dimensions that give a lever's cylinder its exact lengths, or a crank's arm its swing or time ratio, in closed form.
 
 With the angles psi at both ends, L^2 + e^2 = r^2 + f^2 - 2 r f cos(psi) is quadratic in the lever r and the frame f.
 The least length is at the end with the greater cosine. Two requirements give both lengths, hence r f and r^2 + f^2.
@@ -19,11 +19,13 @@ from ...objectives.lever_geometry import (
     GREATEST_CYLINDER_LENGTH,
     LEAST_CYLINDER_LENGTH,
 )
+from ...objectives.lever_turn import ARM_SWING, ARM_TIME_RATIO
 from ..problem.problem import Problem
 from .elimination_rule import Rule
 
 _LEAST, _GREATEST = LEAST_CYLINDER_LENGTH.name, GREATEST_CYLINDER_LENGTH.name
 _TRAVEL, _RATIO = CYLINDER_TRAVEL.name, EXTENSION_RATIO.name
+_TIMES, _SWING = ARM_TIME_RATIO.name, ARM_SWING.name
 _ANGLES = ("lever.frame_angle", "lever.pin_angle", "start.angle")
 
 
@@ -81,17 +83,50 @@ class LeverRule(Rule):
         return np.where(is_first, first, last), np.where(is_first, last, first)
 
 
+@dataclass(frozen=True)
+class ArmRule(Rule):
+    """A rule of a crank that turns an arm: its swing a or time ratio Q, a = pi (Q - 1) / (Q + 1).
+
+    With m the lesser and M the greater of crank and frame, m^2 = sin(a/2)^2 (M^2 - e^2 / cos(a/2)^2). lesser: whether
+    the target is m.
+    """
+
+    lesser: bool = True
+
+    @property
+    def solutions(self) -> tuple[Rule, ...]:
+        """The rule for an arm that swings and, for a time ratio, that rotates."""
+        if self.origin == _SWING:
+            return (replace(self, lesser=self.target == "crank"),)
+        return tuple(replace(self, lesser=lesser) for lesser in (True, False))
+
+    def formula(self, link: Any, offset: Any) -> Any:
+        """Return the target for the other link and the offset."""
+        (wanted,) = self.values
+        half = 0.5 * (wanted if self.origin == _SWING else np.pi * (wanted - 1.0) / (wanted + 1.0))
+        sine, across = np.sin(half), offset / np.cos(half)
+        if self.lesser:
+            return sine * np.sqrt(link * link - across * across)
+        return np.sqrt(link * link / (sine * sine) + across * across)
+
+
 def lever_rules(problem: Problem, required: Mapping[str, float]) -> Iterator[Rule]:
     """Yield the rules for the equalities of a lever's swing. required: their values."""
     motion, lever = problem.motion, problem.mechanism.nominal.lever
     if motion is None or lever is None:
         return
-    varying = {item.sets: item.name for item in problem.mechanism.varying}
+    turn = (0.0, 0.0, 0.0, np.pi), False, ()
+    varying = {} if motion.of_full_turn else {item.sets: item.name for item in problem.mechanism.varying}
     if any(path in _ANGLES and ((path, 1.0),) not in varying for sets in varying for path, _ in sets):
         return  # an angle that is not a variable itself
     free = tuple(place for place, path in enumerate(_ANGLES) if ((path, 1.0),) in varying)
     names = tuple(varying[(_ANGLES[place], 1.0),] for place in free)
-    swing = ((lever.frame_angle, lever.pin_angle, motion.start, motion.end), motion.follows, free)
+    angles = lever.frame_angle, lever.pin_angle, motion.start, motion.end
+    swing = turn if motion.of_full_turn else (angles, motion.follows, free)
+    for origin in (_TIMES, _SWING):
+        if origin in required and motion.of_full_turn:
+            yield ArmRule(origin, "crank", ("rod", "offset"), (required[origin],))
+            yield ArmRule(origin, "rod", ("crank", "offset"), (required[origin],))
     for origin in (_LEAST, _GREATEST, _RATIO):
         if origin in required:
             values = (required[origin],)

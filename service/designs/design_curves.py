@@ -13,7 +13,7 @@ from ...model.cycle.crank_speed import turn_time
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
-from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
+from ...model.turning_cylinder.machine import crank_turn, lever_linkage, lever_machine, lever_swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import (
     POINTS,
@@ -154,8 +154,21 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
 
 def _lever_design_curves(design: StoredDesign, motion: Swing, count: int) -> DesignCurves:
     """Return the curves of a lever at even times, out and back: the same places and forces, but opposite speeds."""
-    linkage, swing = lever_linkage(design.mechanism, design.linkage, motion), lever_swing(design.mechanism, motion)
+    linkage = lever_linkage(design.mechanism, design.linkage, motion)
     machine, _ = lever_machine(design.mechanism, linkage, motion)
+    if motion.of_full_turn:
+        speed = design.mechanism.speed
+        angles = np.arange(count) * math.copysign(2.0 * np.pi / count, speed)
+        columns = crank_turn_columns(design.mechanism, linkage, angles)
+        least, greatest = machine.sizes.length_range
+        return DesignCurves(
+            0,
+            2.0 * np.pi / abs(speed) if speed else None,
+            None,
+            (1e3 * least, 1e3 * greatest),
+            [CurveColumn(key, title, unit, values.tolist()) for key, title, unit, values in columns],
+        )
+    swing = lever_swing(design.mechanism, linkage, motion)
     share = np.arange(count, dtype=np.float64) * (2.0 / count)
     columns = lever_columns(lever_curves(machine, swing, np.minimum(share, 2.0 - share)))
     way = np.where(share <= 1.0, 1.0, -1.0)
@@ -201,11 +214,42 @@ def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]
     return rows_of(time | {key: values.tolist() for key, _, _, values in lever_columns(found)})
 
 
+def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[tuple[str, str, str, Array]]:
+    """Return key, title, unit and metric values of the curves of a crank that turns an arm, at crank angles, rad."""
+    found, speed = crank_turn(mechanism, linkage, angles), mechanism.speed
+    columns = [
+        ("lever_angle_deg", "crank angle", "deg", np.degrees(angles)),
+        ("length_mm", "length along the arm", "mm", 1e3 * found.length),
+        ("cylinder_angle_deg", "arm angle", "deg", np.degrees(np.unwrap(np.arctan2(found.line[1], found.line[0])))),
+        ("arm_speed_ratio", "arm speed over crank speed", "", found.turn_1),
+        ("arm_acceleration_ratio", "arm acceleration over squared crank speed", "", found.turn_2),
+        ("torque_Nm", "torque on the crank", "N m", found.torque),
+    ]
+    if speed:
+        columns.append(("cylinder_speed_m_s", "speed along the arm", "m/s", speed * found.length_1))
+    if speed and not np.isnan(found.ram_1).any():
+        columns.append(("ram_speed_m_s", "speed of the ram", "m/s", speed * found.ram_1))
+    names = {"pin": "crank pin force", "pivot": "crank pivot force", "cylinder_pivot": "arm pivot force"}
+    for name, title in names.items():
+        forces = zip("xy", getattr(found, name), strict=True)
+        columns += [(f"{name}_{axis}_N", f"{title}, {axis}", "N", force) for axis, force in forces]
+    return columns
+
+
+def crank_turn_rows(mechanism: Mechanism, linkage: Linkage) -> list[dict[str, Any]]:
+    """Return a row for each crank angle over the full turn of a lever, metric; speeds and forces at the crank speed."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
+    return rows_of({key: values.tolist() for key, _, _, values in crank_turn_columns(mechanism, linkage, angles)})
+
+
 def design_csv(design: StoredDesign, system: System = "metric") -> str:
-    """Return the curves as CSV: those of `cycle_csv`, of both strokes of a swing, or of a lever's way."""
+    """Return the curves as CSV: those of `cycle_csv`, of both strokes of a swing, or of a lever's way or turn."""
     if design.part.motion is None:
         return cycle_csv(design.mechanism, design.linkage, system)
     if design.mechanism.lever is not None:
+        if design.part.motion.of_full_turn:
+            return curves_csv(convert_rows(crank_turn_rows(design.mechanism, design.linkage), system))
         machine, _ = lever_machine(design.mechanism, design.linkage, design.part.motion)
-        return curves_csv(convert_rows(lever_rows(machine, lever_swing(design.mechanism, design.part.motion)), system))
+        swing = lever_swing(design.mechanism, design.linkage, design.part.motion)
+        return curves_csv(convert_rows(lever_rows(machine, swing), system))
     return curves_csv(convert_rows(swing_rows(design.mechanism, design.linkage, design.part.motion), system))

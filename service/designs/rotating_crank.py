@@ -12,6 +12,11 @@ if TYPE_CHECKING:
 
 def require_rotating_crank(swing: Swing | None, subject: str) -> None:
     """Raise an error for a swinging crank. subject: analysis over a full revolution, the subject of the message."""
+    if swing is not None and swing.of_full_turn:
+        raise InputError(
+            f"{subject} needs a crank with rod and slider; the crank of this job turns a cylinder or an arm; see its "
+            "quantities and curves"
+        )
     if swing is not None:
         crank, command = ("lever", "lever") if swing.driver == "cylinder" else ("crank", "swing")
         raise InputError(

@@ -9,7 +9,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
-from ...model.turning_cylinder.machine import lever_machine, lever_swing
+from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
 from ...objectives.kinds import System, metric_unit_in
 from ..designs.toleranced import tolerances_of
 from . import layers as on
@@ -31,13 +31,13 @@ def lever_drawing(
 ) -> Drawing:
     """Return one lever with its cylinder at true scale, mm: the lever's pivot at (0, 0).
 
-    Pivots, pins, both ends of the swing and dimensions are exact. crank_angle: lever angle of the drawing, within the
-    swing, rad; half-way if None. name, design: as for `design_drawing.linkage_drawing`. Raises `InputError` for an
-    angle outside, and the errors of `lever_linkage`.
+    Pivots, pins, both ends of the swing and dimensions are exact. crank_angle: lever angle of the drawing, rad, within
+    the swing, or any in a full turn; half-way if None. name, design: as for `design_drawing.linkage_drawing`. Raises
+    `InputError` for an angle outside, and the errors of `lever_linkage`.
     """
     machine, _ = lever_machine(mechanism, linkage, swing)
-    placed = lever_swing(mechanism, swing)
-    machine.sizes.require_swing(placed.start, placed.end)
+    placed = lever_swing(mechanism, linkage, swing)
+    lever_linkage(mechanism, linkage, swing)
     angle, extent = _angle_in_swing(placed, crank_angle), lever_extent(machine, placed)
     size = max(extent[2] - extent[0], extent[3] - extent[1])
     tolerances = tolerances_of(mechanism, linkage)
@@ -50,6 +50,8 @@ def lever_drawing(
 def _angle_in_swing(swing: LeverSwing, angle: float | None) -> float:
     if angle is None:
         return 0.5 * (swing.start + swing.end)
+    if swing.of_full_turn:
+        return angle
     low, high = sorted((swing.start, swing.end))
     turned = angle + 2.0 * math.pi * math.ceil((low - angle) / (2.0 * math.pi) - 1e-9)
     if turned <= high + 1e-9:
@@ -79,6 +81,12 @@ def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, toleran
 def _notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: System) -> tuple[str, ...]:
     sizes, (unit, factor) = machine.sizes, metric_unit_in("mm", system)
     crank, frame, offset = (f"{1e3 * factor * size:.7g} {unit}" for size in (sizes.crank, sizes.frame, sizes.offset))
+    if swing.of_full_turn:
+        drawn = f"The crank rotates fully; drawn at {math.degrees(angle):.6g} deg, both ends of the fast stroke dashed."
+        return (
+            f"Crank {crank}, frame (rod) {frame} at {math.degrees(sizes.frame_angle):.6g} deg, offset {offset}.",
+            *(drawn, f"{TRUE_SCALE[system]}; pivots are exact.", "Widths of crank and arm are schematic."),
+        )
     lengths = (float(sizes.length(end)) for end in (swing.start, swing.end))
     first, last = (f"{1e3 * factor * length:.7g}" for length in lengths)
     start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))

@@ -29,7 +29,7 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
     shapes: list[Shape] = []
     for pivot in (0j, _pivot(machine)):
         shapes += pivot_bearing(_point(pivot), 0.05 * size, is_below=True)
-    first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in (swing.start, swing.end))
+    first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in _ends(swing))
     shapes.append(Arc(on.PATHS, (0.0, 0.0), _MM * machine.sizes.crank, first, last))
     for layer, end in ((on.START, swing.start), (on.END, swing.end)):
         shapes += _links((layer,) * 3, machine, swing, end)
@@ -45,30 +45,35 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
 
 def lever_extent(machine: LeverMachine, swing: LeverSwing) -> Extent:
     """Return left, bottom, right and top of the lever and its cylinder over the swing, widths included, mm."""
-    return extent_of_levers(LeverNumbers._make(np.atleast_1d(number) for number in numbers_of_machine(machine, swing)))
+    numbers = LeverNumbers._make(np.atleast_1d(number) for number in numbers_of_machine(machine, swing))
+    return extent_of_levers(numbers, of_full_turn=swing.of_full_turn)
 
 
 def extent_of_front(front: ParetoFront) -> Extent | None:
-    """Return left, bottom, right and top of all levers of a front over their swings, mm; None for other mechanisms."""
+    """Return left, bottom, right and top of all levers of a front over their motion, mm; None for other mechanisms."""
     found, variants = [], np.array(front.variants or [0] * len(front))
     for variant in dict.fromkeys(variants.tolist()):
         part, designs = front.problem.part(variant), front.dimensions[variants == variant]
         if part.mechanism.lever is None or part.motion is None:
             return None
-        found.append(extent_of_levers(lever_batch(part.mechanism, designs, part.motion, gradients=False)[0].plain))
+        numbers = lever_batch(part.mechanism, designs, part.motion, gradients=False)[0].plain
+        found.append(extent_of_levers(numbers, of_full_turn=part.motion.of_full_turn))
     if not found:
         return None
     left, bottom, right, top = zip(*found, strict=True)
     return min(left), min(bottom), max(right), max(top)
 
 
-def extent_of_levers(c: LeverNumbers) -> Extent:
-    """Return left, bottom, right and top of all levers (n,) with their cylinders over their swings, mm."""
+def extent_of_levers(c: LeverNumbers, *, of_full_turn: bool = False) -> Extent:
+    """Return left, bottom, right and top of all levers (n,) with their cylinders over their motion, mm."""
     share = np.linspace(0.0, 1.0, 91)[:, None]
-    turn = np.exp(1j * (c.start + (c.end - c.start) * share))
+    end = c.start + 2.0 * np.pi if of_full_turn else c.end
+    turn = np.exp(1j * (c.start + (end - c.start) * share))
     mass = np.where(c.lever_mass > 0.0, c.lever_mass, np.inf)
-    places = [0.0 * turn, c.frame * np.exp(1j * c.frame_angle) + 0.0 * turn]
-    places += [c.crank * np.exp(1j * c.pin_angle) * turn, (c.along + 1j * c.across) / mass * turn]
+    pivot, pin = c.frame * np.exp(1j * c.frame_angle), c.crank * np.exp(1j * c.pin_angle) * turn
+    places = [0.0 * turn, pivot + 0.0 * turn, pin, (c.along + 1j * c.across) / mass * turn]
+    if of_full_turn:  # the end of the slotted arm
+        places.append(pivot + (c.crank + c.frame) / _NECK * (pin - pivot) / np.abs(pin - pivot))
     every, edge = np.stack(places), 0.12 * np.maximum(c.crank, c.frame)
     x, y = every.real, every.imag
     low, high = (np.min(part - edge) for part in (x, y)), (np.max(part + edge) for part in (x, y))
@@ -82,6 +87,10 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
     motion = sizes.at(np.array([angle]))
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
+    if swing.of_full_turn:  # a slotted arm, of which the pin never leaves the slot
+        end = foot + sizes.length_range[1] / _NECK * line
+        slotted = _strip(layers[0], foot, end, _BARREL * size)
+        return [slotted, bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)]
     neck = foot + barrel_length(machine, swing) * line
     return [
         _strip(layers[1], neck, pin, _ROD * size),
@@ -92,6 +101,8 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
 
 def barrel_length(machine: LeverMachine, swing: LeverSwing) -> float:
     """Return the length of the drawn barrel, m."""
+    if swing.of_full_turn:
+        return _NECK * machine.sizes.length_range[0]
     return _NECK * min(float(machine.sizes.length(end)) for end in (swing.start, swing.end))
 
 
@@ -100,6 +111,11 @@ def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
     across = 0.5j * width * (end - start) / abs(end - start) / _MM
     corners = (start - across, end - across, end + across, start + across)
     return Outline(layer, tuple(_point(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))
+
+
+def _ends(swing: LeverSwing) -> tuple[float, float]:
+    """Return the first and the last lever angle, rad, over the whole motion."""
+    return (swing.start, swing.start + 2.0 * math.pi) if swing.of_full_turn else (swing.start, swing.end)
 
 
 def _size(machine: LeverMachine) -> float:

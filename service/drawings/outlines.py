@@ -68,7 +68,7 @@ def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Out
 
 
 def _outlines_of_lever(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Outlines:
-    placed = lever_swing(mechanism, swing)
+    placed = lever_swing(mechanism, linkage, swing)
     machine, _ = lever_machine(mechanism, lever_linkage(mechanism, linkage, swing), swing)
     sizes, body = machine.sizes, None
     if machine.lever.mass:

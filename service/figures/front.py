@@ -93,7 +93,7 @@ def datasheet_of(
     else:
         design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
     title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
-    if swing is not None and swing.driver == "cylinder":
+    if swing is not None and swing.of_lever:
         return lever_datasheet(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)
     if swing is not None:
         return swing_figure(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)

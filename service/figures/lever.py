@@ -12,12 +12,12 @@ from ...model.machine.lever_cylinder import Cylinder
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
-from ...model.turning_cylinder.machine import lever_machine, lever_swing
-from ...objectives.kinds import ANGLE, FORCE, LENGTH, SPEED, System
+from ...model.turning_cylinder.machine import crank_turn, lever_machine, lever_swing
+from ...objectives.kinds import ANGLE, FORCE, LENGTH, RATIO, SPEED, TORQUE, System
 from ...objectives.tables.swing_curves import POINTS
 from ..drawings.lever_parts import lever_extent, lever_shapes
 from ..render.blocks import Value, joined, words
-from .panel_figure import DASHED, Line, Panel, PanelFigure
+from .panel_figure import CRANK_ANGLE, DASHED, Line, Panel, PanelFigure
 from .swing import figure_below_machine
 
 _X = "lever angle, deg"
@@ -29,7 +29,10 @@ def lever_datasheet(
     """Return the lever at mid-swing with both ends dashed, above its curves."""
     assert mechanism.lever is not None
     machine, _ = lever_machine(mechanism, linkage, swing)
-    cylinder, placed = mechanism.lever.cylinder, lever_swing(mechanism, swing)
+    cylinder, placed = mechanism.lever.cylinder, lever_swing(mechanism, linkage, swing)
+    if placed.of_full_turn:
+        panels = _panels_of_turn(mechanism, linkage)
+        return _figure_of_lever(machine, placed, panels, system, title=title, subtitle=subtitle)
     return lever_figure(machine, placed, cylinder, system, title=title, subtitle=subtitle)
 
 
@@ -53,6 +56,24 @@ def lever_figure(
     ]
     if swing.duration is not None:
         panels.append(Panel("speed of the cylinder", _X, (Line("", degrees, found.speed),), SPEED))
+    return _figure_of_lever(machine, swing, panels, system, title=title, subtitle=subtitle)
+
+
+def _panels_of_turn(mechanism: Mechanism, linkage: Linkage) -> list[Panel]:
+    """Return torque on the crank, speed and acceleration of the arm and length along it over a turn of the crank."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 2 * POINTS + 1)
+    found, degrees = crank_turn(mechanism, linkage, angles), np.degrees(angles)
+    curves = (
+        *(("torque on the crank", found.torque, TORQUE), ("length along the arm", found.length, LENGTH)),
+        *(("speed of the arm over that of the crank", found.turn_1, RATIO),),
+        *(("acceleration of the arm over the crank's squared speed", found.turn_2, RATIO),),
+    )
+    return [Panel(name, CRANK_ANGLE, (Line("", degrees, curve),), kind, turns=True) for name, curve, kind in curves]
+
+
+def _figure_of_lever(
+    machine: LeverMachine, swing: LeverSwing, panels: list[Panel], system: System, *, title: str, subtitle: str
+) -> Figure:
     sizes = machine.sizes
     dimensions = words(
         "crank {crank}, frame {frame} at {angle}, offset {offset}",

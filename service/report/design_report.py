@@ -29,7 +29,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
     """Return the report on a design. created: time of the report, s since 1970; None for now."""
     when = time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime(created))
     motion, decision = subject.design.part.motion, decision_section(subject)
-    swing = None if motion is None or motion.driver == "cylinder" else SwingOfSubject(subject, motion)
+    swing = None if motion is None or motion.of_lever else SwingOfSubject(subject, motion)
     is_decided = subject.bookmark is not None and subject.bookmark.decided
     tolerances = None if motion is not None else tolerance_section(subject)
     if swing is not None:
@@ -45,7 +45,8 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
             search_section(subject, when),
             front_section(subject),
             design_section(subject),
-            *([] if motion is None else [lever_section(subject, motion) if swing is None else swing.section()]),
+            *([lever_section(subject, motion)] if motion is not None and motion.driver == "cylinder" else []),
+            *([] if swing is None else [swing.section()]),
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
             sensitivity_section(subject),

@@ -129,7 +129,7 @@ def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
 
 
 def _speed_lines(problem: Problem, mechanism: Mechanism) -> list[str]:
-    if problem.motion is not None:
+    if problem.motion is not None and not problem.motion.of_full_turn:
         return []
     if not mechanism.speed:
         return ["no crank speed: static"]
@@ -184,6 +184,8 @@ def _motion_lines(problem: Problem) -> list[str]:
     swing = problem.motion
     if swing is None:
         return []
+    if swing.of_full_turn:
+        return ["the crank rotates fully and turns the line from the second pivot"]
     factor, unit = (180.0 / math.pi, "deg") if swing.stated_for == "crank" else (1e3, "mm")
     start, end = (f"{factor * value:.6g}" for value in (swing.start, swing.end))
     ends = f"{swing.stated_for} swings from {start} to {end} {unit} and back"

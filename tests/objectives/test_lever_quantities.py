@@ -92,7 +92,7 @@ def test_quantities_are_those_of_dense_curves_in_both_directions() -> None:
     for _ in range(30):
         mechanism, swing, design = some_case(random)
         machine, errors = lever_machine(mechanism, Linkage(*design[0].tolist()), swing)
-        placed = lever_swing(mechanism, swing)
+        placed = lever_swing(mechanism, Linkage(*design[0].tolist()), swing)
         moving = lever_curves(machine, placed, share)
         rest = lever_curves(machine, replace(placed, law="slow", duration=None), np.array([0.0, 1.0]))
         push, length = (np.append(getattr(moving, of), getattr(rest, of)) for of in ("push", "length"))
@@ -223,7 +223,7 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
 @pytest.mark.parametrize(
     ("ask", "part"),
     [
-        (_evaluated(TIPPER, "stroke", None), "needs a swing of its lever; got a crank that rotates fully"),
+        (_evaluated(TIPPER, "stroke", None), "a lever needs a swing that its cylinder drives, or the full turn"),
         (_evaluated(TIPPER, "stroke", SLOW), "stroke needs a crank that rotates fully; .* use a quantity of a swing"),
         (_evaluated(TIPPER, "swing_angle", SLOW), "swing_angle: it needs a crank with rod and slider; got a lever"),
         (
@@ -238,7 +238,8 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
         ),
         (_evaluated(Mechanism(), "lever_work", None), "needs a lever that swings; this crank rotates fully"),
         (_evaluated(Mechanism(), "lever_work", SLOW), "a cylinder drives a lever; got one with a slider-crank"),
-        (lambda: replace(TIPPER, speed=3.0), "its cylinder drives it; got mechanism.speed; leave it out"),
+        (_evaluated(replace(TIPPER, speed=3.0), "lever_work", SLOW), "mechanism.speed: is for a crank that rotates"),
+        (lambda: replace(TIPPER, acceleration=3.0), "rod nor slider; got mechanism.acceleration; leave it out"),
         (
             lambda: replace(TIPPER, loads=(StrokeForce(outward=1.0, inward=1.0),), slider_mass=2.0),
             r"got mechanism.slider, \[\[load\]\]; leave it out",

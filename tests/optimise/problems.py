@@ -62,6 +62,16 @@ LEVER: dict[str, Any] = {
 }
 """Tables of a lever moved by a cylinder that turns."""
 
+SHAPER: dict[str, Any] = {
+    "name": "Shaper",
+    "mechanism": {"inversion": "turning cylinder", "frame_angle": "-90 deg", "speed": "60 rpm", "gravity": 9.81},
+    "arm": {"mass": "20 kg", "centre": "300 mm", "inertia": 1.2, "ram": "500 mm", "ram_mass": 40, "ram_force": "2 kN"},
+    "variables": {"crank": ["60 mm", "180 mm"], "rod": ["250 mm", "500 mm"], "offset": ["0 mm", "20 mm"]},
+    "objectives": {"arm_time_ratio": "maximise", "peak_crank_torque": "minimise"},
+    "optimiser": {"designs": 4, "samples": 64, "seed": 1},
+}
+"""Tables of a crank that rotates fully and turns an arm."""
+
 Ends = tuple[float, float] | float
 Bounds = tuple[float | None, float | None] | float
 

@@ -31,7 +31,7 @@ from slidercrank.optimise.job.sections_table import EXAMPLE as SECTIONS
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from tests.model.cases import with_example
-from tests.optimise.problems import LEVER
+from tests.optimise.problems import LEVER, SHAPER
 
 RUNS = Path(__file__).parents[2] / "runs"
 TURNING = Path(__file__).parents[1] / "data" / "turning_support.toml"
@@ -348,14 +348,15 @@ def test_the_examples_of_the_schema_are_valid() -> None:
     properties = job_schema()["properties"]
     for key, node in properties.items():
         for example in node["examples"]:
-            given = small(tolerances={"crank": "0.05 mm"}) if key != "cylinder" else deepcopy(LEVER)
+            others = {"cylinder": LEVER, "arm": SHAPER}
+            given = deepcopy(others[key]) if key in others else small(tolerances={"crank": "0.05 mm"})
             parse_job(given | {key: example})
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():
         for example in node["examples"]:
             given = {"tolerances": {"crank": "0.05 mm"}, "friction": {"guide": 0.1}, "target_motion": TARGET}
             fact = FACTS[name]
             if isinstance(fact, LeverQuantity):
-                parse_job(LEVER | {"objectives": {name: example}})
+                parse_job((LEVER if "cylinder" in fact.moved_by else SHAPER) | {"objectives": {name: example}})
             elif isinstance(fact, SwingQuantity):
                 ends = {"from": "20 deg", "to": "80 deg"}
                 if name == "swing_angle":

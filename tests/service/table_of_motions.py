@@ -90,6 +90,15 @@ def _lever(tables: dict[str, Any]) -> None:
     tables["objectives"] = dict.fromkeys(("peak_cylinder_force", "lever_angle_error"), "minimise")
 
 
+def _arm(tables: dict[str, Any]) -> None:
+    _lever(tables)
+    for key in ("motion", "tolerances"):
+        tables.pop(key)
+    tables["mechanism"]["speed"] = "300 rpm"
+    tables["arm"] = {"inertia": "0.01 kg m^2", "torque": "2 N m", "ram": "200 mm"}
+    tables["objectives"] = dict.fromkeys(("arm_swing", "peak_crank_torque"), "minimise")
+
+
 MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
     "one turn": lambda tables: None,
     "720 deg": lambda tables: tables["load"].append(_SECOND),
@@ -101,6 +110,7 @@ MOTIONS: dict[str, Callable[[dict[str, Any]], object]] = {
     "swing, driven crank": partial(_swing, driver="crank"),
     "swing, driven slider": partial(_swing, driver="slider"),
     "lever": _lever,
+    "arm, turned by the crank": _arm,
     "sections and pins": lambda tables: tables["variables"].update(
         {"mechanism.rod.width": ["28 mm", "32 mm"], "sections.pins.crank_pin": ["10 mm", "13 mm"]}
     ),
@@ -180,8 +190,10 @@ def _rule(name: str, reason: str) -> str:
 def _listed(names: list[str]) -> str:
     """Return names in words; all of a kind of motion as such."""
     levers = {name for name, fact in FACTS.items() if isinstance(fact, LeverQuantity)}
+    arms = {name for name, fact in FACTS.items() if isinstance(fact, LeverQuantity) and "cylinder" not in fact.moved_by}
     every = {
-        "all quantities of a lever": levers,
+        "all quantities of a lever": levers - arms,
+        "all quantities of an arm": arms,
         "all quantities of a swing": {name for name, fact in FACTS.items() if fact.table == "motion"} - levers,
         "all quantities of a crank that rotates fully": {name for name, fact in FACTS.items() if fact.turning}
         - {name for name, fact in FACTS.items() if fact.table},

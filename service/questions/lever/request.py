@@ -50,6 +50,11 @@ def lever_request(
     The crank is the lever, the rod the distance between the pivots. swing: swing of the job. Raises `InputError` for
     missing inputs and a swing with a dead point, `AssemblyError` if the linkage does not close.
     """
+    if swing is not None and swing.of_full_turn:
+        raise InputError(
+            "a lever is analysed over a swing that its cylinder drives; got a crank that rotates fully; see the "
+            "quantities and curves of its designs"
+        )
     labels = dict(words or {})
     lever_swing = _swing(mechanism, linkage, swing, labels, inputs)
     own = mechanism.lever

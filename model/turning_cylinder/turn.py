@@ -1,0 +1,130 @@
+"""A crank that rotates fully about O and turns the line from A to its pin B: shaper, Whitworth, oscillating cylinder.
+
+The crank turns at constant speed w. With psi from OA to OB, the direction gamma of the line turns by gamma' per angle
+of the crank and the length L along it changes by L'. Crank < frame: the line swings between two reversals, where it is
+a tangent of the pin's circle. Frame < crank: it rotates fully too. Then a stroke lasts from one crossing of the normal
+of OA to the other. Four angles cut the turn, where friction and loads change: psi = 0 and 180 deg, where L' changes its
+sign, and both ends of the fast stroke around psi = 0.
+
+The arm of the line carries an inertia, its weight, a torque against its motion, and a ram that its pin at the distance
+R moves by y = R sin(gamma - direction of OA), normal to OA. With their moment N about A on the line, F of the line on
+the crank at B follows from AB x F = N + (moment of the bodies) and from its part along the line, the friction of the
+cylinder. The torque on the crank is T = J w' - S x G - OB x F; T w is the rate of all energies and works.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .lever import Motion, motion_at
+from .states import LeverNumbers, Vector, bodies_at, cross, difference, dot, scaled, turning
+
+PIECES = 4
+"""Pieces of a turn: the second half of the fast stroke begins piece 1, the slow stroke piece 2."""
+_TURN = 2.0 * np.pi
+
+
+class TurnState(NamedTuple):
+    """State over a turn, SI and radians; primes are derivatives by the crank angle.
+
+    stretch: d(crank angle) / d(place). line: direction of the line. turn_1, turn_2: gamma' and gamma''. length_1: L'.
+    ram_1: y' of a ram; NaN without one. torque: on the crank, counter-clockwise. pin, pivot: forces on the crank at B
+    and O. cylinder_pivot: on arm and cylinder at A.
+    """
+
+    crank_angle: Any
+    stretch: Any
+    line: Vector
+    length: Any
+    turn_1: Any
+    turn_2: Any
+    length_1: Any
+    ram_1: Any
+    torque: Any
+    pin: Vector
+    pivot: Vector
+    cylinder_pivot: Vector
+
+
+def stroke_ends(c: Any) -> tuple[Any, Any]:
+    """Return the angles a and b, rad: the fast stroke lasts from psi = -a to psi = b, through 0.
+
+    c: `LeverNumbers` or `TurningCylinder`.
+    """
+    r, f, e = c.crank, c.frame, c.offset
+    swings = np.real(r) < np.real(f)
+    lesser, greater = np.where(swings, r, f), np.where(swings, f, r)
+    side = np.where(swings, e, -e)
+    return np.arccos((lesser - side) / greater), np.arccos((lesser + side) / greater)
+
+
+def turn_state(c: LeverNumbers, place: Any, probe: Any) -> TurnState:
+    """Return the state at places, whose whole part is the piece of the turn and whose fraction is even in the angle.
+
+    probe: places within the same piece. Place 0 and 4 are the start of the fast stroke.
+    """
+    before, after = stroke_ends(c)
+    piece = np.clip(np.floor(np.real(probe)), 0, PIECES - 1)
+    cuts = -before, 0.0 * before, after, np.pi + 0.0 * before, _TURN - before
+    low, high = (np.choose(piece.astype(int), [cut + 0.0 * place for cut in ends]) for ends in (cuts[:-1], cuts[1:]))
+    psi = low + (place - piece) * (high - low)
+    return _state(c, psi + c.frame_angle - c.pin_angle, piece, high - low)
+
+
+def place_of_angle(c: LeverNumbers, crank_angle: Any) -> Any:
+    """Return the places of crank angles, rad, for one crank with real numbers."""
+    before, after = stroke_ends(c)
+    cuts = [-before, 0.0, after, np.pi, _TURN - before]
+    psi = np.mod(crank_angle + c.pin_angle - c.frame_angle + before, _TURN) - before
+    return np.interp(psi, [float(cut) for cut in cuts], np.arange(PIECES + 1.0))
+
+
+def _state(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
+    motion = motion_at(c, angle)
+    way = np.where(np.real(c.speed) < 0.0, -1.0, 1.0)
+    bodies = bodies_at(c, angle, motion, c.speed, 0.0 * c.speed)
+    arm, ram, moment, ram_1 = _arm(c, motion, piece, way)
+    extends = np.where((piece == 1) | (piece == 2), way, -way)
+    along = dot(bodies.rod, motion.line) - c.rub * extends
+    across = (bodies.about_a + moment + c.offset * along) / motion.length
+    x, y = motion.line
+    force = along * x - across * y, along * y + across * x
+    torque = bodies.about_o - cross(scaled(c.crank, motion.radial), force)
+    on_cylinder = difference(difference(force, bodies.rod), bodies.barrel)
+    return TurnState(
+        crank_angle=angle,
+        stretch=stretch,
+        line=motion.line,
+        length=motion.length,
+        turn_1=motion.turn_1,
+        turn_2=motion.turn_2,
+        length_1=motion.length_1,
+        ram_1=ram_1,
+        torque=torque,
+        pin=force,
+        pivot=difference(bodies.carried, force),
+        cylinder_pivot=difference(difference(on_cylinder, arm), ram),
+    )
+
+
+def _arm(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector, Vector, Any, Any]:
+    """Return the weight of the arm less its m a, the force of the ram on the arm, their moment about A, and y'."""
+    gravity = c.gravity_x, c.gravity_y
+    line_1, line_2 = motion.turn_1 * c.speed, motion.turn_2 * c.speed * c.speed
+    centre = scaled(c.arm_moment, motion.line)
+    arm = difference(scaled(c.arm_mass, gravity), turning(centre, line_1, line_2))
+    rotates = np.real(c.frame) < np.real(c.crank)
+    fast = piece < 2
+    against = c.arm_torque * np.where(rotates | ~fast, way, -way)
+    frame = np.cos(c.frame_angle), np.sin(c.frame_angle)
+    normal = -frame[1], frame[0]
+    pin = scaled(c.ram, motion.line)
+    speed_1 = dot((-pin[1], pin[0]), normal)
+    acceleration = dot(turning(pin, line_1, line_2), normal)
+    load = np.where(fast, 0.0, -way * c.ram_force)
+    push = c.ram_mass * (acceleration - dot(gravity, normal)) + load
+    push, lever = np.where(np.isnan(np.real(c.ram)), 0.0, push), np.where(np.isnan(np.real(c.ram)), 0.0, speed_1)
+    moment = cross(centre, gravity) - c.arm_inertia * line_2 - against - push * lever
+    return arm, scaled(-push, normal), moment, speed_1 * motion.turn_1
