@@ -24,7 +24,6 @@ from ..arrays import Array, IntArray
 from ..errors import InputError
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks, require_full_rotation
-from ..linkage.linkage import Linkage
 from ..machine.cylinder_machines import cylinder_count
 from ..machine.drive import Drive
 from ..machine.mechanism import Mechanism
@@ -186,12 +185,12 @@ def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
     return _Numbers(*motion, **kept, resistance=resistance)
 
 
-def motor_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array, curve: MotorCurve) -> Array:
-    """Return a curve of the motor for one fully rotating linkage at crank angles (n,), rad, in the sense of rotation.
+def motor_curve(mechanism: Mechanism, design: Array, crank_angle: Array, curve: MotorCurve) -> Array:
+    """Return a curve of the motor for one design (1, 3 + k) at crank angles (n,), rad, in the sense of rotation.
 
-    NaN where friction locks the linkage. Raises `InputError` without a drive.
+    NaN where friction locks the design. Raises `InputError` without a drive.
     """
-    shaft = MotorShaft(mechanism, curve, np.array([[linkage.crank, linkage.rod, linkage.offset]]))
+    shaft = MotorShaft(mechanism, curve, require_full_rotation(design))
     if not shaft.drives[0]:
         return np.full(len(crank_angle), np.nan)
     row = np.zeros(len(crank_angle), dtype=np.int64)

@@ -122,7 +122,8 @@ def cycle_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike)
 def _motor_curves(mechanism: Mechanism, linkage: Linkage, theta: Array) -> list[Curve]:
     """Return the curves upstream of the gear; speed and power need a crank speed."""
     assert mechanism.drive is not None
-    torque = Curve("motor_torque", "motor torque", motor_curve(mechanism, linkage, theta, MotorCurve.TORQUE), TORQUE)
+    design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
+    torque = Curve("motor_torque", "motor torque", motor_curve(mechanism, design, theta, MotorCurve.TORQUE), TORQUE)
     if not mechanism.speed:
         return [torque]
     speed = mechanism.drive.gear_ratio * np.abs(crank_speed_and_acceleration(mechanism, theta)[0])

@@ -159,6 +159,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
 
 
 def _motor_torque_panel(mechanism: Mechanism, linkage: Linkage, theta: Array) -> Panel:
-    line = Line("motor torque", np.degrees(theta), motor_curve(mechanism, linkage, theta, MotorCurve.TORQUE))
-    rms = float(motor_averages(mechanism, lengths_row(linkage), MotorCurve.TORQUE, False).rms[0])
+    design = lengths_row(linkage)
+    line = Line("motor torque", np.degrees(theta), motor_curve(mechanism, design, theta, MotorCurve.TORQUE))
+    rms = float(motor_averages(mechanism, design, MotorCurve.TORQUE, False).rms[0])
     return crank_angle_panel("motor torque", line, kind=TORQUE, level=("RMS over time", rms))
