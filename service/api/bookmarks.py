@@ -81,7 +81,7 @@ class BookmarkedDesign(BaseModel):
     changed: whether its dimensions differ from those of its origin. numbers: query that gives the origin these
     dimensions: empty if they are equal, null if none can. decision: its decision in words, or empty. cells: every
     quantity and the slacks. broken: columns of unmet requirements. outside: columns of dimensions outside the job's
-    ranges.
+    ranges. faults: both in words.
     """
 
     number: int = Field(ge=1, examples=[1])
@@ -100,6 +100,7 @@ class BookmarkedDesign(BaseModel):
     cells: Cells
     broken: list[str]
     outside: list[str]
+    faults: list[str] = Field(examples=[["misses stroke"]])
 
 
 class HistoryEntryModel(BaseModel, from_attributes=True):
@@ -230,14 +231,16 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
     fields = {
         name: value for name, value in vars(bookmark).items() if name not in ("job", "variant", "dimensions", "history")
     }
+    faults = faults_in_words(varied.row, varied.broken, varied.outside)
     return BookmarkedDesign(
         **fields,
         changed=not same,
         numbers={} if same else _design_query(design) if origin and origin.variant == design.variant else None,
-        decision=bookmark.decision(faults_in_words(varied.row, varied.broken, varied.outside)),
+        decision=bookmark.decision(faults),
         cells=json_ready(varied.row),
         broken=varied.broken,
         outside=varied.outside,
+        faults=faults,
     )
 
 

@@ -233,11 +233,17 @@ class RequestedDesign:
     bookmarks: Sequence[Bookmark] = ()
 
     @property
+    def bookmark(self) -> Bookmark | None:
+        """Bookmark of the design, if it has one."""
+        variant, values = self.design.variant, self.design.values
+        return next((bookmark for bookmark in self.bookmarks if bookmark.is_of(variant, values)), None)
+
+    @property
     def words(self) -> str:
         """Name of the design in titles: that of its bookmark, or its number."""
-        variant, values = self.design.variant, self.design.values
-        names = (bookmark.name for bookmark in self.bookmarks if bookmark.is_of(variant, values))
-        return next(names, f"design {self.number}" + (", changed" if self.changed else ""))
+        if self.bookmark:
+            return self.bookmark.name
+        return f"design {self.number}" + (", changed" if self.changed else "")
 
     @property
     def stem(self) -> str:

@@ -11,7 +11,7 @@ from ...model.errors import InputError
 from ..designs.changed_design import design_with_numbers, hold_equalities, nearest_holding, variation_of
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
-from ..designs.judged_requirements import quantity_names, ranges_of, requirements_of, speed_rpm
+from ..designs.judged_requirements import faults_in_words, quantity_names, ranges_of, requirements_of, speed_rpm
 from ..designs.violations import violations_in_words, violations_of
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
@@ -47,12 +47,13 @@ class RequirementModel(BaseModel):
 class RequirementsModel(OfDesign):
     """Requirements of a job on a design, for the choices of the design.
 
-    name: name of the design: that of its bookmark, or its number. ranges: minimum and maximum of crank, rod, offset and
-    the extra variables, by column. speed_rpm: crank speed, positive counter-clockwise. names: names of quantities as in
-    job files, by column. tolerances: whether the machine has any.
+    name: name of the design: that of its bookmark, or its number. bookmark: number of its bookmark, if any. ranges:
+    minimum and maximum of crank, rod, offset and the extra variables, by column. speed_rpm: crank speed, positive
+    counter-clockwise. names: names of quantities as in job files, by column. tolerances: whether the machine has any.
     """
 
     name: str = Field(examples=["Round numbers", "design 3"])
+    bookmark: int | None = Field(examples=[1])
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
     requirements: list[RequirementModel]
     slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
@@ -83,20 +84,22 @@ class OtherLengths(BaseModel, extra="forbid", strict=True):
 
 
 class WhatIfModel(OfDesign):
-    """Design with other lengths, compared with its front. name: as in `RequirementsModel`.
+    """Design with other lengths, compared with its front. name, bookmark: as in `RequirementsModel`.
 
     design: every quantity and the slacks; undefined: why some of them have no value, by column. broken: columns of
-    unmet requirements. outside: columns of lengths outside their range. dominated_by: numbers of the front designs that
-    dominate this one; dominates: of those that it dominates; largest difference first, at most 20. violated,
-    violations: as for a design on the front. cycle: null if no curves were requested.
+    unmet requirements. outside: columns of lengths outside their range. faults: both in words. dominated_by: numbers of
+    the front designs that dominate this one; dominates: of those that it dominates; largest difference first, at most
+    20. violated, violations: as for a design on the front. cycle: null if no curves were requested.
     """
 
     name: str = Field(examples=["design 3, changed"])
+    bookmark: int | None = Field(examples=[None])
     columns: list[ColumnModel]
     design: Cells = Field(examples=[{"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8}])
     undefined: dict[str, str] = Field(examples=[{"position_error_mm": "a position error comes from tolerances"}])
     broken: list[str] = Field(examples=[["stroke_mm"]])
     outside: list[str] = Field(examples=[[]])
+    faults: list[str] = Field(examples=[["misses stroke"]])
     violated: Violated
     violations: Violations
     dominated_by: list[int] = Field(examples=[[12, 4]])
@@ -124,11 +127,13 @@ def show_curves(
 def show_requirements(stored_front: FrontDep, design: DesignNumber, store: StoreDep) -> RequirementsModel:
     """Return the ranges and constraints that apply to a design, including default minimum values."""
     stored = stored_front.design(design)
+    requested = requested_design(stored_front, design, None, bookmarks_of(store, stored_front.job.id))
     requirements = [RequirementModel(**vars(item), slack=item.slack_column) for item in requirements_of(stored.part)]
     return RequirementsModel(
         job=stored_front.job.id,
         number=design,
-        name=requested_design(stored_front, design, None, bookmarks_of(store, stored_front.job.id)).words,
+        name=requested.words,
+        bookmark=requested.bookmark and requested.bookmark.number,
         ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_of(stored.part)},
         requirements=requirements,
         slow_stroke=stored.part.slow_stroke,
@@ -158,15 +163,18 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     )
     cycle = cycle_model(stored, request.angles) if request.angles else None
     violated = violations_of(stored.mechanism, row)
+    requested = RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id))
     return WhatIfModel(
         job=stored_front.job.id,
         number=design,
-        name=RequestedDesign(stored_front, design, stored, True, bookmarks_of(store, stored_front.job.id)).words,
+        name=requested.words,
+        bookmark=requested.bookmark and requested.bookmark.number,
         columns=column_models(all_columns(changed.row)),
         design=json_ready(row),
         undefined=undefined,
         broken=changed.broken,
         outside=changed.outside,
+        faults=faults_in_words(row, changed.broken, changed.outside),
         violated=json_ready(violated),
         violations=violations_in_words(violated, row),
         dominated_by=[row + 1 for row in changed.dominated_by[:_MOST_NUMBERS]],

@@ -42,6 +42,7 @@ declare global {
     // A column that the page makes itself has no group.
     type Column = Omit<Schemas["ColumnModel"], "group" | "group_place"> & Partial<Schemas["ColumnModel"]>;
     type Columns = Schemas["ColumnsModel"];
+    type Bookmarks = Schemas["BookmarkList"];
     type Change = Schemas["ChangeModel"];
     type Certificate = Schemas["CertificateModel"];
     type Cycle = Schemas["CycleModel"];
@@ -52,6 +53,7 @@ declare global {
     type FrontPoints = Schemas["FrontPoints"];
     type FrontProgress = Schemas["FrontProgress"];
     type Function = Schemas["FunctionModel"];
+    type HistoryEntry = Schemas["HistoryEntryModel"];
     type Job = Schemas["JobStateModel"];
     type JobRow = Schemas["JobRow"];
     type JobPage = Schemas["JobPage"];

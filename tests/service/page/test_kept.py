@@ -52,12 +52,13 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     expect(rod).not_to_have_attribute("aria-invalid", "true")
     expect(page.locator(".verdict")).to_contain_text("Misses a requirement")
     expect(page.locator(".verdict")).to_contain_text("Outside the job: rod 650\xa0mm; must be")
-    page.get_by_text("Keep", exact=True).first.click()
-    page.locator(".keeping:visible").get_by_label("Name").fill("Long rod")
-    page.locator(".keeping:visible").get_by_label("Note").fill("from stock")
     page.get_by_role("button", name="Keep", exact=True).click()
-    expect(page.locator(".keep-or-search")).to_contain_text("“Long rod” is kept")
-    expect(page.get_by_text("Keep", exact=True).first).to_be_focused()  # keys go on from there
+    asking = page.get_by_role("dialog")
+    asking.get_by_label("Name of the design").fill("Long rod")
+    asking.get_by_label("Note").fill("from stock")
+    asking.get_by_role("button", name="Keep").click()
+    expect(page.locator(".standing")).to_contain_text("“Long rod” is kept")
+    expect(page.get_by_role("button", name="Add a note")).to_be_focused()  # keys go on from there
     expect(page.locator("h1")).to_contain_text("Long rod")
     page.get_by_role("link", name="beside the front").click()
     line = page.locator(".kept tbody tr")
@@ -66,9 +67,11 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     page.get_by_role("button", name="Star of Long rod").press("Enter")
     expect(page.get_by_role("button", name="Star of Long rod")).to_have_attribute("aria-pressed", "true")
     expect(page.get_by_role("button", name="Star of Long rod")).to_be_focused()
-    page.get_by_label("Why, or why not, Long rod").fill("the rod is in stock")
-    page.get_by_label("Why, or why not, Long rod").press("Tab")
-    page.get_by_label("Choose Long rod").check()
+    page.get_by_role("button", name="Decide for Long rod").click()
+    expect(asking.locator(".bad").first).to_have_text("Misses stroke; outside the job: rod.")
+    asking.get_by_label("Reason").fill("the rod is in stock")
+    require_accessible(page)
+    asking.get_by_role("button", name="Decide nonetheless").click()
     expect(page.locator(".decision")).to_contain_text("Decided: Long rod (the rod is in stock); misses stroke")
     (one,) = httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]
     told = (one["name"], one["note"], one["star"], one["decided"], one["reason"], one["outside"])
@@ -79,8 +82,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     expect(line.locator("[data-key=time_ratio]")).to_have_css("display", "flex")  # a line of its own, with its title
     require_accessible(page)
     page.set_viewport_size({"width": 1280, "height": 900})
-    reason = page.get_by_label("Why, or why not, Long rod")
-    assert reason.evaluate("node => node.scrollHeight <= node.clientHeight + 1"), "all of the reason is in sight"
+    expect(line).to_contain_text("✓ Decided the rod is in stock")
     assert told == ("Long rod", "from stock", True, True, "the rod is in stock", ["rod_mm"])
     for key in ("time_ratio", "least_transmission_angle_deg", "crank_mm", "rod_mm", "offset_mm"):
         assert float(str(line.locator(f"[data-key={key}]").get_attribute("data-value"))) == one["cells"][key]
@@ -95,26 +97,51 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     expect(page.locator("#what-if-rod_mm")).to_have_value("650", timeout=30_000)
 
 
-def test_a_note_that_is_typed_outlives_what_others_do_meanwhile(opened: tuple[Page, str, str], solved: Solved) -> None:
+def test_notes_and_decisions_of_two_people_stay(opened: tuple[Page, str, str], solved: Solved) -> None:
     page, address, api = opened
     page.goto(f"{address}/#/help")
-    kept = [httpx.post(f"{api}/kept", json={"design": n, "name": f"Typed {n}"}, timeout=60.0).json() for n in (4, 5)]
+    first, second = (
+        httpx.post(f"{api}/kept", json={"design": n, "name": f"Typed {n}"}, timeout=60.0).json()["number"]
+        for n in (4, 5)
+    )
     page.goto(f"{address}/#/jobs/{solved.number}")
-    note = page.get_by_label("Note on Typed 4")
-    note.press_sequentially("stiff, but", timeout=30_000)
-    httpx.patch(f"{api}/kept/{kept[1]['number']}", json={"star": True}, timeout=60.0).raise_for_status()
+    page.get_by_role("button", name="Note on Typed 4").click(timeout=30_000)
+    asking = page.get_by_role("dialog", name="Note on Typed 4")
+    asking.get_by_label("Note", exact=True).press_sequentially("stiff, but")
+    for number, change in ((first, {"note": "in stock"}), (second, {"decided": True, "reason": "light"})):
+        httpx.patch(f"{api}/kept/{number}", json={**change, "author": "Anna"}, timeout=60.0).raise_for_status()
     with page.expect_response("**/kept") as looked:
         page.evaluate("window.dispatchEvent(new Event('focus'))")
     looked.value.finished()
-    note.press_sequentially(" heavy")
-    expect(note).to_have_value("stiff, but heavy")
-    note.press("Tab")
-    expect(page.get_by_role("button", name="Star of Typed 5")).to_have_attribute("aria-pressed", "true")
-    expect(note).to_have_value("stiff, but heavy")
-    notes = {one["name"]: one["note"] for one in httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]}
-    assert notes["Typed 4"] == "stiff, but heavy"
-    for one in kept:
-        httpx.delete(f"{api}/kept/{one['number']}", timeout=60.0).raise_for_status()
+    asking.get_by_label("Note", exact=True).press_sequentially(" heavy")
+    asking.get_by_label("Your name").fill("Ben")
+    asking.get_by_role("button", name="Save").click()
+    line = page.locator(".kept tr", has_text="Typed 4")
+    expect(line.locator("li")).to_contain_text([re.compile("in stock.*Anna"), re.compile("stiff, but heavy.*Ben")])
+    expect(page.get_by_role("button", name="Note on Typed 4")).to_be_focused()
+    page.get_by_role("button", name="Decide for Typed 4").click()
+    asking = page.get_by_role("dialog", name="Decide for Typed 4?")
+    expect(asking.locator(".warning")).to_contain_text("replaces the decision for Typed 5 (light), Anna")
+    asking.get_by_label("Reason").fill("stiff")
+    expect(asking.get_by_label("Your name")).to_have_value("Ben")
+    asking.get_by_role("button", name="Replace the decision").click()
+    expect(page.locator(".decision")).to_contain_text("Decided: Typed 4 (stiff), Ben, just now")
+    page.get_by_role("link", name="Typed 4", exact=True).click()
+    standing = page.locator(".standing")
+    expect(standing).to_contain_text("✓ Decided (stiff), Ben", timeout=30_000)
+    expect(standing.locator("li")).to_have_count(2)
+    page.get_by_role("button", name="Withdraw").click()
+    page.get_by_role("dialog").get_by_role("button", name="Withdraw").click()
+    expect(standing).to_contain_text("“Typed 4” is kept")
+    page.get_by_role("link", name="beside the front").click()
+    page.get_by_role("button", name="Drop Typed 4").click(timeout=30_000)
+    page.get_by_role("dialog", name="Drop Typed 4?").get_by_role("button", name="Drop").click()
+    expect(line).to_have_count(0)
+    page.get_by_text("History (").click()
+    entries = page.locator(".kept details li")
+    expect(entries.first).to_contain_text("Typed 4 dropped")
+    expect(entries).to_contain_text(["Decision for Typed 4 withdrawn", "Decided for Typed 4: stiff"])
+    httpx.delete(f"{api}/kept/{second}", timeout=60.0).raise_for_status()
 
 
 @pytest.mark.slow
@@ -139,4 +166,5 @@ def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, st
     assert (low, high) == pytest.approx((0.9 * rod, 1.1 * rod))
     page.go_back()
     page.get_by_role("button", name="Drop Design 2").click()
+    page.get_by_role("dialog").get_by_role("button", name="Drop").click()
     expect(page.locator(".kept tbody tr")).to_have_count(before)

@@ -128,9 +128,9 @@ def test_numbers_of_a_wished_design_that_is_kept(opened: tuple[Page, str, str], 
     assert {key: float(value) for key, value in reached} == {
         one["quantity"]: one["reached"] for one in wished["objectives"]
     }
-    answer.get_by_text("Keep", exact=True).first.click()
-    answer.locator(".keeping:visible").get_by_label("Name").fill("Wished")
     answer.get_by_role("button", name="Keep", exact=True).click()
+    page.get_by_label("Name of the design").fill("Wished")
+    page.get_by_role("dialog").get_by_role("button", name="Keep").click()
     line = page.locator(".kept tbody tr")
     expect(line).to_contain_text("Wished", timeout=30_000)
     (kept,) = httpx.get(f"{api}/kept", timeout=60.0).json()["designs"]

@@ -1,67 +1,225 @@
-/** Choose a design, keep it, or search near it. */
+/** Decide for a design, keep it with a note, or search near it; and what people decided and noted so far. */
 
+import { ago } from "../jobs/times.js";
 import { go, link } from "../lib/address.js";
-import { post } from "../lib/api.js";
-import { fill, first, formOf, h } from "../lib/dom.js";
-import { menu } from "../lib/menu.js";
+import { get, patch, post } from "../lib/api.js";
+import { askFirst } from "../lib/dialog.js";
+import { fill, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
-import { sentenceOf } from "../lib/refusals.js";
+import { capital } from "../lib/words.js";
+
+/** @typedef {Pick<Api.Bookmarks, "designs" | "history">} List */
+
+/** @param {string} name @param {string} label @param {Dom.Attributes<HTMLInputElement>} attributes */
+const field = (name, label, attributes) =>
+  h("label", {}, label, h("input", { type: "text", autocomplete: "off", name, ...attributes }));
+
+/** Ask a person, who may give a name for the history. @param {Parameters<typeof askFirst>[0]} question */
+export function askPerson({ content, act, ...question }) {
+  const author = field("author", "Your name, for the history", {
+    value: localStorage.getItem("author") ?? "",
+    maxlength: 100,
+  });
+  askFirst({
+    ...question,
+    content: [content, author],
+    act: (values) => {
+      localStorage.setItem("author", values.author);
+      return act(values);
+    },
+  });
+}
+
+/** Return who changed something, and when. @param {Api.HistoryEntry | undefined} entry */
+const byWhom = (entry) => entry && [entry.author && `${entry.author}, `, ago(entry.at)];
+
+/** Return the design that is decided for, and its decision in the history. @param {List} list */
+function decisionOf({ designs, history }) {
+  const decided = designs.find((one) => one.decided);
+  const entry = history.findLast(
+    ({ bookmark, action }) => bookmark === decided?.number && action === "decided",
+  );
+  return { decided, entry };
+}
+
+/** Return reason, author and time of the decision. @param {List} list @param {boolean} reason whether with the reason */
+export function decisionText(list, reason = true) {
+  const { decided, entry } = decisionOf(list);
+  return [reason && decided?.reason && ` (${decided.reason})`, entry && [", ", byWhom(entry)]];
+}
+
+/** Return the entries of a history as a list. @param {Api.HistoryEntry[]} entries @param {(entry: Api.HistoryEntry) => string} words */
+export function historyList(entries, words) {
+  return (
+    entries.length > 0 &&
+    h(
+      "ul",
+      { class: "history" },
+      entries.map((entry) =>
+        h("li", {}, words(entry), h("span", { class: "quiet" }, " · ", byWhom(entry))),
+      ),
+    )
+  );
+}
+
+/** Return the notes on a bookmark. @param {List} list @param {number} number */
+export function notesOn({ history }, number) {
+  const notes = history.filter(
+    ({ bookmark, action, text }) => bookmark === number && action === "note" && text,
+  );
+  return historyList(notes, ({ text }) => text);
+}
+
+/** Return the view of a kept design; null where more than its numbers is other than in the design that it began as. @param {string | number} job @param {Api.Kept} one */
+export function hrefOf(job, { design, numbers }) {
+  const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
+  const query = /** @type {Record<string, number>} */ ({ ...numbers });
+  return design && numbers ? link(["jobs", job, "designs", design], { ...query, value }) : null;
+}
 
 /**
- * Return the node. design: of the front, that it began as; dimensions(): its cells, null for the design itself; kept(bookmark): it is.
- * lengths(): that a search begins near to.
+ * Ask for name and reason of a decision, or for name and note. known: bookmark of the design; title: its name without one; faults: what it
+ * misses; send(body): to the service.
+ * @param {{ deciding: boolean, list: List, known: Api.Kept | undefined, title: string, faults: string[], send: (body: object) => unknown }} options
+ */
+export function askRemarks({ deciding, list, known, title, faults, send }) {
+  const { decided } = decisionOf(list);
+  const other = decided !== known ? decided : null;
+  const name = known?.name ?? title;
+  const [decideWords, keepWords] = [
+    other ? "Replace the decision" : faults.length ? "Decide nonetheless" : "Decide",
+    known ? "Save" : "Keep",
+  ];
+  askPerson({
+    title: deciding ? `Decide for ${name}?` : known ? `Note on ${name}` : `Keep ${name}?`,
+    content: [
+      deciding &&
+        other &&
+        h(
+          "p",
+          { class: "warning" },
+          "This replaces the decision for ",
+          h("strong", {}, other.name),
+          decisionText(list),
+          ".",
+        ),
+      deciding && faults.length > 0 && h("p", { class: "bad" }, `${capital(faults.join("; "))}.`),
+      field("name", "Name of the design", { value: name, maxlength: 200 }),
+      field(deciding ? "reason" : "note", deciding ? "Reason" : "Note", {
+        value: (deciding && known?.reason) || "",
+        maxlength: 4000,
+      }),
+    ],
+    yes: deciding ? decideWords : keepWords,
+    act: (values) => {
+      const said = Object.entries(values).map(([key, text]) => [key, text.trim() || undefined]);
+      return send({ ...Object.fromEntries(said), decided: deciding || undefined });
+    },
+  });
+}
+
+/** Ask whether a decision is withdrawn; done(): it is. @param {string | number} job @param {Api.Kept} one @param {() => unknown} done */
+export function withdraw(job, { name, number }, done) {
+  askPerson({
+    title: `Withdraw the decision for ${name}?`,
+    content: h("p", {}, "The design stays kept, and its reason stays in the history."),
+    yes: "Withdraw",
+    act: async ({ author }) => {
+      await patch(`jobs/${job}/kept/${number}`, { decided: false, author });
+      await done();
+    },
+  });
+}
+
+/**
+ * Return {node, show(shown)}: buttons and standing of a design. design: of the front, that it began as; dimensions(): its cells, null for the design itself;
+ * lengths(): that a search begins near to; kept(bookmark): it is. shown: number of its bookmark, null without; its name without one; what it misses.
  * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
  */
 export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
-  const status = h("span", { class: "quiet", role: "status" });
-  /** @param {string} verb @param {"reason" | "note"} key @param {string} label */
-  const part = (verb, key, label) => {
-    const [name, words] = [200, 4000].map((maxlength) =>
-      h("input", { type: "text", maxlength, autocomplete: "off" }),
-    );
-    const decided = key === "reason";
-    const button = h("button", { class: decided ? "primary" : null }, verb);
-    /** Keep the design, and say where it is. */
-    const keep = async () => {
-      const bookmark = await post(`jobs/${job}/kept`, {
-        design,
-        dimensions: dimensions() ?? {},
-        name: name.value.trim(),
-        [key]: words.value.trim(),
-        decided,
-      });
-      fill(
-        status,
-        `${bookmark.decision || `“${bookmark.name}” is kept`}; see it `,
-        h("a", { href: link(["jobs", job]) }, "beside the front"),
-        ".",
-      );
-      kept(bookmark);
-      node.open = false;
-      first(node, "summary")?.focus();
-    };
-    const form = formOf(
-      () => attempt(keep, (problem) => (status.textContent = sentenceOf(problem)), button),
-      h("label", {}, "Name", name),
-      h("label", {}, label, words),
-      button,
-    );
-    const node = menu(
-      decided ? "Choose this design" : verb,
-      h("div", { class: "chooser-list panel at-left keeping" }, form),
-    );
-    return node;
+  const standing = h("div", { class: "standing", role: "status" });
+  /** @type {List} */
+  let list = { designs: [], history: [] };
+  let shown = {
+    number: /** @type {number | null} */ (null),
+    title: "",
+    faults: /** @type {string[]} */ ([]),
   };
-  const deciding = part("Choose", "reason", "Because");
-  first(deciding, "summary")?.classList.add("primary");
-  return h(
-    "div",
-    { class: "row keep-or-search" },
-    deciding,
-    part("Keep", "note", "Note"),
-    searchButton(job, lengths, { title: "Search near it" }),
-    status,
-  );
+  const known = () => list.designs.find(({ number }) => number === shown.number);
+  const load = async () => {
+    list = await get(`jobs/${job}/kept`);
+    draw();
+  };
+  /** @param {object} body */
+  const send = async (body) => {
+    const bookmark = await post(`jobs/${job}/kept`, {
+      design,
+      dimensions: dimensions() ?? {},
+      ...body,
+    });
+    shown.number = bookmark.number;
+    kept(bookmark);
+    await load();
+  };
+  const [deciding, noting] = [true, false].map((isDecision) => {
+    const open = async () => {
+      await load();
+      askRemarks({ deciding: isDecision, list, known: known(), ...shown, send });
+    };
+    return h("button", {
+      type: "button",
+      onclick: ({ currentTarget }) => attempt(open, sayProblem, currentTarget),
+    });
+  });
+  function draw() {
+    const one = known();
+    const { decided } = decisionOf(list);
+    const href = decided && hrefOf(job, decided);
+    deciding.textContent = one?.decided ? "Change the reason" : "Decide for this design";
+    deciding.classList.toggle("primary", !one?.decided);
+    noting.textContent = one ? "Add a note" : "Keep";
+    const beside = h("a", { href: link(["jobs", job]) }, "beside the front");
+    fill(
+      standing,
+      one?.decided && [
+        h("strong", { class: "good" }, "✓ Decided"),
+        decisionText(list),
+        "; see it ",
+        beside,
+        ". ",
+        h("button", { type: "button", onclick: () => withdraw(job, one, load) }, "Withdraw"),
+      ],
+      one && !one.decided && [`“${one.name}” is kept; see it `, beside, ". "],
+      decided &&
+        decided !== one && [
+          "The decision is for ",
+          href ? h("a", { href }, decided.name) : decided.name,
+          decisionText(list),
+          ".",
+        ],
+      one && notesOn(list, one.number),
+    );
+  }
+  attempt(load);
+  return {
+    node: h(
+      "div",
+      { class: "keep-or-search" },
+      h(
+        "div",
+        { class: "row" },
+        deciding,
+        noting,
+        searchButton(job, lengths, { title: "Search near it" }),
+      ),
+      standing,
+    ),
+    /** @param {typeof shown} now */
+    show(now) {
+      shown = now;
+      draw();
+    },
+  };
 }
 
 /**

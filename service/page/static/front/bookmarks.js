@@ -1,11 +1,19 @@
 /** Kept designs of a run: names, notes, stars, the decision and its reason, shared by everyone with access. */
 
-import { link } from "../lib/address.js";
 import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
 import { apiSystem, text, unitOf } from "../lib/numbers.js";
-import { searchButton } from "../design/bookmark_form.js";
+import {
+  askPerson,
+  askRemarks,
+  decisionText,
+  historyList,
+  hrefOf,
+  notesOn,
+  searchButton,
+  withdraw,
+} from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { headed } from "./columns.js";
 import { LENGTHS } from "./linkages.js";
@@ -14,6 +22,14 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 /** @import { Explorer } from "./explorer.js" */
 
 const EVERY = 5_000; // ms between polls for others' changes
+/** Entries of the history in words. @type {Record<Api.HistoryEntry["action"], (entry: Api.HistoryEntry) => string>} */
+const ACTIONS = {
+  note: ({ name, text: note }) => `Note on ${name}: ${note}`,
+  reason: ({ name, text: reason }) => `${name}: ${reason}`,
+  decided: ({ name, text: reason }) => `Decided for ${name}${reason && `: ${reason}`}`,
+  withdrawn: ({ name }) => `Decision for ${name} withdrawn`,
+  deleted: ({ name }) => `${name} dropped`,
+};
 
 /** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer, at whose head the decision is. @param {Explorer} explorer */
 export function bookmarksPanel(explorer) {
@@ -40,19 +56,19 @@ export function bookmarksPanel(explorer) {
   const stars = h("label", {}, only, " only with a star");
   const csv = h("a", { download: "" }, "Kept designs as CSV");
   const file = h("li", {}, csv);
+  const past = h("details", {});
   const place = h(
     "section",
     { class: "panel kept", "aria-labelledby": "kept-title" },
     h("div", { class: "row spread" }, h("h2", { id: "kept-title" }, "Kept designs"), stars, add),
     none,
     table,
+    past,
   );
-  /** @type {Api.Kept[]} */
-  let designs = [];
+  /** @type {Pick<Api.Bookmarks, "designs" | "history">} */
+  let list = { designs: [], history: [] };
   let loaded = false; // whether the service has answered
   let turn = 0; // of the latest question
-  let typing = false; // a note or a reason, which is not sent yet
-  let late = false; // drawing waits until that is
 
   /** Ask for the kept designs. refuse(problem): of a failure. */
   async function ask(refuse = sayProblem) {
@@ -61,31 +77,18 @@ export function bookmarksPanel(explorer) {
       const before = marks().length;
       const answer = await get(`jobs/${job.id}/kept`, {}, explorer.signal);
       if (request !== turn) return;
-      if (loaded && JSON.stringify(answer.designs) === JSON.stringify(designs)) return;
+      if (loaded && JSON.stringify(answer) === JSON.stringify(list)) return;
       loaded = true;
-      designs = answer.designs;
+      list = answer;
       drawTable();
       if (before || marks().length) explorer.update("all"); // otherwise text typed at the axes stays
     }, refuse);
   }
 
-  /** @param {number} number @param {Partial<Api.Kept>} changes */
+  /** Change a kept design. @param {number} number @param {object} changes */
   async function change(number, changes) {
-    await attempt(
-      () => patch(`jobs/${job.id}/kept/${number}`, changes),
-      (problem) => {
-        sayProblem(problem);
-        if (changes.decided) drawTable(); // the mark is where it was; what was typed stays, to be sent again
-      },
-    );
+    await patch(`jobs/${job.id}/kept/${number}`, changes);
     await ask();
-  }
-
-  /** Send what was typed; nothing if it is unchanged. @param {number} [number] @param {Partial<Api.Kept>} [changes] */
-  function sent(number, changes) {
-    typing = false;
-    if (number !== undefined && changes) change(number, changes);
-    else if (late) drawTable();
   }
 
   async function keepTicked() {
@@ -94,27 +97,48 @@ export function bookmarksPanel(explorer) {
     await ask();
   }
 
-  /** @param {Api.Kept} one */
-  async function drop({ number }) {
-    await attempt(() => remove(`jobs/${job.id}/kept/${number}`));
-    await ask();
+  /** Drop a kept design; ask first if somebody would miss it. @param {Api.Kept} one */
+  function drop({ number, name, decided, star }) {
+    /** @param {{ author?: string }} values */
+    const act = async ({ author = "" }) => {
+      await remove(`jobs/${job.id}/kept/${number}?author=${encodeURIComponent(author)}`);
+      await ask();
+    };
+    if (!star && !list.history.some(({ bookmark }) => bookmark === number))
+      return attempt(() => act({}));
+    askPerson({
+      title: `Drop ${name}?`,
+      content: [
+        decided &&
+          h("p", { class: "warning" }, "It is the decided design; the run would be undecided."),
+        h("p", {}, "Its notes and reasons stay in the history."),
+      ],
+      yes: "Drop",
+      act,
+      danger: true,
+    });
   }
 
-  /** Return the view of a kept design; null where more than its numbers is other than in the design that it began as. @param {Api.Kept} one */
-  function hrefOf({ design, numbers }) {
-    const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
-    const query = /** @type {Record<string, number>} */ ({ ...numbers });
-    return design && numbers
-      ? link(["jobs", job.id, "designs", design], { ...query, value })
-      : null;
-  }
+  /** Ask for name and reason, or name and note, with what others did meanwhile. @param {Api.Kept} one @param {boolean} deciding @param {HTMLElement} button */
+  const remark = (one, deciding, button) =>
+    attempt(
+      async () => {
+        await ask();
+        const known = list.designs.find(({ number }) => number === one.number);
+        const { name: title, faults, number } = known ?? one;
+        askRemarks({ deciding, list, known, title, faults, send: (body) => change(number, body) });
+      },
+      sayProblem,
+      button,
+    );
 
   /** Show the decision at the head of the run, with its report. @param {Api.Kept | undefined} one */
   function showDecision(one) {
-    const href = one && hrefOf(one);
+    const href = one && hrefOf(job.id, one);
     fill(
       decision,
       one && h("strong", {}, href ? h("a", { href }, one.decision) : one.decision),
+      one && h("span", { class: "quiet" }, decisionText(list, false)),
       one &&
         href && [
           " ",
@@ -138,20 +162,19 @@ export function bookmarksPanel(explorer) {
   /** @param {Api.Kept} one */
   function line(one) {
     const { number, name, cells } = one;
-    const href = hrefOf(one);
-    /** @param {"note" | "reason"} key @param {string} label @param {string} placeholder */
-    const words = (key, label, placeholder) =>
-      h("textarea", {
-        rows: 1,
-        maxlength: 4000,
-        value: one[key],
-        placeholder,
-        "aria-label": `${label} ${name}`,
-        "data-act": `${key}-${number}`,
-        oninput: () => (typing = true),
-        onchange: ({ currentTarget }) => sent(number, { [key]: currentTarget.value }),
-        onblur: () => sent(),
-      });
+    const href = hrefOf(job.id, one);
+    /** @param {string} title @param {string} label @param {string} act @param {(button: HTMLElement) => unknown} does */
+    const button = (title, label, act, does) =>
+      h(
+        "button",
+        {
+          type: "button",
+          "aria-label": `${label} ${name}`,
+          "data-act": `${act}-${number}`,
+          onclick: ({ currentTarget }) => does(currentTarget),
+        },
+        title,
+      );
     return h(
       "tr",
       { class: one.decided ? "decided" : null },
@@ -166,7 +189,7 @@ export function bookmarksPanel(explorer) {
             "aria-pressed": String(one.star),
             "aria-label": `Star of ${name}`,
             "data-act": `star-${number}`,
-            onclick: () => change(number, { star: !one.star }),
+            onclick: () => attempt(() => change(number, { star: !one.star })),
           },
           one.star ? "★" : "☆",
         ),
@@ -188,8 +211,9 @@ export function bookmarksPanel(explorer) {
           ]),
           ` ${unitOf("mm")}`,
         ),
-        one.outside.length > 0 && h("div", { class: "at-limit" }, "outside the job"),
-        one.broken.length > 0 && h("div", { class: "bad" }, "misses a requirement"),
+        one.faults.map((fault) =>
+          h("div", { class: one.broken.length ? "bad" : "at-limit" }, fault),
+        ),
       ),
       data.objectives.map((objective) => {
         const { column, unit } = objective;
@@ -199,42 +223,32 @@ export function bookmarksPanel(explorer) {
       }),
       h(
         "td",
-        { "data-title": "decided" },
-        h("input", {
-          type: "radio",
-          name: "decided",
-          checked: one.decided,
-          "aria-label": `Choose ${name}`,
-          "data-act": `decided-${number}`,
-          onchange: () => change(number, { decided: true }),
-        }),
-      ),
-      h(
-        "td",
         { class: "words" },
-        words("reason", "Why, or why not,", "why, or why not"),
-        words("note", "Note on", "note"),
+        one.decided && h("strong", { class: "good" }, "✓ Decided "),
+        one.reason,
+        notesOn(list, number),
       ),
       h(
         "td",
-        {},
+        { class: "acting" },
+        one.decided
+          ? button("Withdraw", "Withdraw the decision for", "decide", () =>
+              withdraw(job.id, one, ask),
+            )
+          : button("Decide", "Decide for", "decide", (node) => remark(one, true, node)),
+        button("Note", "Note on", "note", (node) => remark(one, false, node)),
         searchButton(`${job.id}`, () => lengthsOf(cells), {
           title: "Search near",
           name: `Search near ${name}`,
           act: `near-${number}`,
         }),
-        h(
-          "button",
-          { type: "button", "aria-label": `Drop ${name}`, onclick: () => drop(one) },
-          "Drop",
-        ),
+        button("Drop", "Drop", "drop", () => drop(one)),
       ),
     );
   }
 
   function drawTable() {
-    late = typing;
-    if (late) return; // the field would be another one, without what stands in it
+    const { designs, history } = list;
     const focusedAct = focused(place)?.dataset.act;
     const listed = only.checked ? designs.filter(({ star }) => star) : designs;
     none.hidden = !loaded || designs.length > 0;
@@ -248,17 +262,22 @@ export function bookmarksPanel(explorer) {
       unseen("Star"),
       "design",
       ...data.objectives.map(headed),
-      "decided",
-      "reason and note",
-      unseen("Search near, drop"),
+      "decision and notes",
+      unseen("Decide, note, search near, drop"),
     ];
     fill(
       table,
       tableOf(
         "Kept designs",
-        headsOf(heads, (n) => n > 1 && n < heads.length - 3),
+        headsOf(heads, (n) => n > 1 && n < heads.length - 2),
         listed.map(line),
       ),
+    );
+    past.hidden = history.length === 0;
+    fill(
+      past,
+      h("summary", {}, `History (${history.length})`),
+      historyList(history.toReversed(), (entry) => ACTIONS[entry.action](entry)),
     );
     if (focusedAct) first(place, `[data-act="${CSS.escape(focusedAct)}"]`)?.focus();
   }
@@ -281,7 +300,7 @@ export function bookmarksPanel(explorer) {
 
   /** Return the kept designs outside the front, for the charts. */
   const marks = () =>
-    designs
+    list.designs
       .filter(({ changed, star }) => changed && (star || !only.checked))
       .map(({ cells, name }) => ({ cells, name }));
   drawTable();

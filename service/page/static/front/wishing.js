@@ -282,6 +282,14 @@ export function wishingPanel(explorer) {
     const { design: wished } = answered;
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);
+    const remarks = bookmarkForm({
+      job: `${job.id}`,
+      design: near,
+      dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])),
+      kept: () => explorer.kept?.ask(),
+      lengths: () => lengthsOf(wished),
+    });
+    remarks.show({ number: null, title: `Wished, near design ${near}`, faults: [] });
     fill(
       answer,
       sentence,
@@ -290,15 +298,9 @@ export function wishingPanel(explorer) {
         "div",
         { class: "row" },
         way
-          ? h("a", { class: "button primary", href: way }, "Open the resulting design")
+          ? h("a", { class: "button", href: way }, "Open the resulting design")
           : h("span", { class: "quiet" }, "More than the lengths changed; all values are shown."),
-        bookmarkForm({
-          job: `${job.id}`,
-          design: near,
-          dimensions: () => Object.fromEntries(free.map((key) => [key, wished[key] ?? 0])),
-          kept: () => explorer.kept?.ask(),
-          lengths: () => lengthsOf(wished),
-        }),
+        remarks.node,
       ),
       h(
         "details",

@@ -2,9 +2,10 @@
 
 import { post, remove, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
+import { askFirst } from "../lib/dialog.js";
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
-import { say, sayProblem } from "../lib/notices.js";
+import { attempt, say, sayProblem } from "../lib/notices.js";
 import { ENDED } from "./states.js";
 
 /**
@@ -24,47 +25,38 @@ export function actions(job, changed, { primary = false } = {}) {
         "data-act": path,
         "aria-label": `${label} ${runName}`,
         onclick: (event) =>
-          run(event.currentTarget, async () => {
+          run(async () => {
             const now = await post(`jobs/${job.id}/${path}`);
             say(sentence);
             changed(now);
-          }),
+          }, event.currentTarget),
       },
       label,
     );
-  /** @param {{ currentTarget: HTMLButtonElement }} event */
-  const gone = async (event) => {
-    const button = event.currentTarget;
-    if (
-      !(await confirmed(
-        `Delete run ${job.id}?`,
-        `“${job.name}” and all its results will be deleted permanently.`,
-        "Delete",
-      ))
-    ) {
-      button.closest("details")?.querySelector("summary")?.focus();
-      return;
-    }
-    await run(button, async () => {
-      await remove(`jobs/${job.id}`);
-      say(`Run ${job.id} was deleted.`);
-      changed(null);
+  const gone = () =>
+    askFirst({
+      title: `Delete run ${job.id}?`,
+      content: h("p", {}, `“${job.name}” and all its results will be deleted permanently.`),
+      yes: "Delete",
+      danger: true,
+      act: () =>
+        run(async () => {
+          await remove(`jobs/${job.id}`);
+          say(`Run ${job.id} was deleted.`);
+          changed(null);
+        }),
     });
-  };
-  /** @param {HTMLButtonElement} button @param {() => Promise<void>} doing */
-  const run = async (button, doing) => {
-    button.disabled = true;
-    try {
-      await doing();
-    } catch (problem) {
-      if (statusOf(problem) === 404) {
+  /** @param {() => Promise<void>} doing @param {HTMLElement} [button] */
+  const run = (doing, button) =>
+    attempt(
+      doing,
+      (problem) => {
+        if (statusOf(problem) !== 404) return sayProblem(problem);
         say(`Run ${job.id} no longer exists: somebody deleted it.`);
         changed(null);
-      } else sayProblem(problem);
-    } finally {
-      button.disabled = false;
-    }
-  };
+      },
+      button,
+    );
   const ended = ENDED.includes(job.state);
   return [
     !ended &&
@@ -104,33 +96,4 @@ export function actions(job, changed, { primary = false } = {}) {
         { name: `More for ${runName}`, act: "more" },
       ),
   ].filter(Boolean);
-}
-
-/**
- * Ask for confirmation; the promise gives the answer.
- * @param {string} question @param {string} consequence @param {string} yes @returns {Promise<boolean>}
- */
-function confirmed(question, consequence, yes) {
-  return new Promise((answer) => {
-    const dialog = h(
-      "dialog",
-      {
-        "aria-labelledby": "question",
-        onclose: () => {
-          dialog.remove();
-          answer(dialog.returnValue === "yes");
-        },
-      },
-      h("h2", { id: "question" }, question),
-      h("p", {}, consequence),
-      h(
-        "form",
-        { method: "dialog", class: "row" },
-        h("button", { value: "no", autofocus: true }, "Keep it"),
-        h("button", { value: "yes", class: "danger" }, yes),
-      ),
-    );
-    document.body.append(dialog);
-    dialog.showModal();
-  });
 }

@@ -106,12 +106,13 @@ export async function show(place, { parts, query, signal }) {
     ].map((name) => [name, h("section", { class: name })]),
   );
   const files = exportMenu(job, number);
-  let own = requirements.name; // of the design itself
-  /** Show the name of the displayed design. */
+  /** Show the name of the displayed design, and the decision on it. */
   const rename = () => {
-    const name = capital(changed?.name ?? own);
-    named.textContent = name === `Design ${number}` ? name : `${name} · ${number}`;
+    const { name, bookmark } = changed ?? requirements;
+    const title = capital(name);
+    named.textContent = title === `Design ${number}` ? title : `${title} · ${number}`;
     undo.hidden = changed === null;
+    remarks.show({ number: bookmark, title, faults: changed?.faults ?? [] });
   };
   const [ofPlace, ofWay] = Array.from({ length: 2 }, () =>
     h(
@@ -120,26 +121,21 @@ export async function show(place, { parts, query, signal }) {
       `For design ${number} itself, without the change:`,
     ),
   );
+  const remarks = bookmarkForm({
+    job,
+    design: number,
+    dimensions: () => sliders.dimensions(),
+    lengths: () => sliders.lengths(),
+    kept: ({ name, number: bookmark }) => {
+      Object.assign(changed ?? requirements, { name, bookmark });
+      rename();
+    },
+  });
   const strip = h("div", { class: "panel row strip", role: "group", "aria-label": "Motion" });
   fill(
     place,
     designHead(shared),
-    h(
-      "div",
-      { class: "row taking" },
-      bookmarkForm({
-        job,
-        design: number,
-        dimensions: () => sliders.dimensions(),
-        lengths: () => sliders.lengths(),
-        kept: ({ name }) => {
-          if (changed) changed.name = name;
-          else own = name;
-          rename();
-        },
-      }),
-      files.node,
-    ),
+    h("div", { class: "row taking" }, remarks.node, files.node),
     h(
       "div",
       { class: "design-columns" },
