@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.figures.style import save
+from slidercrank.service.figures.style import save_png
 
 PAGE = Path(__file__).parents[1] / "docs" / "gallery.md"
 
@@ -43,7 +43,7 @@ def draw(machine: Machine, folder: Path) -> None:
     """Write the picture of a machine."""
     numbers = [float(number) for number in machine.knee]
     design = [*(1e-3 * length for length in numbers[:3]), *numbers[3:]]
-    save(parse_job(machine.job).analyse(design).plot(), folder / machine.picture)
+    save_png(parse_job(machine.job).analyse(design).plot(), folder / machine.picture)
 
 
 def drawers() -> dict[str, partial[None]]:

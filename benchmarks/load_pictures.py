@@ -14,7 +14,7 @@ import numpy as np
 
 import slidercrank as sc
 from slidercrank.optimise.job import parse_job, with_files
-from slidercrank.service.figures.style import BLUE, INK, SMALL, VERMILION, add_axes, new_figure, save, style_axes
+from slidercrank.service.figures.style import BLUE, INK, SMALL, VERMILION, add_axes, new_figure, save_png, style_axes
 
 DOCS = Path(__file__).parents[1] / "docs"
 _STROKE, _ROD, _OFFSET = 0.15, 0.22, -0.04  # m
@@ -91,7 +91,7 @@ def _draw(example: Example, file: Path) -> None:
     axes.legend(
         fontsize=SMALL, frameon=False, ncols=2, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderaxespad=0.0
     )
-    save(figure, file)
+    save_png(figure, file)
 
 
 def _blocks(page: str, kind: str) -> list[str]:

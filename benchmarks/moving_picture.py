@@ -22,7 +22,7 @@ from slidercrank.service.drawings.linkage_shapes import (
     moving_shapes,
     pin_positions,
 )
-from slidercrank.service.figures.painting import paint_shapes, show_rectangle
+from slidercrank.service.figures.shape_painting import paint_shapes, show_rectangle
 from slidercrank.service.figures.style import (
     INK,
     TEXT,

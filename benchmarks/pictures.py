@@ -25,10 +25,10 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.drawings.design_drawing import linkage_drawing
-from slidercrank.service.figures.front import draw_front
-from slidercrank.service.figures.painting import drawing_figure
-from slidercrank.service.figures.panels import save_figure
-from slidercrank.service.figures.style import save
+from slidercrank.service.figures.front_figures import write_front_figures
+from slidercrank.service.figures.panel_drawing import save_figure
+from slidercrank.service.figures.shape_painting import drawing_figure
+from slidercrank.service.figures.style import save_png
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.cylinders import analysis as cylinders
 from slidercrank.service.questions.indicator import analysis as indicator
@@ -63,7 +63,7 @@ def knee(name: str, folder: Path) -> None:
     """Draw the branch of the knee of a shipped job."""
     with tempfile.TemporaryDirectory() as place:
         front = solve(load_job(_JOB.with_name(f"{name}.toml")))
-        (file,) = (file for file in draw_front(front, Path(place)) if file.stem == "knee")
+        (file,) = (file for file in write_front_figures(front, Path(place)) if file.stem == "knee")
         shutil.copyfile(file, folder / f"{name}_knee.png")
 
 
@@ -91,7 +91,7 @@ def sealer(folder: Path) -> None:
     crank, rod, offset = (1e-3 * float(length) for length in lengths.groups())
     linkage = Linkage(crank, rod, offset)
     drawn = linkage_drawing(parse_job(tomllib.loads(job)).mechanism, linkage, name="Carton sealer", design="design 1")
-    save(drawing_figure(drawn), folder / "sealer.png")
+    save_png(drawing_figure(drawn), folder / "sealer.png")
 
 
 def page(folder: Path) -> None:

@@ -29,7 +29,7 @@ from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.schema import jobs
-from slidercrank.service.store.serialisation import cells_of, summary_of, text_of
+from slidercrank.service.store.serialisation import cells_json, compact_json, summary_of
 
 from .report import Row, machine, show
 
@@ -153,11 +153,11 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     record = found.record()
     del record["designs"]
     record["columns"] = list(found.designs[0])
-    stated, result, summary = text_of(tables), text_of(record), text_of(summary_of(found))
+    stated, result, summary = compact_json(tables), compact_json(record), compact_json(summary_of(found))
     told = asdict(Progress("polishing", 10, 10, 50_000, 900, 0.5, 9.0))
     columns = [wanted.column for wanted in found.objectives]
     points = [[row[column] for column in columns] for row in found.designs[:64]]
-    progress = text_of({**told, "front": {"columns": columns, "points": points}})
+    progress = compact_json({**told, "front": {"columns": columns, "points": points}})
     rows = []
     for number in range(1, runs + 1):
         state = chance.choice(_STATES) if number < runs else "done"
@@ -187,7 +187,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     if connection.dialect.name == "postgresql":  # whose next number is counted apart
         connection.exec_driver_sql(f"SELECT setval(pg_get_serial_sequence('jobs', 'id'), {runs})")
     connection.exec_driver_sql("CREATE TEMPORARY TABLE front (number INTEGER, cells TEXT)")
-    cells = [{"number": number, "cells": cells_of(row)} for number, row in enumerate(found.designs)]
+    cells = [{"number": number, "cells": cells_json(row)} for number, row in enumerate(found.designs)]
     connection.execute(text("INSERT INTO front VALUES (:number, :cells)"), cells)
     connection.exec_driver_sql(
         "INSERT INTO designs (job, number, cells) SELECT jobs.id, front.number, front.cells FROM jobs CROSS JOIN front "
@@ -205,7 +205,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
             "SELECT jobs.id, counted.number, jobs.started + counted.number, 'progress', :told "
             "FROM jobs CROSS JOIN counted"
         ),
-        {"events": _EVENTS, "told": text_of(told)},
+        {"events": _EVENTS, "told": compact_json(told)},
     )
     for name, content in (("job.json", json_text(tables)), ("versions.json", json.dumps({"slidercrank": "0.1.0"}))):
         connection.execute(

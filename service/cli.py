@@ -25,11 +25,11 @@ import typer
 from typer.core import TyperGroup
 
 from ..model.errors import InfeasibleError, InputWarning, OutputLost, SlidercrankError
-from .commands.ending import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, print_infeasible_as_json
-from .resources.disk import full_places_text, is_full
+from .commands.exit_and_interruption import FAULT, INTERRUPTED, NOTHING_FEASIBLE, WRONG_INPUT, print_infeasible_as_json
+from .resources.disk import full_places_text, is_disk_full
 from .text.options import typer_command
 from .text.screen import print_message, print_output
-from .text.streams import give_up_output, guard_streams
+from .text.standard_streams import give_up_output, guard_streams
 
 _DEBUG = "SLIDERCRANK_DEBUG"
 _SHORT = ("can't start new thread", "failed to map segment", "Cannot allocate memory", "cannot allocate memory")
@@ -49,7 +49,7 @@ _MODULES = {"watch": "submit"}
 _MODULES |= dict.fromkeys(("inverse", "swing", "lever", "allocate", "balance", "law", "sections"), "question_commands")
 _MODULES |= dict.fromkeys(("like", "round", "certify", "compare", "sweep"), "front_or_job_commands")
 _MODULES |= dict.fromkeys(("check", "schema", "quantities"), "job_files")
-_MODULES |= dict.fromkeys(("front", "export", "report"), "designs_of_run")
+_MODULES |= dict.fromkeys(("front", "export", "report"), "front_export_report")
 _MODULES |= dict.fromkeys(("serve", "worker", "mcp"), "serving")
 _MODULES |= dict.fromkeys(("jobs", "cancel", "resume", "delete"), "queue")
 """Modules of commands that are not named after their module."""
@@ -94,7 +94,7 @@ class Commands(TyperGroup):
             if _is_resource_shortage(error):
                 print_message(_MORE_MEMORY)
                 raise typer.Exit(WRONG_INPUT) from None
-            if isinstance(error, OSError) and is_full(error):
+            if isinstance(error, OSError) and is_disk_full(error):
                 print_message(f"slidercrank: Disk full: {full_places_text(error)}; free some space")
                 raise typer.Exit(WRONG_INPUT) from None
             print_message(
@@ -177,7 +177,7 @@ app = typer.Typer(
 )
 
 
-def _version(show: bool) -> None:
+def _show_version(show: bool) -> None:
     if show:
         from importlib.metadata import PackageNotFoundError, version
 
@@ -192,7 +192,7 @@ def _version(show: bool) -> None:
 @app.callback()
 def slidercrank(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version.")
     ] = False,
 ) -> None:
     """Size offset slider-crank mechanisms: from requirements to the Pareto front of designs."""

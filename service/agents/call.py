@@ -64,10 +64,10 @@ class Call:
 
         Raises `InputError` for a folder outside `runs`, or for links that lead outside.
         """
-        self._require_inside(self.runs / name, name)
+        self._require_inside_runs(self.runs / name, name)
         folder = find_run(name, self.runs)
         for path in (folder, *folder.rglob("*")):
-            self._require_inside(path, name)
+            self._require_inside_runs(path, name)
         return folder
 
     def load_run(self, name: str) -> tuple[Path, Result]:
@@ -78,7 +78,7 @@ class Call:
         folder = self.run_folder(name)
         return folder, read_run(folder, "optimise with resume =")
 
-    def _require_inside(self, path: Path, name: str) -> None:
+    def _require_inside_runs(self, path: Path, name: str) -> None:
         try:
             is_inside = len(name) <= _LONGEST and path.resolve().is_relative_to(self.runs.resolve())
         except (OSError, ValueError, RuntimeError):  # not a file name, or a loop of links
@@ -128,7 +128,7 @@ class Call:
             yield store
 
 
-def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
+def tables_with_files(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
     """Return the tables of a job with the contents of its files inserted.
 
     job: tables, TOML text, or the name of an included job.
@@ -148,7 +148,7 @@ def tables_of(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
     return with_files(tables, files)
 
 
-def text_of(show: Callable[[Console], None]) -> str:
+def printed_text(show: Callable[[Console], None]) -> str:
     """Return the output of a function that writes to a console, as plain text."""
     from rich.console import Console
 

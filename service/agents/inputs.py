@@ -17,8 +17,8 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.job.model import Job as JobModel
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import SUBJECTS
-from ..designs.choice_options import require_single_choice
 from ..designs.columns import find_column
+from ..designs.design_selection_options import require_single_choice
 from ..designs.stored_designs import front_of, stored_design
 from ..presets.jobs import shipped_jobs
 from ..questions.compare.runs import ComparedRun, compared_run
@@ -34,7 +34,7 @@ from ..questions.discovery import (
 from ..questions.inputs import read_inputs
 from ..text.options import Dimensions, Rows, Units
 from ..text.tables import ROWS
-from .call import Call, Job, tables_of
+from .call import Call, Job, tables_with_files
 
 _TABLES = ", ".join(f"{name} ({field.description})" for name, field in JobModel.model_fields.items())
 _TOPIC_WORDS = [f"{name} ({topic.shows})" for name, topic in TOPICS.items()]
@@ -137,7 +137,7 @@ class Design:
         """Return the problem of the job. Raises `InputError` if there is no job."""
         if self.job is None or self.run is not None:
             raise InputError("this topic needs a job; got none; give a job, without a run")
-        return call.problem(tables_of(self.job, self.files), feasible=False)
+        return call.problem(tables_with_files(self.job, self.files), feasible=False)
 
     @property
     def lengths(self) -> dict[str, str]:
@@ -179,7 +179,7 @@ class Design:
         return Machine(stored.mechanism, stored.linkage, stored.part)
 
     def _machine_of_job(self, call: Call) -> Machine:
-        problem = call.problem(tables_of(self.job or {}, self.files), feasible=False)
+        problem = call.problem(tables_with_files(self.job or {}, self.files), feasible=False)
         return Machine(problem.mechanism.nominal, Dimensions(**self.lengths).linkage(problem, str), problem)
 
 

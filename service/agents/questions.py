@@ -30,7 +30,7 @@ from ..questions.discovery import ALL, DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS,
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
 from ..questions.record_types import schema_of as schema_of_record
 from ..render.blocks import Block
-from .call import Call, ToolResult, tables_of, text_of
+from .call import Call, ToolResult, printed_text, tables_with_files
 from .inputs import Design, Files, JobInput, Machine, TopicRequest
 
 _MOST_RUNS = 20
@@ -38,7 +38,7 @@ _OF_TOPIC = ("name", "title", "help", "usual", "example", "required")
 _OF_KEY = ("description", "examples", "default", "enum")
 
 
-def list_contents(call: Call) -> ToolResult:
+def list_jobs_quantities_topics_and_runs(call: Call) -> ToolResult:
     """List the included jobs, the quantities, the topics with their inputs, and the latest runs.
 
     `describe` explains each. Start from the included job closest to the task.
@@ -137,7 +137,7 @@ def check(call: Call, *, job: JobInput, files: Files = {}) -> ToolResult:  # noq
     from ..preview.preview import job_preview
     from ..text.job_in_words import freedom_in_words, job_in_words
 
-    tables = tables_of(job, files)
+    tables = tables_with_files(job, files)
     look = job_preview(tables, call.problem)
     record: dict[str, Any] = {
         "valid": look.problem is not None,
@@ -178,7 +178,7 @@ def _analyse_rotating(
         undefined=undefined,
     )
     judgement = judge_design(machine.problem, machine.mechanism, machine.linkage, row, question.units)
-    text = text_of(
+    text = printed_text(
         lambda screen: show_analysis(screen, analysis, judgement, question.units, custom=machine.problem.own)
     )
     return ToolResult(analysis.record(question.units, judgement), "\n".join((text, *analysis.notes, *analysis.refused)))
@@ -220,7 +220,7 @@ def _plain_text(blocks: Sequence[Block], notes: Sequence[str], units: System) ->
     """Return the blocks of an answer as plain text, followed by its notes."""
     from ..render.terminal import print_blocks
 
-    return "\n".join((text_of(lambda screen: print_blocks(screen, blocks, units)), *notes))
+    return "\n".join((printed_text(lambda screen: print_blocks(screen, blocks, units)), *notes))
 
 
 def _topic_record(question: DesignQuestion | FrontOrJobQuestion) -> dict[str, Any]:

@@ -13,19 +13,19 @@ from pydantic import Field
 from ...model.errors import InfeasibleError, InputError
 from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
-from ..designs.choice_options import require_single_choice
+from ..designs.design_selection_options import require_single_choice
 from ..designs.display_units import convert_result
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..designs.stored_designs import front_of, stored_design
 from ..jobs.submission import LONGEST_CALL, end_custom_processes_on_exit, job_json
 from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
-from ..runs.result import Result, csv_text, json_text, unsearched_result
+from ..runs.result import Result, csv_text, infeasible_result, json_text
 from ..runs.run_folder import write_file
 from ..text.design_options import Pick, Selection, SettingOptions
 from ..text.options import Run, Units
 from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
-from .call import Call, ToolResult, tables_of, text_of
+from .call import Call, ToolResult, printed_text, tables_with_files
 from .inputs import Files, FrontPart, Number, OptionalJob
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class Search:
             if settings.overrides:
                 raise InputError("a run must continue with its original number of designs and seed; leave them out")
             return resumed_run(store, call.runs, call.run_folder(self.resume).name, call.problem_to_resume)
-        tables = tables_of(self.job or {}, self.files)
+        tables = tables_with_files(self.job or {}, self.files)
         problem, stated = with_settings(call.problem(tables, seconds=LONGEST_CALL), tables, settings.overrides)
         return new_run(store, call.runs, problem, stated, [job_json(stated)])
 
@@ -85,7 +85,7 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     others. numbers: their design numbers; knee and extremes: positions in the answer.
     """
     from ..store import Limits
-    from ..workers.direct_search import keep_front, renewing_claim
+    from ..workers.direct_search import renewing_claim, save_result
     from ..workers.direct_search import search as front_of_run
     from ..workers.engines import EngineOptions, engine_of
     from ..workers.heartbeat import Budget
@@ -94,17 +94,17 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
         try:
             opened = entered.enter_context(search.open_run(call, entered.enter_context(call.store()), settings))
         except InfeasibleError as error:
-            return ToolResult(unsearched_result(error).record(), str(error), is_error=True)
+            return ToolResult(infeasible_result(error).record(), str(error), is_error=True)
         run, problem, claim = opened
         entered.enter_context(renewing_claim(claim, again=f"optimise with resume = {claim.job.run}"))
         budget = Budget(Limits(seconds=search.seconds), waited=lambda: claim.waited)
         engine = entered.enter_context(engine_of(EngineOptions()))
         entered.enter_context(end_custom_processes_on_exit(problem, engine))
-        front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.spent(), show=call.report)
-        result = keep_front(opened, front, budget)
+        front = front_of_run(opened, engine, cancelled=lambda: call.cancelled() or budget.is_spent(), show=call.report)
+        result = save_result(opened, front, budget)
     result_in_units = convert_result(result, part.units, problem)
     remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
-    text = text_of(lambda screen: show_result(screen, result_in_units))
+    text = printed_text(lambda screen: show_result(screen, result_in_units))
     record = _front_record(
         result_in_units, spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows), part
     )
@@ -118,7 +118,7 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
     """
     folder, result = call.load_run_with_designs(run)
     chosen = selection.rows(result)
-    picked = _chosen_number(result, chosen, pick)
+    picked = _selected_design_number(result, chosen, pick)
     if not chosen:
         raise InfeasibleError(no_match_message(result, selection.where or []))
     result_in_units = convert_result(
@@ -128,11 +128,11 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
         rows = spread_rows(result_in_units, chosen, part.rows)
         return ToolResult(
             _front_record(result_in_units, rows, part),
-            text_of(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
+            printed_text(lambda screen: show_front(screen, result_in_units, rows, limit=0)),
         )
     record = _front_record(result_in_units, [picked], replace(part, columns=part.columns or [ALL]))
-    record["trade_offs"] = record["trade_offs"] or _trade_offs(call, folder, result, picked, part.units)
-    text = text_of(lambda screen: show_design(screen, result_in_units.designs[picked]))
+    record["trade_offs"] = record["trade_offs"] or _trade_off_sentences(call, folder, result, picked, part.units)
+    text = printed_text(lambda screen: show_design(screen, result_in_units.designs[picked]))
     return ToolResult(record, "\n".join((f"design {picked + 1}", text, *record["trade_offs"])))
 
 
@@ -157,7 +157,7 @@ def files(
     if design is not None and _OF_RUN.issuperset(write):
         raise InputError(f"{', '.join(write)} cover all designs of a run; got design {design}; leave it out")
     folder, result = call.load_run_with_designs(run)
-    picked = _chosen_number(result, [], Pick(design=design))
+    picked = _selected_design_number(result, [], Pick(design=design))
     number = 1 + ((result.knee or 0) if picked is None else picked)
     problem = call.problem_of_run(folder, result)
     stored, result_in_units = stored_design(problem, result, number), convert_result(result, units, problem)
@@ -194,7 +194,7 @@ def _front_record(result: Result, rows: Sequence[int], part: FrontPart) -> dict[
     return result_part(result, rows).record(names) | {"numbers": [row + 1 for row in rows]}
 
 
-def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
+def _selected_design_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | None:
     """Return the number of the design selected by name or by value, or None for neither."""
     if pick.design is None:
         return pick.row(result, chosen)
@@ -202,7 +202,7 @@ def _chosen_number(result: Result, chosen: Sequence[int], pick: Pick) -> int | N
     return pick.design - 1
 
 
-def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
+def _trade_off_sentences(call: Call, folder: Path, result: Result, row: int, units: System) -> list[str]:
     """Return the trade-off rates at a design as sentences; empty if it has none."""
     from ..designs.trade_offs import trade_offs_of
 
@@ -214,6 +214,6 @@ def _trade_offs(call: Call, folder: Path, result: Result, row: int, units: Syste
 
 
 def _draw_figures(problem: Problem, result: Result, folder: Path, units: System) -> list[str]:
-    from ..figures.front import draw_front
+    from ..figures.front_figures import write_front_figures
 
-    return [path_text(file) for file in draw_front(front_of(problem, result), folder / "figures", units)]
+    return [path_text(file) for file in write_front_figures(front_of(problem, result), folder / "figures", units)]

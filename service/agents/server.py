@@ -20,7 +20,7 @@ from ...model.errors import SlidercrankError
 from ...model.optional_packages import NamingExtra
 from ...optimise.front.progress import Progress, stage_text
 from ...optimise.search.fingerprint import version_of
-from ..resources.disk import full_places_text, is_full
+from ..resources.disk import full_places_text, is_disk_full
 from ..runs.result import json_ready
 from . import questions, runs
 from .call import Call, ToolResult
@@ -37,7 +37,7 @@ with NamingExtra("serving agents needs"):
 
 _log = logging.getLogger(__name__)
 TOOLS = (
-    Tool("list", questions.list_contents),
+    Tool("list", questions.list_jobs_quantities_topics_and_runs),
     Tool("describe", questions.describe),
     Tool("check", questions.check),
     Tool("optimise", runs.optimise, writes=True),
@@ -58,7 +58,7 @@ Describe what a machine must do as a job, and get the Pareto front of designs wi
 Values have units in quotes: "2400 rpm", "80 mm", "0.8 kg". Columns of answers end with their unit: crank_mm."""
 
 
-def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], None]) -> None:
+def serve(runs_folder: Path, allowed_functions: frozenset[str], *, on_signal: Callable[[], None]) -> None:
     """Serve agents until standard input ends.
 
     place: the only folder read and written. allowed: functions that jobs may use.
@@ -67,10 +67,10 @@ def serve(place: Path, allowed: frozenset[str], *, interrupted: Callable[[], Non
 
     Raises `MissingExtra` at import without the package `mcp`.
     """
-    anyio.run(_serve, place, allowed, interrupted)
+    anyio.run(_serve, runs_folder, allowed_functions, on_signal)
 
 
-async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[], None]) -> None:
+async def _serve(runs_folder: Path, allowed_functions: frozenset[str], on_signal: Callable[[], None]) -> None:
     searches, other_calls, stopping = anyio.CapacityLimiter(1), anyio.CapacityLimiter(1), threading.Event()
 
     async def end_on_signal() -> None:
@@ -78,14 +78,16 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
             async for _ in signals:
                 stopping.set()
                 async with searches, other_calls:
-                    interrupted()
+                    on_signal()
 
     async def on_list_tools(_: ServerRequestContext, __: Page | None) -> ListToolsResult:
         return ListToolsResult(tools=[_declaration(tool) for tool in TOOLS])
 
     async def on_call_tool(ctx: ServerRequestContext, params: CallToolRequestParams) -> CallToolResult:
         limiter = searches if params.name == "optimise" else other_calls
-        tool_result = await _execute_call(ctx.session, partial(Call, place, allowed), params, limiter, stopping)
+        tool_result = await _execute_call(
+            ctx.session, partial(Call, runs_folder, allowed_functions), params, limiter, stopping
+        )
         content = [TextContent(type="text", text=tool_result.text)]
         record = json_ready(tool_result.record) or None
         return CallToolResult(content=[*content], structured_content=record, is_error=tool_result.is_error)
@@ -106,7 +108,7 @@ async def _serve(place: Path, allowed: frozenset[str], interrupted: Callable[[],
 
 async def _execute_call(
     session: ServerSession,
-    make: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
+    make_call: Callable[[Callable[[], bool], Callable[[Progress], None]], Call],
     params: CallToolRequestParams,
     limiter: anyio.CapacityLimiter,
     stopping: threading.Event,
@@ -119,33 +121,33 @@ async def _execute_call(
     send, receive = anyio.create_memory_object_stream[Progress](math.inf)
     with send, receive:
         async with anyio.create_task_group() as group:
-            group.start_soon(_relay, receive, session)
-            group.start_soon(_set_when_cancelled, cancelled)
+            group.start_soon(_relay_progress, receive, session)
+            group.start_soon(_set_event_when_cancelled, cancelled)
 
             def report(at: Progress) -> None:
                 loop.call_soon_threadsafe(partial(send.send_nowait, at))
 
-            call = make(lambda: cancelled.is_set() or stopping.is_set(), report)
-            run = partial(_run, params.name, params.arguments or {}, call)
+            call = make_call(lambda: cancelled.is_set() or stopping.is_set(), report)
+            run = partial(_run_tool, params.name, params.arguments or {}, call)
             tool_result = await anyio.to_thread.run_sync(run, limiter=limiter)
             group.cancel_scope.cancel()
     return tool_result
 
 
-async def _relay(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
+async def _relay_progress(progress: MemoryObjectReceiveStream[Progress], session: ServerSession) -> None:
     async for at in progress:
         message = f"{stage_text(vars(at))}: {at.evaluations:,} evaluated, {at.feasible:,} feasible"
         await session.report_progress(at.seconds, None, message)
 
 
-async def _set_when_cancelled(cancelled: threading.Event) -> None:
+async def _set_event_when_cancelled(cancelled: threading.Event) -> None:
     try:
         await anyio.sleep_forever()
     finally:
         cancelled.set()
 
 
-def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
+def _run_tool(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
     """Return the answer of a tool, or one sentence that says why there is none."""
     try:
         if name not in _BY_NAME:
@@ -156,7 +158,7 @@ def _run(name: str, arguments: Mapping[str, Any], call: Call) -> ToolResult:
     except MemoryError:
         return _error_result("not enough memory for this request; close other programs, or ask for less")
     except Exception as error:  # noqa: BLE001 - whatever it is, the call and not the server ends
-        if isinstance(error, OSError) and is_full(error):
+        if isinstance(error, OSError) and is_disk_full(error):
             return _error_result(f"Disk full: {full_places_text(error)}; free some space")
         _log.exception("the tool %s failed", name)
         return _error_result(

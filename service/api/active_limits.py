@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from ..designs.following_jobs import active_limits
+from ..designs.derived_jobs import active_limits
 from .computing import QuickRoute
 from .problem_documents import problem_responses
 from .settings import StoreDep

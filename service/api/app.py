@@ -21,7 +21,7 @@ from ..page import router as page
 from ..store import Store
 from ..workers.heartbeat import EXHAUSTED, end_process_tree
 from ..workers.logs import Format, set_up_logs
-from . import exports
+from . import front_files
 from .computing import Computing
 from .events import Feed
 from .health import Metrics, Timed
@@ -36,7 +36,7 @@ from .throttle import RateLimit
 PREFIX = "/api/v1"
 _PARTS = (
     *("jobs", "submissions", "job_files", "preview", "events", "fronts", "active_limits", "what_if", "analysis"),
-    *("design_questions", "front_questions", "wish", "bookmarks", "design_files", "figures", "exports"),
+    *("design_questions", "front_questions", "wish", "bookmarks", "design_files", "figures", "front_files"),
     *("quantities", "health"),
 )
 """Modules with the endpoints, in the order of the API description."""
@@ -156,7 +156,7 @@ def _version() -> str:
 
 def _complete_openapi_schema(schema: dict[str, Any], *, secured: bool) -> dict[str, Any]:
     """Return the OpenAPI 3.1 description of the API, with the facts that FastAPI cannot infer."""
-    if "parquet" not in exports.export_formats():
+    if "parquet" not in front_files.export_formats():
         schema["paths"].pop(f"{_NUMBER}/export.parquet")  # the endpoint reports what to install
     parts = schema.setdefault("components", {})
     shapes = parts.setdefault("schemas", {})

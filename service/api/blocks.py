@@ -71,7 +71,7 @@ class AnswerBlock(BaseModel):
 def block_models(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
     """Return blocks as data. notes: sentences to append as notes, without capital and full stop."""
     note_blocks = (note(f"{text[:1].upper()}{text[1:]}.") for text in notes)
-    return [_block(text) for text in (*blocks, *note_blocks)]
+    return [_block_model(text) for text in (*blocks, *note_blocks)]
 
 
 def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
@@ -79,13 +79,13 @@ def sentence_blocks(sentences: Sequence[str]) -> list[AnswerBlock]:
     return block_models([sentence("{text}", text=text) for text in sentences])
 
 
-def _block(block: Block) -> AnswerBlock:
+def _block_model(block: Block) -> AnswerBlock:
     if isinstance(block, Sentence):
         return AnswerBlock(text=_parts(block.text), style=block.style)
     columns = []
     for column in block.columns:
         title = _parts(column.title)
-        unit = [] if column.kind is None else [*([", "] if title else []), _unit(column.kind)]
+        unit = [] if column.kind is None else [*([", "] if title else []), _unit_part(column.kind)]
         columns.append(ColumnPart(title=[*title, *unit], right=column.right_aligned))
     rows = [[_parts(cell, bare=isinstance(cell, Value)) for cell in row] for row in block.rows]
     return AnswerBlock(columns=columns, rows=rows)
@@ -98,17 +98,17 @@ def _parts(text: Text, *, bare: bool = False) -> Parts:
 
 def _part(part: Part, bare: bool) -> str | NumberPart | PhrasePart:
     if isinstance(part, Value):
-        return _number(part, bare)
+        return _number_part(part, bare)
     if isinstance(part, Phrase):
         return PhrasePart(metric=part.metric, inch=part.inch)
-    return _unit(part.kind) if isinstance(part, Unit) else part
+    return _unit_part(part.kind) if isinstance(part, Unit) else part
 
 
-def _unit(kind: Kind) -> PhrasePart:
+def _unit_part(kind: Kind) -> PhrasePart:
     return PhrasePart(**{system: unit_text(kind.display_unit(system).symbol) for system in _SYSTEMS})
 
 
-def _number(value: Value, bare: bool) -> NumberPart:
+def _number_part(value: Value, bare: bool) -> NumberPart:
     def number_in(system: System) -> dict[str, Any]:
         unit_in_system = value.kind.display_unit(system)
         number = None if value.number is None else json_ready(unit_in_system.factor * value.number)

@@ -11,16 +11,16 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError
 from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.table_columns import choice_field
-from ..designs.changed_design import Variation, design_with_numbers, variation_of
+from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import all_columns
 from ..designs.display_units import convert_rows
-from ..designs.judged_requirements import faults_in_words, ranges_of
+from ..designs.judged_requirements import faults_in_words, ranges_as_requirements
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
 from ..store.bookmark_history import Action, history_of
-from ..store.remarks import Bookmark, bookmark_design, bookmarks_of, remove_bookmark, update_bookmark
+from ..store.bookmarks_and_wishes import Bookmark, bookmark_design, bookmarks_of, remove_bookmark, update_bookmark
 from .computing import QuickRoute
-from .exports import download, file_endpoint_options
+from .front_files import download_response, file_endpoint_options
 from .fronts import Cells, ColumnModel, column_models
 from .models import PLAIN_DIGITS, UnitsParameter
 from .problem_documents import problem_responses
@@ -171,7 +171,7 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
     """Return the bookmarks as a table: names, notes and reasons, then all quantities at full precision."""
     rows: list[Any] = []
     for bookmark in bookmarks_of(store, stored_front.job.id):
-        varied = _bookmark_variation(stored_front, _design(stored_front, bookmark))
+        varied = _bookmark_variation(stored_front, _bookmarked_design(stored_front, bookmark))
         head = {
             "number": bookmark.number,
             "design": bookmark.design,
@@ -185,7 +185,9 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
             "outside_the_job": ", ".join(varied.outside),
         }
         rows.append(head | convert_rows([varied.row], units)[0])
-    return download(csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv")
+    return download_response(
+        csv_text(rows, spreadsheet=True), "text/csv; charset=utf-8", f"{stored_front.result.run}-kept.csv"
+    )
 
 
 def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
@@ -195,7 +197,7 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
     row = {} if request.design is None else stored_front.row(request.design)
     if request.design is not None and not request.dimensions:
         return stored_design(stored_front.problem, stored_front.result, request.design)
-    allowed_keys = {*_LENGTHS, *(rule.column for rule in ranges_of(stored_front.problem.parts()[0]))}
+    allowed_keys = {*_LENGTHS, *(rule.column for rule in ranges_as_requirements(stored_front.problem.parts()[0]))}
     allowed_keys |= {choice_field(name) for name in stored_front.problem.choices}
     for key, value in request.dimensions.items():
         if key not in allowed_keys:
@@ -215,16 +217,16 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
     return design_with_numbers(design, design.values[:3], values)
 
 
-def _design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
+def _bookmarked_design(stored_front: StoredFront, bookmark: Bookmark) -> StoredDesign:
     return StoredDesign(stored_front.problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
 
 
 def _bookmark_variation(stored_front: StoredFront, design: StoredDesign) -> Variation:
-    return variation_of(design, stored_front.result, stored_front.minimised_objectives)
+    return judged_variation(design, stored_front.result, stored_front.minimised_objectives)
 
 
 def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> BookmarkedDesign:
-    design = _design(stored_front, bookmark)
+    design = _bookmarked_design(stored_front, bookmark)
     varied = _bookmark_variation(stored_front, design)
     origin = stored_design(stored_front.problem, stored_front.result, bookmark.design) if bookmark.design else None
     same = origin is not None and bookmark.is_of(origin.variant, origin.values)

@@ -24,7 +24,7 @@ from ...optimise.engine.processes import block_interrupts
 from ..resources.memory import size_text
 from ..store import Limits
 from ..workers.heartbeat import EXHAUSTED
-from ..workers.supervisor import reason_of
+from ..workers.supervisor import exit_reason
 from .computing_process import OUT_OF_TIME, ApplicationFactory, Question, is_last, serve_requests
 from .throttle import turn
 
@@ -82,11 +82,11 @@ class Computing:
             self._prepared = True
             asyncio.get_running_loop().run_in_executor(None, self._start_process)
 
-    async def handle(self, turns: str, scope: Scope, receive: Receive, send: Send) -> None:
+    async def handle(self, queue_name: str, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request in an idle process, and kill the process if the client leaves early."""
         question = {key: scope[key] for key in _SENT if key in scope}, await Request(scope, receive).body()
         messages = asyncio.Queue[Message | None]()  # a client that does not read must not occupy a process
-        answering = asyncio.create_task(self._compute(turns, question, messages.put_nowait))
+        answering = asyncio.create_task(self._compute(queue_name, question, messages.put_nowait))
         leaving = asyncio.create_task(_wait_for_disconnect(receive))
         for task in (answering, leaving):
             task.add_done_callback(lambda _: messages.put_nowait(None))
@@ -103,21 +103,21 @@ class Computing:
     def close(self) -> None:
         """Kill all processes, even busy ones."""
         for process in list(self._all):
-            process.end()
+            process.kill()
 
-    async def _compute(self, turns: str, question: Question, give: Callable[[Message], None]) -> None:
-        async with turn(self._turns[turns], f"{turns} analyses"):
+    async def _compute(self, queue_name: str, question: Question, give: Callable[[Message], None]) -> None:
+        async with turn(self._turns[queue_name], f"{queue_name} analyses"):
             while (process := self._take_idle_process()) is None:
                 await run_sync(self._start_process, limiter=self._threads)
             try:
-                last = await process.stream(question, give)
+                last = await process.stream_response(question, give)
                 self._idle.append(process)  # before the client can send its next request
                 give(last)
             except (EOFError, OSError):
                 raise self._refusal_for_exit_code(await run_sync(process.exit_code, limiter=self._threads)) from None
             finally:
                 if process not in self._idle:
-                    process.end()
+                    process.kill()
                     self._all.discard(process)
 
     def _take_idle_process(self) -> _Process | None:
@@ -141,7 +141,7 @@ class Computing:
             return HTTPException(HTTPStatus.UNPROCESSABLE_ENTITY, text)
         text = (
             f"the process that computes an answer, with at most {limits}, must not end early; it did "
-            f"({reason_of(code)}); try again"
+            f"({exit_reason(code)}); try again"
         )
         return HTTPException(HTTPStatus.SERVICE_UNAVAILABLE, text, {"Retry-After": "5"})
 
@@ -157,7 +157,7 @@ class _Process:
         with child_end, block_interrupts():
             self._process.start()
 
-    async def stream(self, question: Question, give: Callable[[Message], None]) -> Message:
+    async def stream_response(self, question: Question, give: Callable[[Message], None]) -> Message:
         """Pass on all messages of an answer except the last, and return that one.
 
         Raises `EOFError` or `OSError` if the process ends early, and forwards the error that prevents an answer.
@@ -191,7 +191,7 @@ class _Process:
         """
         return bool(self._process.is_alive()) and not self._connection.poll()
 
-    def end(self) -> None:
+    def kill(self) -> None:
         """Kill the process if it is still running."""
         if self._process.is_alive():
             self._process.kill()

@@ -16,10 +16,10 @@ from ..drawings.shapes import Drawing
 from ..drawings.svg import svg_file
 from ..runs.run_folder import slug
 from ..store import Store
-from ..store.remarks import bookmarks_of
+from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import LongRoute
-from .exports import SEALED, download, file_endpoint_options
 from .figures import require_figures
+from .front_files import SEALED, download_response, file_endpoint_options
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .settings import StoreDep
@@ -47,23 +47,23 @@ CrankAngle = Annotated[
 ]
 
 
-def _file(
+def _file_response(
     request: RequestedDesign, ending: str, media_type: str, content: bytes, *, policy: str = SEALED, label: str = ""
 ) -> Response:
-    name = f"{slug(request.stored_front.result.name)}-{request.stored_front.job.id}-{request.stem}{label}.{ending}"
-    return download(content, media_type, name, policy=policy)
+    name = f"{slug(request.stored_front.result.name)}-{request.stored_front.job.id}-{request.file_stem}{label}.{ending}"
+    return download_response(content, media_type, name, policy=policy)
 
 
 def _drawing(request: RequestedDesign, crank_angle_deg: float | None, system: System = "metric") -> Drawing:
     angle = None if crank_angle_deg is None else math.radians(crank_angle_deg)
     name = request.stored_front.result.name
-    return design_drawing(request.design, name=name, design=request.words, crank_angle=angle, system=system)
+    return design_drawing(request.design, name=name, design=request.display_name, crank_angle=angle, system=system)
 
 
 @router.get("/linkage.dxf", **file_endpoint_options("image/vnd.dxf"))
 def draw_dxf(request: RequestedDesignDep, crank_angle_deg: CrankAngle = None) -> Response:
     """Return the linkage of a design at true scale for CAD, in millimetres; docs/drawings.md lists its layers."""
-    return _file(request, "dxf", "image/vnd.dxf", dxf_file(_drawing(request, crank_angle_deg)))
+    return _file_response(request, "dxf", "image/vnd.dxf", dxf_file(_drawing(request, crank_angle_deg)))
 
 
 @router.get("/linkage.svg", **file_endpoint_options("image/svg+xml"))
@@ -71,7 +71,7 @@ def draw_linkage(
     request: RequestedDesignDep, crank_angle_deg: CrankAngle = None, units: UnitsParameter = "metric"
 ) -> Response:
     """Return the same drawing as SVG, with its dimensions in a unit system."""
-    return _file(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg, units)))
+    return _file_response(request, "svg", "image/svg+xml", svg_file(_drawing(request, crank_angle_deg, units)))
 
 
 @router.get("/motion.html", **file_endpoint_options("text/html"))
@@ -80,9 +80,9 @@ def show_animation(request: RequestedDesignDep, units: UnitsParameter = "metric"
     from ..motion.player_page import player_page
 
     design = request.design
-    named = {"name": request.stored_front.result.name, "design": request.words}
+    named = {"name": request.stored_front.result.name, "design": request.display_name}
     content = player_page(design.mechanism, design.linkage, swing=design.part.motion, system=units, **named)
-    return _file(request, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
+    return _file_response(request, "html", "text/html; charset=utf-8", content, policy=_PLAYING, label="-motion")
 
 
 @router.get("/motion.gif", dependencies=[Depends(require_figures)], **file_endpoint_options("image/gif"))
@@ -90,13 +90,13 @@ def animate_linkage(request: RequestedDesignDep, units: UnitsParameter = "metric
     """Return an animated GIF of the linkage: one crank revolution, or a swing back and forth."""
     from ..motion.animated_gif import animated_gif
 
-    design, named = request.design, {"name": request.stored_front.result.name, "design": request.words}
+    design, named = request.design, {"name": request.stored_front.result.name, "design": request.display_name}
     swing = design.part.motion
     content = request.cached_file(
         f"gif {units}",
         lambda: animated_gif(design.mechanism, design.linkage, swing=swing, system=units, **named),
     )
-    return _file(request, "gif", "image/gif", content, label="-motion")
+    return _file_response(request, "gif", "image/gif", content, label="-motion")
 
 
 @router.get("/report.html", dependencies=[Depends(require_figures)], **file_endpoint_options("text/html"))
@@ -108,7 +108,7 @@ def report_design(request: RequestedDesignDep, store: StoreDep, units: UnitsPara
         f"report {units} {_bookmarks_revision(request, store)}",
         lambda: html_file(_report(request, store, units)),
     )
-    return _file(request, "html", "text/html; charset=utf-8", content, label="-report")
+    return _file_response(request, "html", "text/html; charset=utf-8", content, label="-report")
 
 
 @router.get("/report.pdf", dependencies=[Depends(require_figures)], **file_endpoint_options("application/pdf"))
@@ -119,14 +119,14 @@ def print_report(request: RequestedDesignDep, store: StoreDep, units: UnitsParam
     content = request.cached_file(
         f"pdf {units} {_bookmarks_revision(request, store)}", lambda: pdf_file(_report(request, store, units))
     )
-    return _file(request, "pdf", "application/pdf", content, label="-report")
+    return _file_response(request, "pdf", "application/pdf", content, label="-report")
 
 
 @router.get("/cycle.csv", **file_endpoint_options("text/csv"))
 def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") -> Response:
     """Return the curves of a design as `export --cycle` does: per degree, or for both directions of a swing."""
     content = design_csv(request.design, units)
-    return _file(request, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
+    return _file_response(request, "csv", "text/csv; charset=utf-8", content.encode(), label="-cycle")
 
 
 def _report(request: RequestedDesign, store: Store, units: System) -> Report:

@@ -15,7 +15,7 @@ from pydantic_core import to_json
 from ...model.errors import NotFound
 from ...objectives.kinds import System
 from ..designs.display_units import convert_record
-from ..designs.measured_file import read_measured
+from ..designs.measured_curves_file import parse_measured_curves
 from ..designs.rotating_crank import require_rotating_crank
 from ..questions.design_question import BoundQuestion, QuestionCommand
 from ..questions.discovery import DESIGN_QUESTIONS, INPUTS, QUESTION_COMMANDS, TOPIC_OF_INPUT, TOPICS
@@ -25,8 +25,8 @@ from ..render.formatting import plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, block_models
 from .computing import LongRoute, QuickRoute
-from .exports import file_endpoint_options
 from .figures import figure_response, require_figures
+from .front_files import file_endpoint_options
 from .fronts import OfDesign
 from .input_parameters import inputs_from_query, parameter_of
 from .models import UnitsParameter
@@ -49,9 +49,9 @@ def _figure_response(
     def make() -> tuple[tuple[str], bytes]:
         from ..figures.style import figure_bytes
 
-        return (request.key,), figure_bytes(draw(), kind)
+        return (request.cache_key,), figure_bytes(draw(), kind)
 
-    return figure_response(request.stored_front.cached_item(request.key, key, make), kind)
+    return figure_response(request.stored_front.cached_item(request.cache_key, key, make), kind)
 
 
 TopicName = Annotated[
@@ -107,7 +107,7 @@ def show_topic(
     request: RequestedDesignDep, topic: TopicName, inputs: TopicInputsDep, units: UnitsParameter = "metric"
 ) -> Response:
     """Return the numbers and the text for one topic of a design, as stored or with other numbers."""
-    bound_question = _bind(request, topic, inputs)
+    bound_question = _bind_topic(request, topic, inputs)
 
     def make() -> tuple[tuple[str], bytes]:
         numbers = bound_question.numbers()
@@ -120,10 +120,10 @@ def show_topic(
             told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, units)],
             blocks=block_models(blocks),
         )
-        return (request.key,), to_json(topic_model)
+        return (request.cache_key,), to_json(topic_model)
 
     content = request.stored_front.cached_item(
-        request.key, f"topic {topic} told {units} {sorted(inputs.items())}", make
+        request.cache_key, f"topic {topic} told {units} {sorted(inputs.items())}", make
     )
     return Response(content, media_type="application/json")
 
@@ -131,12 +131,12 @@ def show_topic(
 def _topic_figure(
     request: RequestedDesign, topic: str, inputs: dict[str, str], units: System, kind: Literal["png", "svg"]
 ) -> Response:
-    bound_question = _bind(request, topic, inputs)
+    bound_question = _bind_topic(request, topic, inputs)
     key = f"topic {topic} {kind} {units} {sorted(inputs.items())}"
     return _figure_response(request, key, kind, lambda: bound_question.figure(lambda: False, units))
 
 
-def _bind(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
+def _bind_topic(request: RequestedDesign, topic: str, inputs: dict[str, str]) -> BoundQuestion:
     """Return a topic for a design. Raises `NotFound` for an unknown name, and the errors of `for_problem`."""
     if topic not in TOPICS:
         raise NotFound(f"there is no topic {topic!r}; choose from {', '.join(TOPICS)}")
@@ -167,11 +167,11 @@ def _add_question_endpoints(name: str, says: QuestionCommand) -> None:
 
     def draw(request: RequestedDesignDep, given: Any, units: UnitsParameter = "metric") -> Response:
         def figure() -> Figure:
-            from ..figures.panels import figure_of
+            from ..figures.panel_drawing import draw_figure
 
             bound_question = bind(request, given)
             bound_question.numbers()
-            return figure_of(bound_question.output_of("figure", units), units)
+            return draw_figure(bound_question.output_of("figure", units), units)
 
         return _figure_response(request, f"{name} svg {units} {sorted(given.items())}", "svg", figure)
 
@@ -217,7 +217,7 @@ def compare_measured(
     """Compare measured curves with those of a design: deviations, and the best-fit shifts."""
     stored = stored_front.design(design)
     require_rotating_crank(stored.part.motion, "a comparison with measured curves")
-    samples = read_measured(measured_curves.csv, stored.mechanism, stored.linkage)
+    samples = parse_measured_curves(measured_curves.csv, stored.mechanism, stored.linkage)
     topic = MEASURED.bind_to_design(stored.mechanism, stored.linkage, {"measured": samples})
     record = json_ready(topic.numbers())
     return MeasuredModel(job=stored_front.job.id, number=design, measured=convert_record(record, units))

@@ -73,7 +73,7 @@ class Channel:
             self._changed.set()
             self._changed = asyncio.Event()
 
-    def since(self, number: int) -> list[Event] | None:
+    def events_since(self, number: int) -> list[Event] | None:
         """Return the events after a given one, or None if they are no longer in memory."""
         if number >= self.last:
             return []
@@ -116,7 +116,7 @@ class Feed:
         with self._watch_channel(number, last) as channel:
             position = after
             while True:
-                events = channel.since(position)
+                events = channel.events_since(position)
                 if events is None:
                     try:
                         events = await run_sync(partial(self.store.events, number, after=position, limit=_PAGE))
@@ -192,23 +192,23 @@ async def list_events(
     """Return the events of a job: a page of JSON, or a stream of events with `Accept: text/event-stream`."""
     begin = after if last_event_id is None else last_event_id
     if STREAM not in request.headers.get("accept", ""):
-        return JSONResponse(await run_sync(_page, store, number, begin, limit))
+        return JSONResponse(await run_sync(_event_page, store, number, begin, limit))
     job = await run_sync(store.job, number)
     position = min(begin, job.events)
     if job.state in ENDED and last_event_id is not None and position == job.events:
         return Response(status_code=204)
     feed: Feed = request.app.state.feed
     stream = feed.stream(number, position, last=job.events, heartbeat=HEARTBEAT)
-    return StreamingResponse(_lines(stream), headers=STREAM_HEADERS, media_type=STREAM)
+    return StreamingResponse(_event_stream(stream), headers=STREAM_HEADERS, media_type=STREAM)
 
 
-def _page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:
+def _event_page(store: Store, number: int, after: int, limit: int) -> dict[str, Any]:
     position = min(after, store.job(number).events)
     events = store.events(number, after=position, limit=limit)
     return {"events": [event.record() for event in events], "last": events[-1].number if events else position}
 
 
-async def _lines(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:
+async def _event_stream(events: AsyncIterator[Event | None]) -> AsyncIterator[bytes]:
     yield _FIRST
     async for event in events:
         if event is None:

@@ -13,9 +13,9 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
-from ..store.remarks import Bookmark, bookmarks_of
+from ..store.bookmarks_and_wishes import Bookmark, bookmarks_of
 from .computing import LongRoute
-from .exports import SEALED, file_endpoint_options
+from .front_files import SEALED, file_endpoint_options
 from .models import UnitsParameter
 from .problem_documents import problem_responses
 from .settings import SettingsDep, StoreDep
@@ -24,7 +24,7 @@ from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, Store
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..figures.front import FrontFigure
+    from ..figures.front_figures import FrontFigure
 
 Kind = Literal["png", "svg"]
 _MEDIA = {"png": "image/png", "svg": "image/svg+xml"}
@@ -72,7 +72,7 @@ def list_figures(stored_front: FrontDep) -> FiguresModel:
 
     The datasheet of each design is at `figures/design_{number}.png` or `.svg`.
     """
-    from ..figures.front import front_figures
+    from ..figures.front_figures import front_figures
 
     drawn = front_figures(stored_front.front) if stored_front.result.designs else []
     listed = [FigureModel(name=name, title=item.title) for item in drawn for name in item.names]
@@ -84,7 +84,7 @@ def draw_png(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
     """Draw a figure; the datasheet of a design accepts other numbers."""
-    return _image(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
+    return _cached_figure_response(stored_front, name, "png", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
 @router.get("/jobs/{number}/figures/{name}.svg", **file_endpoint_options("image/svg+xml"))
@@ -92,10 +92,10 @@ def draw_svg(
     stored_front: FrontDep, name: Name, numbers: NumbersDep, store: StoreDep, units: UnitsParameter = "metric"
 ) -> Response:
     """Draw a figure; the datasheet of a design accepts other numbers."""
-    return _image(stored_front, name, "svg", numbers, bookmarks_of(store, stored_front.job.id), units)
+    return _cached_figure_response(stored_front, name, "svg", numbers, bookmarks_of(store, stored_front.job.id), units)
 
 
-def _image(
+def _cached_figure_response(
     stored_front: StoredFront,
     name: str,
     kind: Kind,
@@ -120,7 +120,7 @@ def _image(
         return figure_response(stored_front.cached_item(name, cache_kind, draw), kind)
     request = requested_design(stored_front, int(single[1]), numbers, bookmarks)
     drawn = request.cached_file(cache_kind, lambda: figure_bytes(_datasheet(request, units), kind))
-    file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.stem}-sheet.{kind}"
+    file = f"{slug(stored_front.result.name)}-{stored_front.job.id}-{request.file_stem}-sheet.{kind}"
     return figure_response(drawn, kind, {"Content-Disposition": f'inline; filename="{file}"'})
 
 
@@ -132,7 +132,7 @@ def figure_response(content: bytes, kind: Kind, headers: Mapping[str, str] = Map
 
 def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontFigure:
     """Return a figure of a whole front. Raises `NotFound`, which lists the available names."""
-    from ..figures.front import front_figures
+    from ..figures.front_figures import front_figures
 
     listed = front_figures(stored_front.front, units) if stored_front.result.designs else []
     named = next((item for item in listed if name in item.names), None)
@@ -144,6 +144,8 @@ def _front_figure(stored_front: StoredFront, name: str, units: System) -> FrontF
 
 
 def _datasheet(request: RequestedDesign, units: System) -> Figure:
-    from ..figures.front import datasheet_of
+    from ..figures.front_figures import datasheet_of
 
-    return datasheet_of(request.stored_front.front, request.number - 1, request.words, units, request.variation())
+    return datasheet_of(
+        request.stored_front.front, request.number - 1, request.display_name, units, request.variation()
+    )

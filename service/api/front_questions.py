@@ -220,10 +220,12 @@ def round_design(
 
     def search() -> _Events:
         """Yield the kind and data of each event."""
-        from ..questions.round.analysis import search
+        from ..questions.round.analysis import search_rounded_neighbours
 
         words = {item.name: item.name for item in ROUND.inputs}
-        for at in search(stored_front.front, design - 1, words, **ROUND.read(given.model_dump(), design)):
+        for at in search_rounded_neighbours(
+            stored_front.front, design - 1, words, **ROUND.read(given.model_dump(), design)
+        ):
             if isinstance(at, Answer):
                 record = json_ready(at.record(units))
             else:
@@ -235,7 +237,7 @@ def round_design(
     if STREAM not in request.headers.get("accept", ""):
         *_, (_, data) = itertools.chain([first], events)
         return Response(data, media_type="application/json")
-    return StreamingResponse(_lines(first, events), headers=STREAM_HEADERS, media_type=STREAM)
+    return StreamingResponse(_event_stream(first, events), headers=STREAM_HEADERS, media_type=STREAM)
 
 
 round_design.__annotations__["given"] = body_model_of(ROUND, "Steps")
@@ -249,7 +251,7 @@ router.add_api_route(
 )
 
 
-async def _lines(first: _Event, events: _Events) -> AsyncIterator[bytes]:
+async def _event_stream(first: _Event, events: _Events) -> AsyncIterator[bytes]:
     """Return events as a stream, and end the search if the client stops reading."""
     with contextlib.closing(events):
         event: _Event | None = first

@@ -50,7 +50,7 @@ async def show_live() -> Live:
 def show_ready(store: StoreDep) -> Ready:
     """Report whether the database can be read and written, the number of workers, and the number of waiting jobs."""
     store.require_ready()
-    crew = store.count_workers()
+    crew = store.count_workers_and_waiting_jobs()
     return Ready(takes_jobs=crew.workers > 0, **vars(crew))
 
 
@@ -82,9 +82,11 @@ class Metrics(Collector):
         yield jobs
         wait = self._store.longest_wait()
         yield GaugeMetricFamily("slidercrank_queue_seconds", "Waiting time of the oldest job in the queue, s", wait)
-        yield GaugeMetricFamily("slidercrank_workers", "Workers heard from recently", self._store.workers_at_work())
+        yield GaugeMetricFamily(
+            "slidercrank_workers", "Workers heard from recently", self._store.count_present_workers()
+        )
 
-    def text(self) -> bytes:
+    def prometheus_text(self) -> bytes:
         """Return all metrics in the text format. Raises `StoreError`."""
         return generate_latest(self._registry)
 
@@ -96,7 +98,7 @@ class Metrics(Collector):
 )
 def show_metrics(metrics: Annotated[Metrics, state_dependency("metrics")]) -> Response:
     """Return metrics in the Prometheus text format: jobs by state, age of the queue, workers, request times."""
-    return Response(metrics.text(), media_type=CONTENT_TYPE_LATEST)
+    return Response(metrics.prometheus_text(), media_type=CONTENT_TYPE_LATEST)
 
 
 @dataclass

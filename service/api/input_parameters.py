@@ -12,7 +12,7 @@ from pydantic import ConfigDict, Field, create_model
 from ...model.errors import InputError
 from ..questions.front_or_job_question import FrontOrJobQuestion
 from ..questions.inputs import Input
-from ..questions.typed_input import TypedInput
+from ..questions.plain_input import PlainInput
 
 _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
 
@@ -21,8 +21,8 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
     """Return the parameter for an input. prefix: start of its description."""
     kind = float if item.words is None else item.words
     examples = [round(item.unit.factor * item.read(item.example, item.name), 9)] if item.example else None
-    query = Query(**_limits(item), description=f"{prefix}{item.help}", examples=examples)
-    default = item.served_value if isinstance(item, TypedInput) else None
+    query = Query(**_value_limits(item), description=f"{prefix}{item.help}", examples=examples)
+    default = item.served_value if isinstance(item, PlainInput) else None
     return inspect.Parameter(
         item.key,
         inspect.Parameter.KEYWORD_ONLY,
@@ -33,7 +33,7 @@ def parameter_of(item: Input, prefix: str = "") -> inspect.Parameter:
 
 def body_model_of(question: FrontOrJobQuestion, name: str, **more: Any) -> Any:
     """Return the body model for the inputs of a question. more: further fields for `create_model`."""
-    fields: dict[str, Any] = {item.name: _field(item) for item in question.inputs if isinstance(item, TypedInput)}
+    fields: dict[str, Any] = {item.name: _body_field(item) for item in question.inputs if isinstance(item, PlainInput)}
     description = f"Inputs of `{question.name}`. {question.help.partition(chr(10))[0]}"
     return create_model(name, __config__=ConfigDict(extra="forbid", strict=True), __doc__=description, **fields, **more)
 
@@ -43,16 +43,16 @@ _Value = Annotated[str, Field(max_length=200)]
 _TYPES: dict[Any, Any] = {list: list[_Text], dict: dict[_Text, _Value]}
 
 
-def _field(item: TypedInput) -> tuple[Any, Any]:
+def _body_field(item: PlainInput) -> tuple[Any, Any]:
     """Return type and field for an input in a body."""
     default = ... if item.required else item.value if get_origin(item.type) is None else []
     examples = None if item.sent is None else [item.sent]
-    field = Field(default, description=item.help, examples=examples, **_limits(item))
+    field = Field(default, description=item.help, examples=examples, **_value_limits(item))
     return _TYPES.get(get_origin(item.type), item.type), field
 
 
-def _limits(item: Input) -> dict[str, Any]:
-    if isinstance(item, TypedInput):
+def _value_limits(item: Input) -> dict[str, Any]:
+    if isinstance(item, PlainInput):
         return dict(item.limits)
     if item.kind is None:
         return {}

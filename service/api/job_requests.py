@@ -19,7 +19,7 @@ from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_t
 from ..store import NO_LIMITS, Artefact, Limits
 from .models import LARGEST
 from .settings import Settings
-from .strict_input import PARSED_BODY, read_body_in_turn, read_json, require_moderate
+from .strict_input import PARSED_BODY, read_body_in_turn, read_json, require_shallow_and_portable
 
 JSON, TOML = "application/json", "application/toml"
 EXAMPLE = {
@@ -114,7 +114,7 @@ async def requested_job(request: Request) -> RequestedJob:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind == TOML:
         source = Artefact(name="job.toml", media_type=TOML, content=body)
-        tables = await read_body_in_turn(request.app, body, tables_of, body, settings.most_depth)
+        tables = await read_body_in_turn(request.app, body, tables_of_toml, body, settings.most_depth)
         return RequestedJob(tables=tables, limits=settings.limits, source=source)
     if kind != JSON:
         raise HTTPException(
@@ -134,7 +134,7 @@ async def requested_job(request: Request) -> RequestedJob:
     return RequestedJob(tables=tables, priority=stated.priority, limits=limits, origin=stated.origin)
 
 
-def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
+def tables_of_toml(body: bytes, most_depth: int) -> dict[str, Any]:
     """Return the tables of a job file in TOML. Raises `JobError`."""
     from ...optimise.job.job_file import toml_tables
 
@@ -144,7 +144,7 @@ def tables_of(body: bytes, most_depth: int) -> dict[str, Any]:
         raise JobError("a job file must be UTF-8 text; got other bytes; save it as UTF-8") from None
     tables = toml_tables(text)
     try:
-        require_moderate(tables, most_depth)
+        require_shallow_and_portable(tables, most_depth)
     except InputError as error:
         raise JobError(str(error)) from None
     return tables

@@ -18,7 +18,7 @@ from ...model.errors import InputError, NotFound
 from ..page.router import content_tag, response_with_etag
 from ..store import State
 from ..store.listing import Order
-from .exports import download, export_formats
+from .front_files import download_response, export_formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobStateModel
 from .problem_documents import json_with_etag_options, problem_responses
 from .settings import StoreDep
@@ -51,7 +51,11 @@ def list_jobs(
     jobs = store.jobs(states=state, name=name, before=before, limit=limit + 1, order=sort)
     page = jobs[:limit]
     rows = [job.record() if job.state == "running" else {**job.record(), "progress": None} for job in page]
-    return {"jobs": rows, "workers": str(store.count_workers()), "next": page[-1].id if len(jobs) > limit else None}
+    return {
+        "jobs": rows,
+        "workers": str(store.count_workers_and_waiting_jobs()),
+        "next": page[-1].id if len(jobs) > limit else None,
+    }
 
 
 @router.get("/front-points", **json_with_etag_options(FrontPointsList, "The points"))
@@ -115,7 +119,7 @@ def fetch_file(number: JobNumber, name: FileName, store: StoreDep) -> Response:
     """Return a file of a job, as it was sent or created."""
     file = store.artefact(number, name)
     # Always a download: files sent with a job must not run in a browser that has the token.
-    return download(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
+    return download_response(file.content, file.media_type, re.sub(r"[^A-Za-z0-9._-]", "_", file.name))
 
 
 @contextlib.contextmanager

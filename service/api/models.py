@@ -16,13 +16,13 @@ LARGEST = 2**53 - 1
 _INTEGER = re.compile(r"-?(0|[1-9][0-9]*)")
 
 
-def _plain(text: Any) -> Any:
+def _require_plain_integer(text: Any) -> Any:
     if isinstance(text, str) and not _INTEGER.fullmatch(text):
         raise PydanticKnownError("int_parsing")
     return text
 
 
-PLAIN_DIGITS = BeforeValidator(_plain)
+PLAIN_DIGITS = BeforeValidator(_require_plain_integer)
 """Validator for a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
 
 It must follow the numeric limits; otherwise the schema lists them under names unknown to JSON Schema.

@@ -27,8 +27,8 @@ from .problem_documents import validation_message
 from .settings import SettingsDep
 
 if TYPE_CHECKING:
+    from ..preview.possible_swing import PossibleSwing
     from ..preview.preview import JobPreview
-    from ..preview.swinging import PossibleSwing
 
 router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
@@ -233,10 +233,13 @@ def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
         example=_example(look),
         swing=_swing(look.swing),
         formulas=[
-            FormulaModel(path=item.key[:500], kind=item.kind and item.kind.plain, unit=_unit(item.kind))
+            FormulaModel(path=item.key[:500], kind=item.kind and item.kind.plain, unit=_metric_unit_symbol(item.kind))
             for item in look.formulas
         ],
-        names=[NameModel(name=item.name[:500], title=item.title[:200], unit=_unit(item.kind)) for item in look.names],
+        names=[
+            NameModel(name=item.name[:500], title=item.title[:200], unit=_metric_unit_symbol(item.kind))
+            for item in look.names
+        ],
     )
 
 
@@ -253,7 +256,7 @@ def _submission_mistakes(submission: dict[str, Any]) -> list[WrongModel]:
     return []
 
 
-def _unit(kind: Kind | None) -> str | None:
+def _metric_unit_symbol(kind: Kind | None) -> str | None:
     return None if kind is None else kind.metric.symbol
 
 

@@ -116,7 +116,7 @@ async def _invalid_request_response(request: Request, error: Exception) -> Respo
         turned = ", see POST /api/v1/parse for a job file as JSON" if "toml" in kind else ""
         sentence = f"body: must be a JSON object of type application/json; got {kind}; send it as such{turned}"
         return problem_response(HTTPStatus.UNPROCESSABLE_ENTITY, sentence)
-    sentences = [f"{_place(details['loc'])}: {validation_message(details)}" for details in errors[:_MOST]]
+    sentences = [f"{_location_text(details['loc'])}: {validation_message(details)}" for details in errors[:_MOST]]
     ellipsis = ["... and more"] if len(errors) > _MOST else []
     return problem_response(HTTPStatus.UNPROCESSABLE_ENTITY, "\n  ".join([*sentences, *ellipsis]))
 
@@ -127,12 +127,12 @@ async def _http_error_response(request: Request, error: Exception) -> Response:
     if error.status_code == HTTPStatus.NOT_FOUND and detail == HTTPStatus.NOT_FOUND.phrase:
         detail = "there is nothing at this address; see /api/v1/openapi.json for those of the API"
     elif error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
-        headers = {"Allow": ", ".join(_methods(request))}
+        headers = {"Allow": ", ".join(_allowed_methods(request))}
         detail = f"this address must be called with another method; got {request.method}; use {headers['Allow']}"
     return problem_response(error.status_code, detail, headers)
 
 
-def _methods(request: Request) -> list[str]:
+def _allowed_methods(request: Request) -> list[str]:
     """Return the methods of a path: the framework only names those of its first endpoint."""
 
     def is_known(method: str) -> bool:
@@ -155,7 +155,7 @@ def validation_message(details: Mapping[str, Any]) -> str:
     return f"{rule}; got {quote(details['input'])}; correct it"
 
 
-def _place(location: Sequence[Any]) -> str:
+def _location_text(location: Sequence[Any]) -> str:
     """Return the location of a mistake, such as "query limit" or "body priority", with long keys shortened."""
     first, *rest = [str(part) for part in location] or ["request"]
     text = ".".join(rest)

@@ -13,7 +13,7 @@ from ..designs.quantity_facts import facts_of_all
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from ..questions.front_or_job_question import FrontOrJobQuestion
-from ..questions.typed_input import TypedInput
+from ..questions.plain_input import PlainInput
 
 router = APIRouter(tags=["designs"])
 
@@ -215,9 +215,9 @@ def _topic(question: DesignQuestion | FrontOrJobQuestion, path: str, command: st
             title=item.title or item.name.replace("_", " ").capitalize(),
             help=item.help,
             unit=item.unit.symbol,
-            usual=item.served or item.usual if isinstance(item, TypedInput) else item.usual,
+            usual=item.served or item.usual if isinstance(item, PlainInput) else item.usual,
             words=get_args(item.words),
-            several=isinstance(item, TypedInput) and get_origin(item.type) is list,
+            several=isinstance(item, PlainInput) and get_origin(item.type) is list,
             required=item.required,
             example=item.example,
         )

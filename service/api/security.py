@@ -106,7 +106,7 @@ class Guard:
             if not self._has_valid_token(connection):
                 if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
                     return locked_page(connection)
-                return _unauthorised(
+                return _unauthorised_response(
                     "a request must carry the token of the service; got none or a wrong one; send it as "
                     "Authorization: Bearer TOKEN, or open the address that the service printed"
                 )
@@ -120,7 +120,7 @@ class Guard:
         if len(tokens) != 1 or not self._is_token(tokens[0]):
             if "text/html" in connection.headers.get("accept", ""):
                 return locked_page(connection, wrong=True)
-            return _unauthorised(
+            return _unauthorised_response(
                 "the address must carry the token of the service; got a wrong one; open the address that the service "
                 "printed last"
             )
@@ -142,7 +142,7 @@ class Guard:
         return self.token is not None and hmac.compare_digest(token.encode(errors="replace"), self.token)
 
 
-def _unauthorised(text: str) -> Response:
+def _unauthorised_response(text: str) -> Response:
     return problem_response(HTTPStatus.UNAUTHORIZED, text, {"WWW-Authenticate": "Bearer"})
 
 

@@ -89,7 +89,7 @@ def config_of(app: FastAPI) -> Config:
     """Return the web server configuration for an application."""
     from uvicorn import Config
 
-    from .connections import MOST_HEAD, Connection, Gate, raise_connection_limit
+    from .connection_limits import MOST_HEAD, Connection, Gate, raise_connection_limit
 
     return Config(
         app,

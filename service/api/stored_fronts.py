@@ -19,15 +19,15 @@ from pydantic import Field
 from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
 from ...optimise.problem.problem import Problem
-from ..designs.changed_design import Variation, design_with_numbers, variation_of
-from ..designs.choice_options import minimised_values
+from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import Column, all_columns
+from ..designs.design_selection_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
 from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
 from ..store import Job, Store
-from ..store.remarks import Bookmark, bookmarks_of
+from ..store.bookmarks_and_wishes import Bookmark, bookmarks_of
 from .models import PLAIN_DIGITS, JobNumber
 from .settings import StoreDep, state_dependency
 
@@ -144,12 +144,12 @@ class StoredFronts:
                     ),
                 )
                 if job.finished is not None:
-                    self._keep(key, front)
+                    self._cache_front(key, front)
             else:
                 self._cached.move_to_end(key)
         return front
 
-    def _keep(self, key: tuple[int, float | None], front: StoredFront) -> None:
+    def _cache_front(self, key: tuple[int, float | None], front: StoredFront) -> None:
         self._cached[key] = front
         while (
             len(self._cached) > 1
@@ -162,11 +162,11 @@ FrontsDep = Annotated[StoredFronts, state_dependency("fronts")]
 """Fronts of all jobs."""
 
 
-def _front(number: JobNumber, fronts: FrontsDep) -> StoredFront:
+def _front_of_job(number: JobNumber, fronts: FrontsDep) -> StoredFront:
     return fronts.get(number)
 
 
-FrontDep = Annotated[StoredFront, Depends(_front)]
+FrontDep = Annotated[StoredFront, Depends(_front_of_job)]
 """Front of the job in the path, with its designs."""
 
 
@@ -195,14 +195,14 @@ def _changed_numbers(
     numbers = {name: length for name, length in lengths.items() if length is not None}
     missing = [name for name in lengths if name not in numbers]
     if len(missing) in (0, 3):
-        return numbers | dict(map(_parse_value, value)) or None
+        return numbers | dict(map(_parse_column_value, value)) or None
     raise InputError(
         f"other lengths must be given together, crank_mm, rod_mm and offset_mm; got none for {' and '.join(missing)}; "
         "give all three, or none for the design as it is"
     )
 
 
-def _parse_value(text: str) -> tuple[str, float]:
+def _parse_column_value(text: str) -> tuple[str, float]:
     """Return column and number from a text such as "slider_mass_kg=1.2"."""
     column, _, number = text.partition("=")
     try:
@@ -239,31 +239,31 @@ class RequestedDesign:
         return next((bookmark for bookmark in self.bookmarks if bookmark.is_of(variant, values)), None)
 
     @property
-    def words(self) -> str:
+    def display_name(self) -> str:
         """Name of the design in titles: that of its bookmark, or its number."""
         if self.bookmark:
             return self.bookmark.name
         return f"design {self.number}" + (", changed" if self.changed else "")
 
     @property
-    def stem(self) -> str:
+    def file_stem(self) -> str:
         """Name of the design in file names."""
-        return slug(self.words)
+        return slug(self.display_name)
 
     @property
-    def key(self) -> str:
+    def cache_key(self) -> str:
         """Key of the design in the cache of the front."""
         return f"design_{self.number}" + (f" {self.design.values}" if self.changed else "")
 
     def cached_file(self, kind: str, make: Callable[[], bytes]) -> bytes:
         """Return a cached file of the design that shows its name, or create and cache it."""
-        key = f"{self.key} {self.words}"
+        key = f"{self.cache_key} {self.display_name}"
         return self.stored_front.cached_item(key, kind, lambda: ((key,), make()))
 
     def variation(self) -> Variation | None:
         """Return the variation with other numbers; None for the unchanged design."""
         return (
-            variation_of(self.design, self.stored_front.result, self.stored_front.minimised_objectives)
+            judged_variation(self.design, self.stored_front.result, self.stored_front.minimised_objectives)
             if self.changed
             else None
         )

@@ -97,11 +97,11 @@ async def read_body_in_turn(app: Any, body: bytes, read: Callable[..., T], *of: 
 def read_json(body: bytes, most_depth: int) -> Any:
     """Return the value of a JSON text.
 
-    Raises `InputError` for values that `require_moderate` rejects, and for duplicate keys.
+    Raises `InputError` for values that `require_shallow_and_portable` rejects, and for duplicate keys.
     """
     try:
         value = json.loads(
-            body, parse_constant=_reject_constant, parse_int=_parse_integer, object_pairs_hook=_unique_keys
+            body, parse_constant=_reject_non_finite, parse_int=_parse_integer, object_pairs_hook=_table_with_unique_keys
         )
     except RecursionError:
         raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it") from None
@@ -109,11 +109,11 @@ def read_json(body: bytes, most_depth: int) -> Any:
         raise
     except ValueError as error:
         raise InputError(f"the body is not valid JSON: {error}; correct it") from None
-    require_moderate(value, most_depth)
+    require_shallow_and_portable(value, most_depth)
     return value
 
 
-def require_moderate(value: Any, most_depth: int) -> None:
+def require_shallow_and_portable(value: Any, most_depth: int) -> None:
     """Reject data with too many levels, and numbers and texts that other programs would not read unchanged.
 
     Raises `InputError` for infinities, NaN, integers beyond 2^53, dates, and text with NUL or lone surrogates.
@@ -124,7 +124,7 @@ def require_moderate(value: Any, most_depth: int) -> None:
         next_level = list[Any]()
         for item in level:
             if not isinstance(item, dict | list):
-                _require_plain(item)
+                _require_portable(item)
             elif depth > most_depth:
                 raise InputError(f"a body must be nested at most {most_depth} deep; got more; flatten it")
             else:
@@ -132,7 +132,7 @@ def require_moderate(value: Any, most_depth: int) -> None:
         level = next_level
 
 
-def _require_plain(item: object) -> None:
+def _require_portable(item: object) -> None:
     if isinstance(item, str):
         if "\0" in item or (not item.isascii() and any("\ud800" <= letter <= "\udfff" for letter in item)):
             raise InputError(
@@ -152,7 +152,7 @@ def _body_too_large_error() -> InputError:
     return InputError("a whole number must be at most 2^53; got a larger one; give a smaller one")
 
 
-def _reject_constant(text: str) -> None:
+def _reject_non_finite(text: str) -> None:
     raise InputError(f"a number must be finite; got {text}; leave it out if there is no bound")
 
 
@@ -162,7 +162,7 @@ def _parse_integer(text: str) -> int:
     return int(text)
 
 
-def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+def _table_with_unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     table = dict(pairs)
     if len(table) < len(pairs):
         twice = Counter(name for name, _ in pairs).most_common(1)[0][0]

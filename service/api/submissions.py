@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field
 from starlette.types import Receive, Scope, Send
 
-from ..designs.following_jobs import SHARE, job_near_lengths, widen_limits
+from ..designs.derived_jobs import SHARE, job_near_lengths, widen_limits
 from ..jobs.submission import job_json
 from ..store import Job
 from .active_limits import LIMIT_PATH, Side

@@ -8,14 +8,25 @@ from fastapi import APIRouter, Query
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ..designs.changed_design import design_with_numbers, hold_equalities, nearest_holding, variation_of
+from ..designs.changed_design import (
+    design_with_numbers,
+    judged_variation,
+    lengths_meeting_equalities,
+    nearest_lengths_meeting_equalities,
+)
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
-from ..designs.judged_requirements import faults_in_words, quantity_names, ranges_of, requirements_of, speed_rpm
+from ..designs.judged_requirements import (
+    faults_in_words,
+    quantity_names,
+    ranges_as_requirements,
+    requirements_of,
+    speed_rpm,
+)
 from ..designs.violations import violations_in_words, violations_of
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
-from ..store.remarks import bookmarks_of
+from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
@@ -132,9 +143,9 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber, store: Store
     return RequirementsModel(
         job=stored_front.job.id,
         number=design,
-        name=requested.words,
+        name=requested.display_name,
         bookmark=requested.bookmark and requested.bookmark.number,
-        ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_of(stored.part)},
+        ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_as_requirements(stored.part)},
         requirements=requirements,
         slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),
@@ -155,9 +166,11 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     stored = stored_front.design(design)
     stored = design_with_numbers(stored, stored.values[:3], request.values)
     if request.hold is not None:
-        lengths = (nearest_holding if request.nearest else hold_equalities)(stored, lengths, request.hold)
+        lengths = (nearest_lengths_meeting_equalities if request.nearest else lengths_meeting_equalities)(
+            stored, lengths, request.hold
+        )
     stored = design_with_numbers(stored, lengths)
-    changed = variation_of(stored, stored_front.result, stored_front.minimised_objectives)
+    changed = judged_variation(stored, stored_front.result, stored_front.minimised_objectives)
     row, undefined = with_undefined_values(
         changed.row, stored.mechanism, stored.linkage, stored.part.own, stored.part.motion
     )
@@ -167,7 +180,7 @@ def change_lengths(stored_front: FrontDep, design: DesignNumber, request: OtherL
     return WhatIfModel(
         job=stored_front.job.id,
         number=design,
-        name=requested.words,
+        name=requested.display_name,
         bookmark=requested.bookmark and requested.bookmark.number,
         columns=column_models(all_columns(changed.row)),
         design=json_ready(row),

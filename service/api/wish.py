@@ -8,10 +8,10 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from ..designs.columns import all_columns
-from ..jobs.front_wish_history import stated_wishes
+from ..jobs.front_wish_history import wishes_by_objective
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
-from ..questions.wish.analysis import compute_wish
-from ..store.remarks import note_wish, wishes_of
+from ..questions.wish.analysis import wish_result
+from ..store.bookmarks_and_wishes import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .input_parameters import body_model_of
@@ -98,11 +98,13 @@ def make_wish(stored_front: FrontDep, given: Any, store: StoreDep, units: UnitsP
     """
     if given.design is not None:
         stored_front.row(given.design)
-    solved = compute_wish(
+    solved = wish_result(
         stored_front.wish_starts.wish(given.at, row=None if given.design is None else given.design - 1), given.at
     )
     record: dict[str, Any] = solved.record(units)
-    note_wish(store, stored_front.job.id, stated_wishes(stored_front.front, solved.search_result.wishes), given.design)
+    note_wish(
+        store, stored_front.job.id, wishes_by_objective(stored_front.front, solved.search_result.wishes), given.design
+    )
     columns = column_models(all_columns(record["design"] or ()))
     return WishedModel(job=stored_front.job.id, columns=columns, **record)
 

@@ -19,7 +19,7 @@ def linkage(branch: Branch = "open") -> Linkage:
     return Linkage(3.0, 8.0, 2.0, branch)
 
 
-def values_by_key() -> Numbers:
+def computed_values() -> Numbers:
     """Return the exact values by key."""
     exact: dict[str, float] = {}
     for branch in BRANCHES:

@@ -32,16 +32,18 @@ restitution."""
 _KG_MM2 = 1e6
 
 
-def values_by_key() -> Numbers:
+def computed_values() -> Numbers:
     """Return the exact values by key."""
     exact: dict[str, float] = {}
     for name, length in (("crank", 0.140), ("rod", 0.310)):
         exact[f"{name}_mass"] = STEEL.mass(length)
-        exact |= _inertias(name, STEEL.principal_inertias(length))
+        exact |= _moments_of_inertia(name, STEEL.principal_inertias(length))
     mass = STEEL.density * math.prod(SLIDER)
     a, b, c = SLIDER
     exact["slider_mass"] = mass
-    exact |= _inertias("slider", (mass * (a**2 + b**2) / 12, mass * (a**2 + c**2) / 12, mass * (b**2 + c**2) / 12))
+    exact |= _moments_of_inertia(
+        "slider", (mass * (a**2 + b**2) / 12, mass * (a**2 + c**2) / 12, mass * (b**2 + c**2) / 12)
+    )
     theta = np.linspace(0.0, 2.0 * math.pi, 200)
     # The report starts at a rod angle of 180 deg; its rod points from slider to crank.
     iterated = solve_loop(SIEVE, theta, start=(0.040, 0.0))
@@ -63,5 +65,5 @@ def values_by_key() -> Numbers:
     )
 
 
-def _inertias(name: str, values: tuple[float, float, float]) -> dict[str, float]:
+def _moments_of_inertia(name: str, values: tuple[float, float, float]) -> dict[str, float]:
     return {f"{name}_{axis}": _KG_MM2 * value for axis, value in zip(("Mxx", "Myy", "Mzz"), values, strict=True)}

@@ -13,7 +13,7 @@ LINKAGE = Linkage(0.050, 0.150)
 ANGLE, SPEED, LOAD = math.radians(60.0), 10.0, -100.0
 
 
-def values_by_key() -> Numbers:
+def computed_values() -> Numbers:
     """Return the values of the model and those of the report's formulas, by key."""
     at = LINKAGE.at(ANGLE, speed=SPEED)
     x = float(at.slider_position)
@@ -36,10 +36,10 @@ def values_by_key() -> Numbers:
         "crank_torque_size": float(forces.crank_torque),
         "mechanical_advantage": float(forces.mechanical_advantage),
     }
-    return Numbers(exact, printed_formulas(x))
+    return Numbers(exact, values_of_printed_formulas(x))
 
 
-def printed_formulas(r1: float) -> dict[str, float]:
+def values_of_printed_formulas(r1: float) -> dict[str, float]:
     """Return the values of the report's formulas in its own notation: r_1 position, r_2 crank, r_3 rod."""
     r2, r3, t2, w2, p = float(LINKAGE.crank), float(LINKAGE.rod), ANGLE, SPEED, -LOAD
     t3 = math.asin(-r2 * math.sin(t2) / r3)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...model.linkage.linkage import Linkage
-from .printed_values import Numbers, read_table
+from .printed_values import Numbers, read_printed_table
 
 LINKAGE = Linkage(1.400, 1.800, -0.050)
 SHARE, ANGLE_ERROR = 1e-3, math.radians(0.1)
@@ -17,7 +17,7 @@ COLUMNS = ("crank", "rod", "offset", "crank_angle", "total")
 
 def printed_table() -> dict[str, NDArray[np.float64]]:
     """Return Table 1 as numbers, by the column names of its file."""
-    lines = read_table("position_error_table1.csv")
+    lines = read_printed_table("position_error_table1.csv")
     return {name: np.array([float(line[name]) for line in lines]) for name in lines[0]}
 
 
@@ -37,7 +37,7 @@ def position_error_contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np
     return parts | {"total": sum(parts.values())}
 
 
-def values_by_key() -> Numbers:
+def computed_values() -> Numbers:
     """Return the exact values by key."""
     theta = np.radians(printed_table()["crank_angle_deg"])
     at = LINKAGE.at(theta)

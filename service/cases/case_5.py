@@ -32,7 +32,7 @@ def linkage(offset: float) -> Linkage:
     return Linkage(CRANK, ROD, -offset)
 
 
-def masses() -> tuple[float, float]:
+def rotating_and_reciprocating_mass() -> tuple[float, float]:
     """Return the rotating and the reciprocating mass, kg, with both links split in half as in the paper."""
     return rotating_and_reciprocating(MACHINE, linkage(0.020))
 
@@ -40,13 +40,13 @@ def masses() -> tuple[float, float]:
 def exact_torque(offset: float, crank_angle: Array) -> Array:
     """Return the drive torque against the inertia of the reciprocating mass, N m. By virtual work: m3 x_t x_tt / w."""
     at = linkage(offset).at(crank_angle, speed=SPEED)
-    torque: Array = masses()[1] * at.slider_velocity * at.slider_acceleration / SPEED
+    torque: Array = rotating_and_reciprocating_mass()[1] * at.slider_velocity * at.slider_acceleration / SPEED
     return torque
 
 
 def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = False) -> Array:
     """Return the drive torque T = k F_i tan(alpha), N m, in one of its two readings."""
-    rotating, reciprocating = masses()
+    rotating, reciprocating = rotating_and_reciprocating_mass()
     torque: Array = drive_torque_equation_48(
         linkage(offset),
         crank_angle,
@@ -58,12 +58,12 @@ def formula_torque(offset: float, crank_angle: Array, *, as_equation_20: bool = 
     return torque
 
 
-def values_by_key() -> Numbers:
+def computed_values() -> Numbers:
     """Return the values of the model and those of the paper's formulas, by key."""
     feeder, half = linkage(0.020), linkage(0.010)
     inner, outer = (float(angle) for angle in feeder.dead_centre_angles)
     forward = (outer - inner) % _TURN
-    rotating, reciprocating = masses()
+    rotating, reciprocating = rotating_and_reciprocating_mass()
     exact = {
         "speed": 2400.0 * _RPM,
         "rod": 3.2 * 20.0,
@@ -115,14 +115,14 @@ def values_by_key() -> Numbers:
         "series_acceleration_0": float(series_acceleration(centred, 0.0, speed=SPEED)),
         "series_acceleration_60": float(series_acceleration(centred, sixty, speed=SPEED)),
         "series_torque_60": float(series_torque(centred, sixty, speed=SPEED, reciprocating_mass=reciprocating)),
-        **printed_formulas(math.radians(30.0), 0.020),
+        **values_of_printed_formulas(math.radians(30.0), 0.020),
     }
     return Numbers(exact, printed)
 
 
-def printed_formulas(t: float, e: float) -> dict[str, float]:
+def values_of_printed_formulas(t: float, e: float) -> dict[str, float]:
     """Return the values of the paper's equations as printed, in its own notation; lengths in m."""
-    k, c, w, m3 = CRANK, ROD, SPEED, masses()[1]
+    k, c, w, m3 = CRANK, ROD, SPEED, rotating_and_reciprocating_mass()[1]
     sine, cosine = math.sin(t), math.cos(t)
     h = e + k * sine
     square_of_cosine = c**2 - h**2
@@ -151,7 +151,8 @@ def printed_formulas(t: float, e: float) -> dict[str, float]:
 def _greatest_torques() -> dict[str, float]:
     """Return the peak torques, N m: exact ones and those by the paper's formula."""
     torques: dict[str, float] = {}
-    machine = Mechanism(speed=SPEED, slider_mass=masses()[1])  # as in the paper, with all moving mass on the slider
+    _, reciprocating = rotating_and_reciprocating_mass()
+    machine = Mechanism(speed=SPEED, slider_mass=reciprocating)  # as in the paper, with all moving mass on the slider
     for offset in OFFSETS:
         name = f"{1e3 * offset:.0f}"
         designs = np.array([[CRANK, ROD, -offset]])

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..render.terminal import print_table, table
+from ..render.terminal import empty_table, print_table
 from . import case_1, case_2, case_3, case_4, case_5
 from .printed_values import CASES, Case, Row, read_case
 
@@ -19,7 +19,7 @@ _OF = dict(zip(CASES, (case_1, case_2, case_3, case_4, case_5), strict=True))
 
 def collect_cases(numbers: Sequence[int] = CASES) -> list[Case]:
     """Return the cases with these numbers."""
-    return [read_case(number, _OF[number].values_by_key()) for number in numbers]
+    return [read_case(number, _OF[number].computed_values()) for number in numbers]
 
 
 def show_case(screen: Console, case: Case, *, full: bool) -> None:
@@ -30,10 +30,10 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     screen.print(f"Case {case.number}: {case.title}", style="bold", soft_wrap=True)
     screen.print(f"{case.source}.", style="dim", soft_wrap=True)
     screen.print(f"Given: {case.given}.", style="dim", soft_wrap=True)
-    rows = table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True)
+    rows = empty_table("quantity", ">printed", ">exact", "unit", "verdict", ruled=True)
     reasons: list[str] = []
     folded = 0
-    for _, group in groupby(case.rows, key=lambda row: row.key if full else row.column):
+    for _, group in groupby(case.rows, key=lambda row: row.key if full else row.key_without_row_number):
         first, *rest = cells = list(group)
         if first.why and first.why not in reasons:
             reasons.append(first.why)
@@ -53,7 +53,7 @@ def show_case(screen: Console, case: Case, *, full: bool) -> None:
     screen.print()
 
 
-def verdict_counts(rows: Sequence[Row]) -> str:
+def verdict_counts_text(rows: Sequence[Row]) -> str:
     """Return the number of rows with each verdict, in words."""
     counts = Counter(row.verdict for row in rows)
     return ", ".join(f"{count} {_PLURAL.get(verdict, verdict)}" for verdict, count in counts.most_common())
@@ -64,7 +64,7 @@ _PLURAL = {"agrees": "agree", "misprint": "misprints", "differs": "differ"}
 
 def _verdicts_text(rows: Sequence[Row]) -> str:
     verdicts = {row.verdict for row in rows}
-    return f"all {len(rows)}: {verdicts.pop()}" if len(verdicts) == 1 else verdict_counts(rows)
+    return f"all {len(rows)}: {verdicts.pop()}" if len(verdicts) == 1 else verdict_counts_text(rows)
 
 
 def _exact_text(row: Row) -> str:

@@ -11,10 +11,10 @@ import numpy as np
 
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
+from ..figures.panel_drawing import save_figure
 from ..figures.panel_figure import CRANK_ANGLE, Array, Line, Panel, PanelFigure, crank_angle_panel
-from ..figures.panels import save_figure
 from ..questions.clearance.figure import speed_runs, speeds_figure
-from ..questions.polygons.analysis import both_branches, polygon_panels
+from ..questions.polygons.analysis import polygon_panels, polygons_by_branch
 from . import case_1, case_2, case_3, case_4, case_5
 
 _TURN = np.linspace(0.0, 2.0 * math.pi, 721)
@@ -33,7 +33,7 @@ def draw_cases(numbers: Sequence[int], folder: Path) -> Iterator[Path]:
 
 def polygon_figure() -> PanelFigure:
     """Return the polygons of case 1 (its Fig. 2)."""
-    polygons = both_branches(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
+    polygons = polygons_by_branch(case_1.linkage(), case_1.ANGLE, speed=case_1.SPEED, acceleration=case_1.ACCELERATION)
     return polygon_panels(
         polygons,
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
@@ -149,7 +149,9 @@ def offset_figure() -> PanelFigure:
     exact, formula = (partial(torque, crank_angle=theta) for torque in (case_5.exact_torque, case_5.formula_torque))
     two_turns = partial(labelled_curves_panel, theta=theta)
     centred = case_5.linkage(0.0)
-    series = series_torque(centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.masses()[1])
+    series = series_torque(
+        centred, theta, speed=case_5.SPEED, reciprocating_mass=case_5.rotating_and_reciprocating_mass()[1]
+    )
 
     def acceleration(offset: float) -> Array:
         acceleration_m_s2: Array = case_5.linkage(offset).at(theta, speed=case_5.SPEED).slider_acceleration

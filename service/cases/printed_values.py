@@ -49,7 +49,7 @@ class Row:
     why: str
 
     @property
-    def column(self) -> str:
+    def key_without_row_number(self) -> str:
         """Key without the row number in a printed table; for any other number the whole key."""
         return self.key.rpartition("_")[0] if ", row " in self.where else self.key
 
@@ -65,15 +65,15 @@ class Case:
     rows: tuple[Row, ...]
 
 
-def read_case(number: int, numbers: Numbers) -> Case:
+def read_case(number: int, computed: Numbers) -> Case:
     """Return a case from its data file and the values by key."""
     text = files(__package__).joinpath("data", f"case_{number}.toml").read_text(encoding="utf-8")
     data = tomllib.loads(text)
-    rows = tuple(_row_of_entry(entry, numbers) for entry in (*data["row"], *_table_rows(data)))
+    rows = tuple(_row_of_entry(entry, computed) for entry in (*data["row"], *_table_rows(data)))
     return Case(number=number, title=data["title"], source=data["source"], given=data["given"], rows=rows)
 
 
-def read_table(name: str) -> list[dict[str, str]]:
+def read_printed_table(name: str) -> list[dict[str, str]]:
     """Return the rows of a printed table, every cell as printed."""
     text = files(__package__).joinpath("data", name).read_text(encoding="utf-8")
     return list(csv.DictReader(line for line in text.splitlines() if not line.startswith("#")))
@@ -87,26 +87,26 @@ def _table_rows(data: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [
         {
             **column,
-            "key": f"{column['key']}_{parse_printed_number}",
+            "key": f"{column['key']}_{row_number}",
             "what": f"{column['what']} at {line[table['at']]} deg",
-            "where": f"{table['where']}, row {parse_printed_number}",
+            "where": f"{table['where']}, row {row_number}",
             "printed": line[column["column"]],
         }
         for column in table["columns"]
-        for parse_printed_number, line in enumerate(read_table(table["file"]), start=1)
+        for row_number, line in enumerate(read_printed_table(table["file"]), start=1)
     ]
 
 
-def _row_of_entry(entry: Mapping[str, Any], numbers: Numbers) -> Row:
+def _row_of_entry(entry: Mapping[str, Any], computed: Numbers) -> Row:
     key, why = entry["key"], entry.get("why", "")
-    exact, formula = numbers.exact.get(key), entry.get("formula", False)
-    printed = f"{numbers.formulas[key]:.10g}" if formula else entry.get("printed")
+    exact, formula = computed.exact.get(key), entry.get("formula", False)
+    printed = f"{computed.formulas[key]:.10g}" if formula else entry.get("printed")
     verdict: Verdict
     if printed is None:
         verdict = "not printed"
     elif exact is None:
         verdict = "not checkable"
-    elif math.isclose(numbers.formulas[key], exact, rel_tol=_SAME) if formula else is_confirmed(entry, exact):
+    elif math.isclose(computed.formulas[key], exact, rel_tol=_SAME) if formula else is_confirmed(entry, exact):
         verdict, why = "agrees", ""
     else:
         verdict = "misprint" if why.startswith("misprint") else "differs"

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import InputError, ServiceError
 from ...model.file_name_encoding import path_from_text
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
-from ..runs.result import Result, Row, read_row
+from ..runs.result import Result, Row, row_from_json
 from ..runs.run_folder import write_file
 from ..runs.stored_runs import result_from
 from .connection import Connection, Record, events_until_end, without_none
@@ -166,7 +166,7 @@ class Client(Designs):
     def front(self, number: int) -> Result:
         """Return the result of a job with all designs; undefined values are None."""
         record = self._connection.ask(f"jobs/{number}/export.json")
-        rows = [read_row(row) for row in record["designs"]]
+        rows = [row_from_json(row) for row in record["designs"]]
         return result_from(record, rows, str(record["run"]))
 
     def designs(
@@ -190,7 +190,7 @@ class Client(Designs):
         numbers: list[int] = []
         while True:
             page = self._connection.ask(f"jobs/{number}/designs", {**query, "offset": len(rows)})
-            rows += map(read_row, page["designs"])
+            rows += map(row_from_json, page["designs"])
             numbers += page["numbers"]
             if not page["designs"] or len(rows) >= page["chosen"]:
                 break
@@ -202,7 +202,7 @@ class Client(Designs):
     def design(self, number: int, design: int) -> Row:
         """Return a design by its number on the front, counted from 1; the number comes first."""
         row = self._connection.ask(f"jobs/{number}/designs/{design}")["design"]
-        return {"number": design, **read_row(row)}
+        return {"number": design, **row_from_json(row)}
 
     def pick(
         self,
@@ -236,13 +236,13 @@ class Client(Designs):
 
     def figure(self, number: int, name: str, path: str | PathLike[str]) -> Path:
         """Write a figure to a PNG or SVG file, depending on its ending, and return the file."""
-        return self._save(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
+        return self._download(f"jobs/{number}/figures/{name}", Path(path), ("png", "svg"))
 
     def export(self, number: int, path: str | PathLike[str]) -> Path:
         """Write all designs of a front to a file and return it: CSV, JSON or Parquet, depending on its ending."""
-        return self._save(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
+        return self._download(f"jobs/{number}/export", Path(path), ("csv", "json", "parquet"))
 
-    def _save(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
+    def _download(self, path: str, file: Path, kinds: tuple[str, ...]) -> Path:
         kind = file.suffix.lower().removeprefix(".")
         if kind not in kinds:
             raise InputError(

@@ -61,7 +61,7 @@ class Connection:
         self._http.close()
 
     def request(self, method: str, path: str, *, again: bool, **content: Any) -> httpx.Response:
-        """Return the answer to a request. Raises the errors of `refusal`, and `ServiceError` if there is no answer.
+        """Return the answer to a request. Raises the errors of `error_of_refusal`, or `ServiceError` without an answer.
 
         again: whether the request may be sent twice. A request that cannot have reached the service is always retried.
         """
@@ -81,7 +81,7 @@ class Connection:
             elif response.is_success:
                 return response
             else:
-                raise refusal(response)
+                raise error_of_refusal(response)
 
     def post(self, path: str, body: Record | None = None, *, again: bool = True, key: str | None = None) -> Record:
         """Return the JSON answer to a request with a body. key: key of a submission."""
@@ -101,11 +101,14 @@ class Connection:
 
     @contextmanager
     def stream(self, path: str, headers: Mapping[str, str]) -> Iterator[httpx.Response]:
-        """Yield the answer to a GET request before its content arrives; raises the errors of httpx and of `refusal`."""
+        """Yield the answer to a GET request before its content arrives.
+
+        Raises the errors of httpx and of `error_of_refusal`.
+        """
         with self._http.stream("GET", path, headers=dict(headers)) as response:
             if not response.is_success:
                 response.read()
-                raise refusal(response)
+                raise error_of_refusal(response)
             yield response
 
     def unreachable_error(self, error: Exception) -> ServiceError:
@@ -141,7 +144,7 @@ class Tries:
         self.pause()
 
 
-def refusal(response: httpx.Response) -> SlidercrankError:
+def error_of_refusal(response: httpx.Response) -> SlidercrankError:
     """Return the exception for a refusal by a service, with the service's sentence.
 
     `NotFound` for 404, `InputError` for an invalid request, `InfeasibleError` for a valid request without a feasible
@@ -173,7 +176,7 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
             with connection.stream(f"jobs/{number}/events", headers) as response:
                 if response.status_code == _ENDED:
                     return
-                for event in _events(response.iter_lines()):
+                for event in _parse_event_stream(response.iter_lines()):
                     tries = Tries(connection)
                     if event is not None:
                         after = int(event["number"])
@@ -188,7 +191,7 @@ def events_until_end(connection: Connection, number: int, after: int) -> Iterato
             tries.made += 1
 
 
-def _events(lines: Iterator[str]) -> Iterator[Event | None]:
+def _parse_event_stream(lines: Iterator[str]) -> Iterator[Event | None]:
     """Yield the data of server-sent events, or None for a keep-alive comment; discard a truncated event.
 
     WHATWG, HTML standard, 9.2.6.

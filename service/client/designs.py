@@ -40,7 +40,7 @@ class Designs:
                 raise InputError(f"a service cannot answer {question}; use the command of that name, or problem.ask")
             if FRONT_OR_JOB_QUESTIONS[question].subject == "runs":
                 raise InputError(f"{question} needs several jobs; got one; call client.comparison([1, 2])")
-            return self._ask_wider(FRONT_OR_JOB_QUESTIONS[question], number, design, inputs)
+            return self._ask_front_question(FRONT_OR_JOB_QUESTIONS[question], number, design, inputs)
         if design is None:
             raise InputError(f"{question} needs a design; got none; give its number")
         if question in QUESTION_COMMANDS:
@@ -122,9 +122,9 @@ class Designs:
 
         csv: path of a CSV file, or its text, which is recognised by its line breaks.
         """
-        from ..designs.measured_file import measured_text
+        from ..designs.measured_curves_file import text_of_measured_file
 
-        text = csv if isinstance(csv, str) and "\n" in csv else measured_text(Path(csv))
+        text = csv if isinstance(csv, str) and "\n" in csv else text_of_measured_file(Path(csv))
         return self._ask_design(number, design, "measured", body={"csv": text})
 
     def rounded(
@@ -142,7 +142,7 @@ class Designs:
         to: step for all lengths, "0.5 mm", or several steps, also by name: ["0.5 mm", "rod=1 mm"]. allow: amounts by
         which designs may miss requirements, "stroke=0.1 mm".
         """
-        return self._ask_wider(
+        return self._ask_front_question(
             FRONT_OR_JOB_QUESTIONS["round"], number, design, {"to": to, "allow": allow, "count": count}, units
         )
 
@@ -153,7 +153,7 @@ class Designs:
         columns = self._ask_design(number, design, "curves", {"angles": angles})
         return pd.DataFrame(columns).set_index("crank_angle_deg")
 
-    def _ask_wider(
+    def _ask_front_question(
         self, question: FrontOrJobQuestion, number: int, design: int | None, inputs: Record, units: System = "metric"
     ) -> Record:
         """Return the answer for a front, or for one of its designs."""

@@ -30,9 +30,9 @@ from ..text.options import (
     speed_option,
 )
 from ..text.screen import console, print_message, print_output, show_activity
-from .ending import INTERRUPTED, Interruption
-from .input_options import option_of
-from .job_or_run import machine_of
+from .design_of_job_or_run import machine_of
+from .exit_and_interruption import INTERRUPTED, Interruption
+from .question_options import option_of
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -115,7 +115,7 @@ def analyse(
             undefined=None if problem is None else undefined,
         )
     if files.cycle is not None:
-        _write_cycle(mechanism, linkage, files.cycle, units, machine=problem is not None)
+        _write_cycle_csv(mechanism, linkage, files.cycle, units, machine=problem is not None)
     judgement = None if problem is None else judge_design(problem, mechanism, linkage, row, units)
     if json:
         print_output(json_text(analysis.record(units, judgement)))
@@ -129,7 +129,7 @@ def analyse(
     for note in analysis.notes + (analysis.refused if ALL in (show or ()) else []):
         print_message(note)
     if files.figures is not None and not interruption.requested():
-        _draw(problem, mechanism, linkage, row, analysis.topics, files.figures, units)
+        _draw_design_figures(problem, mechanism, linkage, row, analysis.topics, files.figures, units)
     if interruption.requested():
         raise typer.Exit(INTERRUPTED)
     if analysis.refused and ALL not in (show or ()):
@@ -137,11 +137,11 @@ def analyse(
 
 
 def _measured_question(file: Path, mechanism: Mechanism, linkage: Linkage) -> BoundQuestion:
-    from ..designs.measured_file import measured_text, read_measured
+    from ..designs.measured_curves_file import parse_measured_curves, text_of_measured_file
     from ..questions.measured import MEASURED
 
     return MEASURED.bind_to_design(
-        mechanism, linkage, {"measured": read_measured(measured_text(file), mechanism, linkage)}
+        mechanism, linkage, {"measured": parse_measured_curves(text_of_measured_file(file), mechanism, linkage)}
     )
 
 
@@ -159,7 +159,7 @@ def _topic_options(texts: Mapping[str, str | None], topics: tuple[str, ...]) -> 
     return options
 
 
-def _draw(
+def _draw_design_figures(
     problem: Problem | None,
     mechanism: Mechanism,
     linkage: Linkage,
@@ -169,19 +169,19 @@ def _draw(
     units: System,
 ) -> None:
     from ..figures.datasheet import design_datasheet
-    from ..figures.style import save
+    from ..figures.style import save_png
 
     title = "Design" if problem is None else problem.name
     with translate_disk_errors(folder), show_activity("drawing the figures"):
         folder.mkdir(parents=True, exist_ok=True)
         datasheet = design_datasheet(mechanism, linkage, row, title=title, torque=problem is not None, system=units)
-        save(datasheet, folder / "design.png")
+        save_png(datasheet, folder / "design.png")
         files = [folder / "design.png", *(topic.draw(folder, units) for topic in topics)]
     for file in files:
         print_message(f"figure: {file}")
 
 
-def _write_cycle(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
+def _write_cycle_csv(mechanism: Mechanism, linkage: Linkage, file: Path, units: System, *, machine: bool) -> None:
     from ..designs.design_curves import cycle_csv
 
     text = cycle_csv(mechanism, linkage, units, machine=machine)

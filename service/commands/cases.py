@@ -26,7 +26,7 @@ def cases(
     """
     from dataclasses import asdict
 
-    from ..cases.case_table import collect_cases, show_case, verdict_counts
+    from ..cases.case_table import collect_cases, show_case, verdict_counts_text
     from ..cases.printed_values import CASES
 
     chosen = CASES if case is None else (case,)
@@ -38,7 +38,7 @@ def cases(
         screen = console()
         for case_table in tables:
             show_case(screen, case_table, full=case is not None)
-        screen.print(f"{len(rows)} numbers: {verdict_counts(rows)}", style="bold", soft_wrap=True)
+        screen.print(f"{len(rows)} numbers: {verdict_counts_text(rows)}", style="bold", soft_wrap=True)
     if figures is not None:
         from ..cases.figures import draw_cases
 

@@ -19,7 +19,7 @@ from ...objectives.count_text import counted
 from ..jobs.stores import Address, has_store, is_store_specified, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
-from ..runs.run_folder import runs_place
+from ..runs.run_folder import runs_folder
 from ..text.options import File, Json, Runs
 from ..text.screen import console, print_message, print_output
 
@@ -50,7 +50,7 @@ def doctor(
     address = store_address(store, runs)
     if backup is not None:
         _back_up(store, runs, backup)
-    checks = diagnose(address, runs_place(runs), named=is_store_specified(store))
+    checks = diagnose(address, runs_folder(runs), named=is_store_specified(store))
     healthy = all(check.grade != "problem" for check in checks)
     if json:
         print_output(json_text({"healthy": healthy, "checks": [check._asdict() for check in checks]}))
@@ -64,8 +64,8 @@ def doctor(
 
 
 def _back_up(store: str | None, runs: Path | None, target: Path) -> None:
+    from ..store.damage_check_and_backup import back_up
     from ..store.database import Database
-    from ..store.upkeep import back_up
 
     if not has_store(store, runs):
         raise NotFound(
@@ -123,10 +123,10 @@ def _check_store(address: str, named: bool) -> Iterator[Check]:
 
 def _check_access(file: Path) -> Iterator[Check]:
     """Check who may access a store file, which holds everything that the service's token protects."""
-    from ..store.database import is_readable_and_writable, remedy_of_rights
+    from ..store.database import is_readable_and_writable, permission_remedy
 
     if not is_readable_and_writable(file):
-        text = f"{file} is not writable, so no job can make progress; {remedy_of_rights(file)}"
+        text = f"{file} is not writable, so no job can make progress; {permission_remedy(file)}"
         yield Check("permissions", "problem", text)
     elif os.name == "posix" and (mode := file.stat().st_mode & 0o077):
         text = f"other users of this machine can read or write {file} (their mode: {mode:03o}); run chmod 600 {file}"
@@ -134,8 +134,8 @@ def _check_access(file: Path) -> Iterator[Check]:
 
 
 def _check_database(address: str, database: Database) -> Iterator[Check]:
-    from ..store.schema_version import foreign_tables_text, versions
-    from ..store.upkeep import clock_ahead, damages, server_version
+    from ..store.damage_check_and_backup import clock_ahead, damages, server_version
+    from ..store.schema_version import foreign_tables_text, stored_and_known_version
 
     if not database.sqlite:
         database.require_ready()
@@ -145,7 +145,7 @@ def _check_database(address: str, database: Database) -> Iterator[Check]:
         text = f"they belong to another program ({foreign}); name another store with --store"
         yield Check("tables", "problem", text)
         return
-    version, latest, is_known = versions(database)
+    version, latest, is_known = stored_and_known_version(database)
     if not is_known:
         text = f"their version is {version}, but this release supports {latest}; install the release that created them"
         yield Check("tables", "problem", text)
@@ -171,7 +171,7 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
     from ..store.records import SILENT
 
     with Store(address) as store:
-        counts, active = store.count_by_state(), store.workers_at_work()
+        counts, active = store.count_by_state(), store.count_present_workers()
         silent = max(0, len(store.workers()) - active)
         running = store.jobs(states=["running"], limit=10_000)
     expired = [job for job in running if job.lease_until is not None and job.lease_until < now]

@@ -20,10 +20,10 @@ from ..runs.result import Result, csv_text, json_text
 from ..runs.run_folder import translate_disk_errors, write_file
 from ..text.options import Figures, JobFile, Json, Number, Run, Runs, Units
 from ..text.screen import console, print_message, print_output, print_record, show_activity, write_figure
-from .ending import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, end_without_design
-from .input_options import options_of, search_listener, with_question_help
-from .job_or_run import rotating_problem
-from .run_choice import front_of_run, run_of
+from .design_of_job_or_run import rotating_problem
+from .exit_and_interruption import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, end_without_design
+from .question_options import options_of, search_listener, with_question_help
+from .run_choice import folder_and_result, front_of_run
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -144,7 +144,7 @@ def compare(
     json: Json = False,
 ) -> None:
     """Answer the question for runs with designs, and draw their fronts."""
-    compared = [compared_run(*run_of(name, runs)) for name in run]
+    compared = [compared_run(*folder_and_result(name, runs)) for name in run]
     for one in compared:
         if not one.result.designs:
             raise NoDesigns(replace(one.result, message=f"{one.name}: {one.result.message}; leave it out"))
@@ -152,19 +152,21 @@ def compare(
     if not answer.is_satisfied:
         raise InputError(answer.message)
     picture = (
-        None if figures is None else _draw([(one, convert_result(one.result, units)) for one in compared], figures)
+        None
+        if figures is None
+        else _draw_comparison([(one, convert_result(one.result, units)) for one in compared], figures)
     )
     print_record(json, answer.record(units), lambda screen: print_blocks(screen, answer.blocks, units))
     if picture is not None:
         print_message(f"{picture}")
 
 
-def _draw(compared: Sequence[tuple[ComparedRun, Result]], folder: Path) -> Path:
+def _draw_comparison(compared: Sequence[tuple[ComparedRun, Result]], folder: Path) -> Path:
     """Draw the results of runs in a unit system into a folder."""
     import numpy as np
 
     from ..figures.comparison import MOST_RUNS, PlottedRun, comparison_matrix
-    from ..figures.style import save
+    from ..figures.style import save_png
 
     objectives = compared[0][1].objectives
     if len(objectives) < 2:
@@ -180,7 +182,7 @@ def _draw(compared: Sequence[tuple[ComparedRun, Result]], folder: Path) -> Path:
     ]
     with translate_disk_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        save(comparison_matrix(drawn, objectives), folder / "comparison.png")
+        save_png(comparison_matrix(drawn, objectives), folder / "comparison.png")
     return folder / "comparison.png"
 
 

@@ -101,10 +101,14 @@ def quantities(
                 remedy = f"{TERMS[name]}; see docs/glossary.md"
             raise InputError(f"no quantity is called {name!r}; {remedy}")
     chosen = [facts[name] for name in dict.fromkeys(names or facts)]
-    print_record(json, {"quantities": chosen}, lambda screen: (_explain if names else _list)(screen, chosen))
+    print_record(
+        json,
+        {"quantities": chosen},
+        lambda screen: (_explain_quantities if names else _list_quantities)(screen, chosen),
+    )
 
 
-def _list(screen: Console, facts: list[dict[str, Any]]) -> None:
+def _list_quantities(screen: Console, facts: list[dict[str, Any]]) -> None:
     """Print name, unit and title of quantities, by group."""
     widths = [max(len(item[key]) for item in facts) for key in ("name", "unit")]
     for group in dict.fromkeys(item["group"] for item in facts):
@@ -115,7 +119,7 @@ def _list(screen: Console, facts: list[dict[str, Any]]) -> None:
                 screen.print(f"  {name}  {unit}  {item['title']}", soft_wrap=True)
 
 
-def _explain(screen: Console, facts: list[dict[str, Any]]) -> None:
+def _explain_quantities(screen: Console, facts: list[dict[str, Any]]) -> None:
     for item in facts:
         screen.print(f"{item['name']}: {item['title']}", style="bold", soft_wrap=True)
         screen.print(" ".join(filter(None, (item["sentence"], item["advice"]))), soft_wrap=True)

@@ -20,13 +20,13 @@ from ...objectives.kinds import System
 from ..designs.display_units import convert_result
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import json_text
-from ..runs.run_folder import RunFolder, runs_place, translate_disk_errors
+from ..runs.run_folder import RunFolder, runs_folder, translate_disk_errors
 from ..text.design_options import SettingOptions
 from ..text.options import Json, Runs, Units
 from ..text.screen import console, print_message, print_output, progress_bar, show_activity
 from ..text.tables import show_result
 from ..workers.engines import EngineOptions, engine_of
-from .ending import EXIT_CODES, INTERRUPTED, Interruption
+from .exit_and_interruption import EXIT_CODES, INTERRUPTED, Interruption
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -82,7 +82,7 @@ def optimise(
 
     compile_ahead(*SEARCH)
     from ..store.address import without_secrets
-    from ..workers.direct_search import keep_front, new_run, renewing_claim, resumed_run, search
+    from ..workers.direct_search import new_run, renewing_claim, resumed_run, save_result, search
 
     if (job is None) == (resume is None):
         raise InputError(
@@ -92,11 +92,11 @@ def optimise(
         raise InputError("a run must continue with its original number of designs and seed; leave them out")
     if figures:
         import_extra("matplotlib", "figures need")
-    options, place = engine.validated(), runs_place(places.runs)
+    options, place = engine.validated(), runs_folder(places.runs)
     with contextlib.ExitStack() as opened:
         listed = True
         if job is not None:
-            problem, tables, files = _problem(job, settings)
+            problem, tables, files = _problem_with_settings(job, settings)
             jobs, listed = opened.enter_context(_store_or_temporary(places))
             begin = new_run(jobs, place, problem, tables, files)
         else:
@@ -113,7 +113,7 @@ def optimise(
                 opened_run, opened.enter_context(engine_of(options)), cancelled=interruption.requested, show=show
             )
         with show_activity("writing the designs"):
-            result = keep_front(opened_run, front)
+            result = save_result(opened_run, front)
         drawn = figures is not False and result.status == "done" and is_installed("matplotlib")
         result_in_units, lost = convert_result(result, units, problem), None
         try:
@@ -125,7 +125,7 @@ def optimise(
         except OutputLost as error:
             lost = error
         if drawn:  # while the user reads the front
-            _draw(front, run, interruption, units)
+            _draw_front_figures(front, run, interruption, units)
     if lost is not None:
         raise lost
     if not json:
@@ -170,18 +170,18 @@ def show_files(run: Path) -> None:
         screen.print(f"  {', '.join(listed)}", soft_wrap=True)
 
 
-def _problem(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
+def _problem_with_settings(job: Path, settings: SettingOptions) -> tuple[Problem, dict[str, Any], list[Artefact]]:
     """Return the problem of a job file and its tables, both with the given options applied, and its files."""
     from ...optimise.job import load_job, needed_files, read_job
     from ...optimise.job.job_notes import notes_of
-    from ..jobs.direct_run import files_of
+    from ..jobs.direct_run import job_and_attached_files
     from ..workers.direct_search import with_settings
 
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):
         print_message(f"note: {note}")
     with translate_disk_errors(job.parent):
-        files = files_of(job, needed_files(job))
+        files = job_and_attached_files(job, needed_files(job))
     return *with_settings(problem, tables, settings.overrides), files
 
 
@@ -191,11 +191,11 @@ def _problem_to_resume(tables: Mapping[str, Any], folder: Path) -> Problem:
     return parse_job(tables, folder=folder)
 
 
-def _draw(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
-    from ..figures.front import draw_front
+def _draw_front_figures(front: ParetoFront, run: RunFolder, interruption: Interruption, units: System) -> None:
+    from ..figures.front_figures import write_front_figures
 
     with show_activity("drawing the figures"), translate_disk_errors(run.figures):
-        for file in draw_front(front, run.figures, units):
+        for file in write_front_figures(front, run.figures, units):
             run.log(f"figures/{file.name}")
             if interruption.requested():
                 run.log("interrupted; the remaining figures are not drawn")

@@ -27,11 +27,11 @@ from ..text.options import (
     require_ending,
 )
 from ..text.screen import print_message, print_record, show_activity, write_figure
-from .input_options import option_of
-from .job_or_run import machine_of, rotating_problem
+from .design_of_job_or_run import machine_of, rotating_problem
+from .question_options import option_of
 
 
-def design_command(name: str) -> Callable[..., None]:
+def build_design_command(name: str) -> Callable[..., None]:
     """Return the command of a question, for `for_typer`."""
     question, says = DESIGN_QUESTIONS[name], QUESTION_COMMANDS[name]
 
@@ -52,7 +52,7 @@ def design_command(name: str) -> Callable[..., None]:
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
         words = {item.name: item.flag for item in question.inputs}
         bound_question = question.bind_to_problem(mechanism, linkage, problem, inputs, words)
-        notes = _print_blocks(bound_question, units, json)
+        notes = _print_result(bound_question, units, json)
         for note in () if json else notes:
             print_message(note)
         if curves is not None:
@@ -74,7 +74,7 @@ def design_command(name: str) -> Callable[..., None]:
     return command
 
 
-def sizing_command(name: str) -> Callable[..., None]:
+def build_sizing_command(name: str) -> Callable[..., None]:
     """Return the command of a sizing question, for `for_typer`."""
     question, says = DESIGN_QUESTIONS[name], QUESTION_COMMANDS[name]
 
@@ -94,7 +94,7 @@ def sizing_command(name: str) -> Callable[..., None]:
         bound_question = question.bind_to_problem(
             problem.mechanism.nominal, size.linkage(problem), problem, inputs, words
         )
-        for note in _print_blocks(bound_question, units, json):
+        for note in _print_result(bound_question, units, json):
             print_message(note)
         if curves is not None:
             write_file(curves, curves_csv(bound_question.output_of("curves", units)))
@@ -115,7 +115,7 @@ def sizing_command(name: str) -> Callable[..., None]:
     return command
 
 
-def _print_blocks(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
+def _print_result(bound_question: BoundQuestion, units: System, json: bool) -> list[str]:
     """Print the answer; return additional messages."""
     from ..render.terminal import print_blocks
 
@@ -132,5 +132,5 @@ def _file_option(name: str, help: str, metavar: str = "FILE") -> inspect.Paramet
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
 
 
-inverse, lever, swing = map(design_command, ("inverse", "lever", "swing"))
-allocate, balance, law, sections = map(sizing_command, ("allocate", "counterweight", "law", "sections"))
+inverse, lever, swing = map(build_design_command, ("inverse", "lever", "swing"))
+allocate, balance, law, sections = map(build_sizing_command, ("allocate", "counterweight", "law", "sections"))

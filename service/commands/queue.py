@@ -20,7 +20,7 @@ from ..jobs.stores import (
     printable_store_address,
     warn_without_workers,
 )
-from ..render.terminal import table
+from ..render.terminal import empty_table
 from ..runs.result import json_text
 from ..text.options import Json
 from ..text.screen import console, print_message, print_output
@@ -99,7 +99,7 @@ def _print_job(job: Job, json: bool, state_text: str = "") -> None:
 
 
 def _show_jobs(screen: Console, listed: list[Job]) -> None:
-    rows = table(">no.", "submitted", "job", "state", "progress or result", ruled=True, pad_edge=True)
+    rows = empty_table(">no.", "submitted", "job", "state", "progress or result", ruled=True, pad_edge=True)
     for column in rows.columns[:-1]:
         column.no_wrap = True
     for job in listed:

@@ -12,23 +12,23 @@ import typer
 
 from ...model.errors import InputError, SlidercrankError
 from ...objectives.kinds import System
-from ..designs.choice_options import require_single_choice
+from ..designs.design_selection_options import require_single_choice
 from ..designs.display_units import convert_result
 from ..designs.selection import chosen_rows, no_match_message
 from ..jobs.find_run import find_run
 from ..runs.result import Result
-from ..runs.run_folder import runs_place
+from ..runs.run_folder import runs_folder
 from ..runs.stored_runs import problem_of, read_run
 from ..text.design_options import Pick
-from .ending import NoDesigns, end_without_design
+from .exit_and_interruption import NoDesigns, end_without_design
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
 
 
-def run_of(name: str, runs: Path | None) -> tuple[Path, Result]:
+def folder_and_result(name: str, runs: Path | None) -> tuple[Path, Result]:
     """Return the folder and the result of a run. runs: folder of runs, as given."""
-    folder = find_run(name, runs_place(runs))
+    folder = find_run(name, runs_folder(runs))
     return folder, read_run(folder)
 
 
@@ -41,7 +41,7 @@ def front_of_run(
     """
     from ..designs.stored_designs import front_of
 
-    folder, result = run_of(name, runs)
+    folder, result = folder_and_result(name, runs)
     if not (result.designs or empty):
         raise NoDesigns(result)
     if number is not None:
@@ -73,7 +73,7 @@ Where = Annotated[
 class Choice(Pick):
     """Options that select one design of a run."""
 
-    def number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
+    def design_number(self, result: Result, run: str, conditions: Sequence[str] | None) -> int:
         """Return the number of the design that the options select, counted from 1.
 
         Exits with code 3 if no design meets the conditions. Raises `NoDesigns` for an empty front, and `InputError` for

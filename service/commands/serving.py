@@ -17,13 +17,13 @@ import typer
 from ...model.errors import InputError
 from ...model.optional_packages import import_extra
 from ..jobs.stores import STORE_VARIABLE, Address, open_store, store_address
-from ..resources.memory import size_of
-from ..runs.run_folder import runs_place
+from ..resources.memory import parse_size
+from ..runs.run_folder import runs_folder
 from ..text.options import AllowQuantity, Runs
 from ..text.screen import print_message, print_output
 from ..workers.engines import EngineOptions
 from ..workers.logs import Format, set_up_logs
-from .ending import INTERRUPTED, Interruption
+from .exit_and_interruption import INTERRUPTED, Interruption
 from .optimise import SEARCH
 
 if TYPE_CHECKING:
@@ -62,13 +62,15 @@ class WorkOptions:
 
     log_format: Annotated[Format, "Log format on standard error: text, or one JSON object per line."] = "text"
 
-    def settings(self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False) -> WorkerSettings:
+    def worker_settings(
+        self, address: str, engine: EngineOptions, processes: int, *, drain: bool = False
+    ) -> WorkerSettings:
         """Return the settings for each worker of a store. drain: whether to exit as soon as no job waits."""
         from ..store import Limits
         from ..workers.worker import Terms
         from ..workers.worker_process import WorkerSettings
 
-        memory = None if self.most_memory is None else size_of(self.most_memory, "--most-memory")
+        memory = None if self.most_memory is None else parse_size(self.most_memory, "--most-memory")
         return WorkerSettings(
             address=address,
             lease=self.lease,
@@ -101,13 +103,13 @@ def worker(
     import_extra("psutil", "workers need")  # needed to end processes that a job leaves behind
     from ..workers.supervisor import Supervisor
 
-    settings = options.settings(store_address(store), engine, processes, drain=drain)
+    settings = options.worker_settings(store_address(store), engine, processes, drain=drain)
     with Interruption(service=True) as termination:
         with open_store(store) as opened:  # faults are reported immediately, by this process only
             opened.require_writable()
         set_up_logs(options.log_format)
         with Supervisor(settings, processes) as supervisor:
-            while not (termination.requested() or supervisor.finished()):
+            while not (termination.requested() or supervisor.is_finished()):
                 time.sleep(0.1)
 
 
@@ -160,7 +162,7 @@ def serve(
 
     secret, is_generated = _choose_token(access.token, access.no_token, host)
     processes = min(os.cpu_count() or 1, 4) if workers is None else workers
-    work = options.settings(store_address(store), engine, processes)
+    work = options.worker_settings(store_address(store), engine, processes)
     settings = Settings(
         token=secret,
         hosts=(*host_names_of(host), *(access.allow_host or ())),
@@ -234,7 +236,7 @@ def mcp(runs: Runs = None, allow_quantity: AllowQuantity = None) -> None:
 
     compile_ahead(*SEARCH)
     os.environ.pop(STORE_VARIABLE, None)
-    serve(runs_place(runs).absolute(), frozenset(allow_quantity or ()), interrupted=_exit_despite_input)
+    serve(runs_folder(runs).absolute(), frozenset(allow_quantity or ()), on_signal=_exit_despite_input)
 
 
 def _exit_despite_input() -> None:

@@ -14,12 +14,12 @@ import typer
 from ...model.errors import StoreError
 from ...optimise.front.progress import Progress, stage_text
 from ..jobs.stores import Address, Name, existing_store, find_job, open_store, warn_without_workers
-from ..resources.memory import size_of
+from ..resources.memory import parse_size
 from ..runs.result import json_text
 from ..text.options import JobFile, Json
 from ..text.screen import console, error_console, print_message, print_output, progress_bar
-from ..text.streams import has_reader_left
-from .ending import EXIT_CODES
+from ..text.standard_streams import has_reader_left
+from .exit_and_interruption import EXIT_CODES
 
 if TYPE_CHECKING:
     from ..store import Artefact, Event, Job, Store
@@ -68,7 +68,7 @@ def submit(
     load_job(job)  # its messages contain the file name
     tables = read_job(job)
     functions = sorted(set(functions_of(tables).values()))
-    memory = None if job_limits.memory is None else size_of(job_limits.memory, "--memory")
+    memory = None if job_limits.memory is None else parse_size(job_limits.memory, "--memory")
     limits = Limits(seconds=job_limits.seconds, evaluations=job_limits.evaluations, memory=memory)
     with open_store(store) as opened:
         queued = put_in(
@@ -78,7 +78,7 @@ def submit(
             key=key,
             most_attempts=attempts,
             limits=limits,
-            source=_original_job(job),
+            source=_original_job_file(job),
             allowed_quantities=functions,
         )
         if not (watch and json):
@@ -113,7 +113,7 @@ def _print_worker_requirements(functions: Sequence[str], job: Path) -> None:
         )
 
 
-def _original_job(job: Path) -> Artefact | None:
+def _original_job_file(job: Path) -> Artefact | None:
     """Return the original job file; None if it refers to other files, whose contents are in the job's tables."""
     from ...optimise.job import needed_files
     from ..store import Artefact
@@ -134,7 +134,7 @@ def _write_events(store: Store, job: Job, *, json: bool) -> int:
                     return EXIT_CODES["done"]
         ended = store.job(job.id)
         if not json:
-            _write_front(store, ended)
+            _print_front(store, ended)
     except KeyboardInterrupt:
         print_message(f"job {job.id} continues; stop it with: slidercrank cancel {job.id}")
         raise
@@ -174,9 +174,9 @@ def events_until_end(store: Store, number: int) -> Iterator[Event]:
 def _event_writer(json: bool) -> Iterator[Callable[[Event], None]]:
     """Yield the event writer: JSON, or words with a progress bar on a terminal."""
     if json:
-        from ..store.serialisation import text_of
+        from ..store.serialisation import compact_json
 
-        yield lambda event: print_output(f"{text_of(event.record())}\n")
+        yield lambda event: print_output(f"{compact_json(event.record())}\n")
         return
 
     live, last = error_console().is_terminal, 0.0
@@ -205,7 +205,7 @@ def event_in_words(event: Event) -> str:
     return " ".join(str(text).split())
 
 
-def _write_front(store: Store, job: Job) -> None:
+def _print_front(store: Store, job: Job) -> None:
     """Print the front of an ended job, if there is one."""
     from ..text.tables import show_front
 

@@ -12,14 +12,14 @@ import typer
 from ...model.errors import InputError, StoreError
 from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
-from ..jobs.front_wish_history import keep_wish, stated_wishes, wishes_as_entered, wishes_of_run
+from ..jobs.front_wish_history import record_wish, wishes_as_entered, wishes_by_objective, wishes_of_run
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..render.terminal import print_blocks
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, print_output, show_activity
-from .ending import end_without_design
-from .input_options import options_of, with_question_help
+from .exit_and_interruption import end_without_design
+from .question_options import options_of, with_question_help
 from .run_choice import front_of_run
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def wish(
         row = None if number is None else number - 1
         solved = QUESTION.ask(front, inputs, row=row, words=QUESTION.flags)
     with contextlib.suppress(StoreError):  # the answer is shown even if the store cannot be written
-        keep_wish(folder, stated_wishes(front, solved.search_result.wishes), number)
+        record_wish(folder, wishes_by_objective(front, solved.search_result.wishes), number)
     if json:
         wishes = QUESTION.read(inputs, row, QUESTION.flags)["at"]
         print_output(json_text({"run": path_text(folder), "wishes": wishes} | solved.record(units)))
@@ -77,7 +77,7 @@ def wish(
 def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, json: bool) -> None:
     """Print the wishes recorded for a run, newest first, each solved again."""
     from ...optimise.decisions.wish import Wishes
-    from ..questions.wish.analysis import compute_wish, wish_in_words
+    from ..questions.wish.analysis import wish_in_words, wish_result
 
     wishes = wishes_of_run(folder)
     with show_activity("wishing"):
@@ -87,7 +87,7 @@ def _print_recorded_wishes(folder: Path, front: ParetoFront, units: System, *, j
             assert solver is not None
             words = wishes_as_entered(front, made_wish.wishes)
             row = None if made_wish.design is None else made_wish.design - 1
-            solved_wishes.append((made_wish.time, words, compute_wish(solver.wish(words, row=row), words)))
+            solved_wishes.append((made_wish.time, words, wish_result(solver.wish(words, row=row), words)))
     if json:
         records = [{"at": at, "wishes": words} | solved.record(units) for at, words, solved in solved_wishes]
         print_output(json_text({"run": path_text(folder), "made": records}))

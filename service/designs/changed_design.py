@@ -16,9 +16,9 @@ from ...objectives.tables.swing_columns import require_motion
 from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
-from ..runs.result import Result, Row, rows_of
-from .choice_options import minimised_values, target_scales
-from .judged_requirements import ranges_of, requirements_of, unmet_columns
+from ..runs.result import Result, Row, rows_of_columns
+from .design_selection_options import minimised_values, target_scales
+from .judged_requirements import ranges_as_requirements, requirements_of, unmet_columns
 from .stored_designs import StoredDesign
 
 _SAME = 1e-9  # relative to an objective's range over the front, or to a number: smaller differences are rounding
@@ -77,7 +77,7 @@ def design_with_numbers(
     return changed
 
 
-def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Variation:
+def judged_variation(design: StoredDesign, result: Result, minimised: Array) -> Variation:
     """Return the variation for a design that need not be on the front.
 
     minimised: result of `minimised_values(result)`, computed once for many designs.
@@ -85,13 +85,13 @@ def variation_of(design: StoredDesign, result: Result, minimised: Array) -> Vari
     from ...optimise.search.assemble_front import columns_of
 
     columns = columns_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
-    row = rows_of(columns)[0]
+    row = rows_of_columns(columns)[0]
     return Variation(
         row=row,
         design=design,
         broken=unmet_columns(requirements_of(design.part), row)
         + (["slow_stroke"] if design.part.slow_stroke not in (None, row.get("slow_stroke")) else []),
-        outside=unmet_columns(ranges_of(design.part), row),
+        outside=unmet_columns(ranges_as_requirements(design.part), row),
         **_dominating_and_dominated(result, row, minimised),
     )
 
@@ -114,7 +114,7 @@ def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dic
     return positions
 
 
-def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
+def lengths_meeting_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     """Return lengths, m, near the given ones that meet every equality of the job; the changed length stays fixed.
 
     Uses Newton's method in the other free lengths. Each step is the shortest that meets the linearised equalities,
@@ -147,20 +147,20 @@ def hold_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
     raise _no_solution_error(design, equal, moved, values[place])
 
 
-def nearest_holding(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
-    """Return lengths as `hold_equalities` does; the nearest reachable ones if the changed length cannot be held.
+def nearest_lengths_meeting_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
+    """Return lengths that meet every equality; the nearest reachable ones if the changed length cannot be held.
 
     They lie between the design's own and the given ones. Raises `InputError` if its own cannot be held either.
     """
     try:
-        return hold_equalities(design, lengths, moved)
+        return lengths_meeting_equalities(design, lengths, moved)
     except InputError as error:
         refused = error
     place = DIMENSIONS.index(moved)
     own = (design.values[0], design.values[1], design.values[2])
     low, high = own[place], lengths[place]
     try:
-        reached = hold_equalities(design, own, moved)
+        reached = lengths_meeting_equalities(design, own, moved)
     except InputError:
         raise refused from None
     for _ in range(_BISECTIONS):
@@ -168,7 +168,7 @@ def nearest_holding(design: StoredDesign, lengths: Lengths, moved: str) -> Lengt
         start = [*reached]
         start[place] = middle
         try:
-            reached, low = hold_equalities(design, (start[0], start[1], start[2]), moved), middle
+            reached, low = lengths_meeting_equalities(design, (start[0], start[1], start[2]), moved), middle
         except InputError:
             high = middle
     return reached

@@ -24,7 +24,7 @@ from ...objectives.tables.swing_curves import (
     motion_and_drive_curves,
     require_even_point_count,
 )
-from ..runs.result import curves_csv, json_ready, rows_of
+from ..runs.result import curves_csv, json_ready, rows_of_columns
 from .display_units import convert_rows
 from .stored_designs import StoredDesign
 
@@ -84,7 +84,7 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
         for curve in curves
         if machine or curve.name in _MOTION
     }
-    return curves_csv(convert_rows(rows_of(columns), system))
+    return curves_csv(convert_rows(rows_of_columns(columns), system))
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]
     """Return a row for each point of the way out of a lever, metric, at even times."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
     time = {} if swing.duration is None else {"time_s": (swing.duration * found.share).tolist()}
-    return rows_of(time | {key: values.tolist() for key, _, _, values in lever_columns(found)})
+    return rows_of_columns(time | {key: values.tolist() for key, _, _, values in lever_columns(found)})
 
 
 def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[tuple[str, str, str, Array]]:
@@ -239,7 +239,8 @@ def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) ->
 def crank_turn_rows(mechanism: Mechanism, linkage: Linkage) -> list[dict[str, Any]]:
     """Return a row for each crank angle over the full turn of a lever, metric; speeds and forces at the crank speed."""
     angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
-    return rows_of({key: values.tolist() for key, _, _, values in crank_turn_columns(mechanism, linkage, angles)})
+    columns = crank_turn_columns(mechanism, linkage, angles)
+    return rows_of_columns({key: values.tolist() for key, _, _, values in columns})
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:

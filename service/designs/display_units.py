@@ -58,7 +58,7 @@ def convert_result(result: Result, system: System, problem: Problem | None = Non
         designs=convert_rows(result.designs, system),
         violated=convert_record(result.violated, system),
         discrete=convert_record(result.discrete, system),
-        trade_offs=[] if problem is None or not result.trade_offs else _trade_offs(problem, result, system),
+        trade_offs=[] if problem is None or not result.trade_offs else _knee_trade_offs(problem, result, system),
     )
 
 
@@ -69,7 +69,7 @@ def convert_objective(objective: StoredObjective, system: System) -> StoredObjec
     return replace(objective, column=column, unit=metric_unit_in(objective.unit, system)[0], target=target)
 
 
-def _trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
+def _knee_trade_offs(problem: Problem, result: Result, system: System) -> list[str]:
     from .stored_designs import front_of, stored_design
     from .trade_offs import trade_offs_of
 

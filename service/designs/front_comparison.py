@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...objectives.count_text import counted
 from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, StoredObjective
-from .choice_options import minimised_values
+from .design_selection_options import minimised_values
 
 if TYPE_CHECKING:
     from ...model.arrays import Array

@@ -106,7 +106,7 @@ def requirements_of(part: Problem) -> list[Requirement]:
     return requirements
 
 
-def ranges_of(part: Problem) -> list[Requirement]:
+def ranges_as_requirements(part: Problem) -> list[Requirement]:
     """Return the ranges of crank, rod, offset and the extra variables, in their units."""
     from ...objectives.tables.variable_columns import columns_of_numbers
 
@@ -155,7 +155,9 @@ def judge_rules(problem: Problem, row: Row, system: System = "metric") -> list[J
 
     system: unit system of the answer.
     """
-    lengths = ([rule for rule in ranges_of(part) if rule.quantity in DIMENSIONS] for part in problem.parts())
+    lengths = (
+        [rule for rule in ranges_as_requirements(part) if rule.quantity in DIMENSIONS] for part in problem.parts()
+    )
     alternatives = zip(*lengths, strict=True)  # the common part if the job has choices
     ranges = [min(same_length, key=lambda rule: rule.missed_by(row) or 0.0) for same_length in alternatives]
     return [_judge_rule(rule, row, system) for rule in (*ranges, *requirements_of(problem))]

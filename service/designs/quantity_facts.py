@@ -15,10 +15,10 @@ def facts_of_all() -> list[dict[str, Any]]:
     """Return the facts about the dimensions and about every quantity, in display order."""
     from ...objectives.registry import FACTS
 
-    return [*map(_dimension, _DIMENSIONS), *map(_quantity, FACTS.values())]
+    return [*map(_dimension_record, _DIMENSIONS), *map(_quantity_record, FACTS.values())]
 
 
-def _quantity(quantity: Quantity) -> dict[str, Any]:
+def _quantity_record(quantity: Quantity) -> dict[str, Any]:
     return {
         **{fact: getattr(quantity, fact) for fact in _STATED},
         "needs": quantity.required,
@@ -46,7 +46,7 @@ _LENGTH: dict[str, Any] = {
 """Facts that all dimensions share."""
 
 
-def _dimension(name: str) -> dict[str, Any]:
+def _dimension_record(name: str) -> dict[str, Any]:
     texts: dict[str, Any] = dict(zip(_TEXT_FIELDS, _DIMENSIONS[name], strict=True))
     return {"name": name, "picture": name, "column": name + LENGTH.metric.suffix, **texts, **_LENGTH}
 

@@ -48,7 +48,7 @@ class Condition:
     value: float | str
     formula: RowFormula | None = None
 
-    def cell(self, row: Row) -> Cell:
+    def compared_value(self, row: Row) -> Cell:
         """Return the cell or value of a design that the condition compares."""
         return row[self.column.key] if self.formula is None else self.formula.evaluate(row)
 
@@ -57,7 +57,7 @@ class Condition:
 
         Equality holds to 1e-8 relative.
         """
-        cell = self.cell(row)
+        cell = self.compared_value(row)
         if isinstance(self.value, str) or isinstance(cell, str) or cell is None:
             return _OPERATORS[self.comparison](cell, self.value)
         if math.isnan(cell):
@@ -176,7 +176,7 @@ def select_rows(rows: list[Row], conditions: Collection[str]) -> list[int]:
     return chosen
 
 
-def order_key(cell: Cell) -> tuple[bool, float, str]:
+def sort_key(cell: Cell) -> tuple[bool, float, str]:
     """Return a key that sorts numbers by size, words alphabetically, and undefined values last."""
     if cell is None or (isinstance(cell, float) and math.isnan(cell)):
         return True, 0.0, ""
@@ -197,11 +197,11 @@ def chosen_rows(
         key = column.key
         objective = next((item for item in result.objectives if item.column == key), None)
         if formula is not None:
-            chosen.sort(key=lambda row: order_key(formula.evaluate(result.designs[row])))
+            chosen.sort(key=lambda row: sort_key(formula.evaluate(result.designs[row])))
         elif objective is not None:
             chosen.sort(key=lambda row: objective.minimised_value(result.designs[row]))
         else:
-            chosen.sort(key=lambda row: order_key(result.designs[row][key]))
+            chosen.sort(key=lambda row: sort_key(result.designs[row][key]))
     return chosen[::-1] if reverse else chosen
 
 
@@ -230,14 +230,14 @@ def no_match_message(result: Result, texts: Collection[str]) -> str:
     rows = result.designs
     conditions = " and ".join(text.strip() for text in texts)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)
-    reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_never(condition, rows)))
+    reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_never_met(condition, rows)))
     return "; ".join((f"none of the {counted(len(rows), 'design')} meets {conditions}", *reasons))
 
 
-def _why_never(condition: Condition, rows: Sequence[Row]) -> str | None:
+def _why_never_met(condition: Condition, rows: Sequence[Row]) -> str | None:
     """Return why a condition cannot hold for any design, whatever its value; None if another value may help."""
-    name, cells = condition.column.key, [condition.cell(row) for row in rows]
-    if all(order_key(cell)[0] for cell in cells):
+    name, cells = condition.column.key, [condition.compared_value(row) for row in rows]
+    if all(sort_key(cell)[0] for cell in cells):
         return f"{name} has no value for any of them"
     words = {cell for cell in cells if isinstance(cell, str)}
     if words and condition.value not in words:

@@ -18,7 +18,7 @@ from ...objectives.tables.variable_columns import varying_column
 from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
 from ...optimise.problem.table_columns import choice_field
-from ..runs.result import Cell, Exact, Result, Row
+from ..runs.result import Cell, ExactDesigns, Result, Row
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront
@@ -71,7 +71,7 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 def front_of(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, the derivatives at the designs are unknown."""
     from ...optimise.front.front import ParetoFront
-    from .choice_options import minimised_values
+    from .design_selection_options import minimised_values
 
     rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]
     exact = result.exact or _reconstruct_designs(problem, result.designs)
@@ -94,13 +94,13 @@ def front_of(problem: Problem, result: Result) -> ParetoFront:
     )
 
 
-def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> Exact:
+def _reconstruct_designs(problem: Problem, rows: Sequence[Row]) -> ExactDesigns:
     """Reconstruct the designs from their displayed rows: everything except derivatives, which stay empty."""
     sizes = _variable_factors(problem.mechanism)
     dimensions = [_variable_values(row, sizes) for row in rows]
     variants = [_matching_variant(problem, *row_and_values) for row_and_values in zip(rows, dimensions, strict=True)]
     nothing = np.zeros((0, 0))
-    return Exact(
+    return ExactDesigns(
         np.array(dimensions).reshape(len(dimensions), len(sizes)),
         tuple(variants) if problem.variants else (),
         ((np.zeros(0), nothing),) * len(rows),

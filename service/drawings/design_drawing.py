@@ -12,8 +12,8 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System, metric_unit_in
+from ..designs.length_with_tolerance import tolerances_of
 from ..designs.stored_designs import StoredDesign
-from ..designs.toleranced import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned_dimension, dimension
 from .lever_drawing import lever_drawing

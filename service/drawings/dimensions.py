@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ...objectives.kinds import System, metric_unit_in
-from ..designs.toleranced import format_toleranced
+from ..designs.length_with_tolerance import format_toleranced
 from .layers import DIMENSIONS
 from .shapes import WIDE, Dimension, Label, Line, Point, Wedge
 

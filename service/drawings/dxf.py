@@ -9,7 +9,7 @@ import struct
 from typing import TYPE_CHECKING, Any
 
 from ...model.optional_packages import NamingExtra
-from ..designs.toleranced import decimals_of
+from ..designs.length_with_tolerance import decimals_of
 from .shapes import Arc, Circle, Dashes, Dimension, Drawing, Label, Line, Outline, Shape, Wedge
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _ANCHORS = {"start": 0, "middle": 1, "end": 2}  # horizontal alignment on the ba
 def dxf_file(drawing: Drawing) -> bytes:
     """Return the drawing as the content of a DXF file, with non-ASCII characters escaped so that any encoding works."""
     out = io.StringIO()
-    document(drawing).write(out)
+    dxf_document(drawing).write(out)
     return _NON_ASCII.sub(_escape, out.getvalue()).encode("ascii")
 
 
@@ -42,7 +42,7 @@ def _escape(character: re.Match[str]) -> str:
     return "".join(f"\\U+{unit:04X}" for (unit,) in struct.iter_unpack(">H", character[0].encode("utf-16-be")))
 
 
-def document(drawing: Drawing) -> Document:
+def dxf_document(drawing: Drawing) -> Document:
     """Return the drawing as an ezdxf document."""
     with NamingExtra("DXF files need"):
         from ezdxf.filemanagement import new
@@ -62,7 +62,7 @@ def document(drawing: Drawing) -> Document:
             lineweight=round(100.0 * layer.weight),
         )
         dxf_layer.description = layer.title
-    _dimension_style(dxf, drawing)
+    _create_dimension_style(dxf, drawing)
     space = dxf.modelspace()
     for shape in drawing.shapes:
         _add_shape(dxf, space, shape)
@@ -73,7 +73,7 @@ def document(drawing: Drawing) -> Document:
     return dxf
 
 
-def _dimension_style(document: Document, drawing: Drawing) -> None:
+def _create_dimension_style(document: Document, drawing: Drawing) -> None:
     """Create the style with which CAD redraws the dimensions as they are drawn here."""
     height = next((shape.height for shape in drawing.shapes if isinstance(shape, Dimension)), 2.5)
     # Enough decimals for seven digits of the size; DXF allows at most eight.

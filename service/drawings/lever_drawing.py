@@ -11,7 +11,7 @@ from ...model.swing.swing import Swing
 from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
 from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
 from ...objectives.kinds import System, metric_unit_in
-from ..designs.toleranced import tolerances_of
+from ..designs.length_with_tolerance import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned_dimension
 from .lever_parts import lever_extent, lever_shapes

@@ -162,7 +162,14 @@ def fixed_shapes(linkage: Linkage, look: LinkageSizes, *, bearing_below: bool) -
         ghosts += link_shapes((layer,) * 3, pin, end, look)
         ghosts += [Circle(layer, point, 0.6 * look.pin) for point in (pin, end)]
     walls = [line for barrel in look.barrels for line in _barrel_shapes(barrel, look.offset)]
-    return [*centre_lines(look), *paths, *ghosts, *rails(look), *bearing(look, is_below=bearing_below), *walls]
+    return [
+        *centre_lines(look),
+        *paths,
+        *ghosts,
+        *guide_rails(look),
+        *crank_bearing(look, is_below=bearing_below),
+        *walls,
+    ]
 
 
 def _barrel_shapes(barrel: Barrel, offset: float) -> list[Shape]:
@@ -192,7 +199,7 @@ def bar(layer: Layer, start: Point, end: Point, width: float) -> Outline:
     return Outline(layer, corners, (0.0, 1.0, 0.0, 1.0))
 
 
-def block(layer: Layer, pin: Point, look: LinkageSizes) -> Outline:
+def slider_block(layer: Layer, pin: Point, look: LinkageSizes) -> Outline:
     """Return the outline of a slider around its pin."""
     x, y = 0.75 * look.slider_size, 0.5 * look.block
     corners = tuple((pin[0] + u * x, pin[1] + v * y) for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1)))
@@ -202,13 +209,13 @@ def block(layer: Layer, pin: Point, look: LinkageSizes) -> Outline:
 def link_shapes(layers: tuple[Layer, Layer, Layer], pin: Point, slider: Point, look: LinkageSizes) -> list[Shape]:
     """Return slider, rod and crank, each on its layer."""
     return [
-        block(layers[0], slider, look),
+        slider_block(layers[0], slider, look),
         bar(layers[1], pin, slider, look.rod_width),
         bar(layers[2], (0.0, 0.0), pin, look.crank_width),
     ]
 
 
-def rails(look: LinkageSizes) -> list[Shape]:
+def guide_rails(look: LinkageSizes) -> list[Shape]:
     """Return the hatched guide of the slider."""
     shapes: list[Shape] = []
     start, end = look.slider_range[0] - 0.95 * look.slider_size, look.slider_range[1] + 0.95 * look.slider_size
@@ -223,7 +230,7 @@ def rails(look: LinkageSizes) -> list[Shape]:
     return shapes
 
 
-def bearing(look: LinkageSizes, *, is_below: bool) -> list[Shape]:
+def crank_bearing(look: LinkageSizes, *, is_below: bool) -> list[Shape]:
     """Return the bearing of the crank pivot. is_below: whether the bearing stands below the pivot."""
     return pivot_bearing((0.0, 0.0), 1.5 * max(look.pin, 0.3 * look.crank_width), is_below=is_below)
 

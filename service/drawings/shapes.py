@@ -135,7 +135,7 @@ class Drawing:
     title: str
     notes: tuple[str, ...]
 
-    def shapes_on(self, name: str) -> list[Shape]:
+    def shapes_on_layer(self, name: str) -> list[Shape]:
         """Return the shapes on a layer."""
         return [shape for shape in self.shapes if shape.layer.name == name]
 

@@ -41,18 +41,18 @@ def svg_text(drawing: Drawing) -> str:
     left, bottom, right, top = drawing.bounds
     margin = _MARGIN * drawing.size
     left, bottom, right, top = left - margin, bottom - margin, right + margin, top + margin
-    width, height = _number(right - left), _number(top - bottom)
-    frame = f"{_number(left)} {_number(-top)} {width} {height}"
+    width, height = _exact_text(right - left), _exact_text(top - bottom)
+    frame = f"{_exact_text(left)} {_exact_text(-top)} {width} {height}"
     lines = [
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" '
         f'width="{width}mm" height="{height}mm" viewBox="{frame}" font-family="Arial, Helvetica, sans-serif">',
         f"<title>{escape(drawing.title)}</title>",
         f"<desc>{escape(' '.join(drawing.notes))}</desc>",
-        f'<rect x="{_number(left)}" y="{_number(-top)}" width="{width}" height="{height}" fill="#ffffff"/>',
+        f'<rect x="{_exact_text(left)}" y="{_exact_text(-top)}" width="{width}" height="{height}" fill="#ffffff"/>',
     ]
     for layer in drawing.layers:
         lines.append(opening_tag(layer, drawing.size))
-        lines += [f"  {line}" for shape in drawing.shapes_on(layer.name) for line in elements(shape)]
+        lines += [f"  {line}" for shape in drawing.shapes_on_layer(layer.name) for line in svg_elements(shape)]
         lines.append("</g>")
     return "\n".join([*lines, "</svg>", ""])
 
@@ -65,25 +65,25 @@ def opening_tag(layer: Layer, size: float) -> str:
         "inkscape:label": layer.name,
         "fill": "none",
         "stroke": layer.ink,
-        "stroke-width": _number(2.0 * layer.weight * _LINE * size),
+        "stroke-width": _exact_text(2.0 * layer.weight * _LINE * size),
         "stroke-linejoin": "round",
     }
     if _DASHES[layer.dashes]:
-        attributes["stroke-dasharray"] = " ".join(_number(part * size) for part in _DASHES[layer.dashes])
+        attributes["stroke-dasharray"] = " ".join(_exact_text(part * size) for part in _DASHES[layer.dashes])
     return f"<g {' '.join(f'{name}={quoteattr(value)}' for name, value in attributes.items())}>"
 
 
-def elements(shape: Shape) -> list[str]:
+def svg_elements(shape: Shape) -> list[str]:
     """Return the elements that show a shape."""
     if isinstance(shape, Line):
         return [f'<path d="M{_point_text(shape.start)}L{_point_text(shape.end)}"/>']
     if isinstance(shape, Circle):
         x, y = shape.centre
-        return [f'<circle cx="{_number(x)}" cy="{_number(-y)}" r="{_number(shape.radius)}"/>']
+        return [f'<circle cx="{_exact_text(x)}" cy="{_exact_text(-y)}" r="{_exact_text(shape.radius)}"/>']
     if isinstance(shape, Arc):
         # Counter-clockwise is opposite to the flag, because y points downward here.
         start, end = _point_text(shape.point_at(shape.start)), _point_text(shape.point_at(shape.end))
-        radius, large = _number(shape.radius), int(shape.end - shape.start > 180.0)
+        radius, large = _exact_text(shape.radius), int(shape.end - shape.start > 180.0)
         return [f'<path d="M{start}A{radius} {radius} 0 {large} 0 {end}"/>']
     if isinstance(shape, Outline):
         return [f'<path d="{_outline_svg(shape)}"/>']
@@ -93,7 +93,7 @@ def elements(shape: Shape) -> list[str]:
     if isinstance(shape, Label):
         return [_label_svg(shape)]
     if isinstance(shape, Dimension):
-        inner = [f"  {line}" for part in shape.parts for line in elements(part)]
+        inner = [f"  {line}" for part in shape.parts for line in svg_elements(part)]
         return [f'<g id="{shape.name}">', *inner, "</g>"]
     raise AssertionError(shape)
 
@@ -106,15 +106,15 @@ def _outline_svg(shape: Outline) -> str:
             continue
         # The angle of an arc is 4 atan(bulge); y points downward here, so left becomes right.
         radius = 0.5 * math.dist(start, end) / math.sin(2.0 * math.atan(abs(bulge)))
-        parts.append(f"A{_number(radius)} {_number(radius)} 0 0 {int(bulge < 0.0)} {_point_text(end)}")
+        parts.append(f"A{_exact_text(radius)} {_exact_text(radius)} 0 0 {int(bulge < 0.0)} {_point_text(end)}")
     return "".join(parts) + "Z"
 
 
 def _label_svg(shape: Label) -> str:
-    x, y = _number(shape.position[0]), _number(-shape.position[1])
-    turned = f' transform="rotate({_number(-shape.angle)} {x} {y})"' if shape.angle else ""
+    x, y = _exact_text(shape.position[0]), _exact_text(-shape.position[1])
+    turned = f' transform="rotate({_exact_text(-shape.angle)} {x} {y})"' if shape.angle else ""
     # Capitals are 0.716 times as high as the font size.
-    size = _number(shape.height / 0.716)
+    size = _exact_text(shape.height / 0.716)
     return (
         f'<text x="{x}" y="{y}" font-size="{size}" text-anchor="{shape.anchor}" fill="{shape.layer.ink}" '
         f'stroke="none"{turned}>{escape(shape.text)}</text>'
@@ -122,9 +122,9 @@ def _label_svg(shape: Label) -> str:
 
 
 def _point_text(point: Point) -> str:
-    return f"{_number(point[0])},{_number(-point[1])}"
+    return f"{_exact_text(point[0])},{_exact_text(-point[1])}"
 
 
-def _number(value: float) -> str:
+def _exact_text(value: float) -> str:
     """Return a number at full precision."""
     return repr(value + 0.0).removesuffix(".0")

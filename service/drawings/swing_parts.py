@@ -14,13 +14,13 @@ from ...model.swing.swing import Swing, dead_points, require_swing, swing_betwee
 from . import layers as on
 from .linkage_shapes import (
     LinkageSizes,
-    bearing,
     centre_lines,
+    crank_bearing,
+    guide_rails,
     link_shapes,
     linkage_sizes_between,
     moving_shapes,
     pin_positions,
-    rails,
 )
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
 
@@ -139,7 +139,14 @@ def fixed_swing_shapes(drawn: SwingSizes) -> list[Shape]:
         if drawn.cylinder is not None:
             ghosts.append(_piston_rod(layer, slider, drawn.cylinder, look))
     barrel = [] if drawn.cylinder is None else _barrel(drawn.cylinder, look)
-    return [*centre_lines(look), *ways, *ghosts, *rails(look), *bearing(look, is_below=drawn.bearing_below), *barrel]
+    return [
+        *centre_lines(look),
+        *ways,
+        *ghosts,
+        *guide_rails(look),
+        *crank_bearing(look, is_below=drawn.bearing_below),
+        *barrel,
+    ]
 
 
 def moving_swing_shapes(drawn: SwingSizes, angle: float) -> list[Shape]:

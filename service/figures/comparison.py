@@ -17,11 +17,11 @@ from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust_problem import robust_quantities
-from ..render.numerals import with_unit
+from ..render.numerals import title_with_unit
 from ..runs.result import StoredObjective, stored_objectives
 from .design_marks import BETTER, with_better_arrow
-from .scatter import MOST, triangle
-from .style import INK, SMALL, heading, legend_at, new_figure, padded_limits, style_axes, write_text
+from .scatter_matrix import MOST, triangle_of_panels
+from .style import INK, SMALL, legend_at, new_figure, padded_limits, style_axes, write_heading, write_text
 
 # Fill, edge and marker: neighbours differ clearly in greyscale, with the colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -62,12 +62,12 @@ def comparison_matrix(
     notes_height = _NOTE * len(notes) + 0.2 if notes else 0.0
     bottom = _BOTTOM + notes_height
     figure = new_figure(width, bottom + count * (side + _GAP) + _TOP + key)
-    labels = [_label(objective) for objective in objectives[:MOST]]
-    for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
+    labels = [_axis_label(objective) for objective in objectives[:MOST]]
+    for panel, x_column, y_column in triangle_of_panels(figure, labels, left=_LEFT, bottom=bottom, side=side, gap=_GAP):
         _draw_panel(panel, runs, x_column, y_column)
     height = figure.get_size_inches()[1]
     subtitle = f"the first {MOST} of {len(objectives)} objectives" if len(objectives) > MOST else ""
-    heading(figure, title, subtitle, left=0.2)
+    write_heading(figure, title, subtitle, left=0.2)
     for line, note in enumerate(notes):
         write_text(figure, 0.2, notes_height - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     handles = [Line2D([], [], **_line_style(index)) for index in range(len(runs))]
@@ -131,6 +131,6 @@ def _line_style(index: int) -> dict[str, Any]:
     }
 
 
-def _label(objective: StoredObjective) -> str:
-    title = with_unit(objective.title.removesuffix(", worst case"), objective.unit, objective.target)
+def _axis_label(objective: StoredObjective) -> str:
+    title = title_with_unit(objective.title.removesuffix(", worst case"), objective.unit, objective.target)
     return with_better_arrow(title, BETTER[objective.sense])

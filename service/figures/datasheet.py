@@ -27,10 +27,10 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from ..render.blocks import Value, joined, words
 from ..render.numerals import format_number
-from .drawing import draw_mechanism, least_transmission_crank_angle
+from .mechanism_drawing import draw_mechanism, least_transmission_crank_angle
+from .panel_drawing import draw_panel
 from .panel_figure import CRANK_ANGLE, Line, Panel, crank_angle_panel
-from .panels import draw_panel
-from .style import INK, MUTED, SMALL, TEXT, add_axes, heading, new_figure, write_text
+from .style import INK, MUTED, SMALL, TEXT, add_axes, new_figure, write_heading, write_text
 
 _WIDTH, _HEIGHT = 12.4, 7.4  # inches
 _LEFT, _SPLIT, _RIGHT, _TOP, _BOTTOM = 0.25, 6.55, 0.3, 0.75, 0.6
@@ -64,7 +64,7 @@ def design_datasheet(
     unit system of the datasheet.
     """
     figure = new_figure(_WIDTH, _HEIGHT)
-    heading(figure, textwrap.shorten(title, 120, placeholder=" ..."), subtitle)
+    write_heading(figure, textwrap.shorten(title, 120, placeholder=" ..."), subtitle)
 
     picture = add_axes(figure, _LEFT, _TABLE + 0.35, _SPLIT - _LEFT - 0.6, _HEIGHT - _TABLE - 1.05)
     draw_mechanism(picture, mechanism, linkage, system)

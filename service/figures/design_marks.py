@@ -13,7 +13,7 @@ from ...objectives.tables.variable_columns import varying_column
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.requirements import Objective
-from ..render.numerals import with_unit
+from ..render.numerals import title_with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION
 
 BETTER = {"maximise": 1, "minimise": -1, "target": 0}
@@ -105,7 +105,7 @@ def objective_axis(front: ParetoFront, objective: Objective, system: System = "m
     symbol, factor = metric_unit_in(quantity.unit.symbol, system)
     values = front.columns[quantity.field] * factor
     target = None if objective.target is None else objective.target * quantity.unit.factor * factor
-    return Axis(with_unit(quantity.short_title, symbol, target), symbol, values, BETTER[objective.sense])
+    return Axis(title_with_unit(quantity.short_title, symbol, target), symbol, values, BETTER[objective.sense])
 
 
 def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
@@ -113,12 +113,12 @@ def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
     columns = ("crank", "rod", "offset")
     length, unit_factor = metric_unit_in("mm", system)
     axes = [
-        Axis(with_unit(name, length), length, 1e3 * unit_factor * front.dimensions[:, index], 0)
+        Axis(title_with_unit(name, length), length, 1e3 * unit_factor * front.dimensions[:, index], 0)
         for index, name in enumerate(columns)
     ]
     for index, item in enumerate(front.problem.mechanism.varying, start=3):
         unit = varying_column(item)[1]
         symbol, unit_factor = metric_unit_in(unit.symbol, system)
-        title = with_unit(item.name.removeprefix("mechanism."), symbol)
+        title = title_with_unit(item.name.removeprefix("mechanism."), symbol)
         axes.append(Axis(title, symbol, unit.factor * unit_factor * front.dimensions[:, index], 0))
     return axes

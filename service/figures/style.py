@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...model.optional_packages import NamingExtra
 from ...optimise.front.constant_numbers import is_constant
 from ..render.numerals import format_on_scale
-from ..resources.garbage import without_garbage_collection
+from ..resources.garbage_collection import without_garbage_collection
 
 with NamingExtra("figures need"), without_garbage_collection():
     import matplotlib
@@ -56,7 +56,7 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def save(figure: Figure, path: Path | io.BytesIO) -> None:
+def save_png(figure: Figure, path: Path | io.BytesIO) -> None:
     """Write a figure as PNG."""
     # No metadata, so that the same run gives the same bytes. Omitting transparency, which no figure has, is a fifth
     # faster and
@@ -71,7 +71,7 @@ def figure_bytes(figure: Figure, kind: str) -> bytes:
     """Return a figure as the content of a file; kind: "png" or "svg"."""
     out = io.BytesIO()
     if kind == "png":
-        save(figure, out)
+        save_png(figure, out)
     else:
         figure.savefig(out, format=kind, metadata={"Date": None, "Creator": None})
     return out.getvalue()
@@ -89,7 +89,7 @@ def write_text(figure: Figure, x: float, y: float, text: str, **style: Any) -> N
     figure.text(x / width, y / height, text, **{"fontsize": TEXT, "color": INK, "parse_math": False, **style})
 
 
-def heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
+def write_heading(figure: Figure, title: str, subtitle: str = "", *, left: float = 0.25) -> None:
     """Write the title at the upper left of a figure, and the subtitle below it."""
     height = figure.get_size_inches()[1]
     write_text(figure, left, height - 0.3, title, fontsize=TITLE, weight="bold")

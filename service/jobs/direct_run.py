@@ -26,7 +26,7 @@ def _may_wait_longer(waited: float) -> bool:
     return waited < _PATIENCE
 
 
-def files_of(job: Path, attached: Sequence[Path]) -> list[Artefact]:
+def job_and_attached_files(job: Path, attached: Sequence[Path]) -> list[Artefact]:
     """Return a job file and the accompanying files that it names, as stored."""
     files = {
         f"job{job.suffix.lower()}": job,
@@ -71,7 +71,7 @@ def stopped_job(store: Store, text: str, place: Path) -> Job:
     return job
 
 
-def folder_of(store: Store, job: Job, place: Path) -> RunFolder:
+def folder_to_resume(store: Store, job: Job, place: Path) -> RunFolder:
     """Return the unchanged folder of a job to resume, or a new one if there is none here."""
     path = place / job.run
     if path.is_dir():

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from ...optimise.decisions.wishes import Wish
     from ...optimise.front.front import ParetoFront
     from ..store import Store
-    from ..store.remarks import MadeWish, Wished
+    from ..store.bookmarks_and_wishes import MadeWish, Wished
 
 
-def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
+def wishes_by_objective(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple[str, float | None]]:
     """Return wishes by objective, except free ones, with values in the metric units of the objectives."""
     stated: dict[str, tuple[str, float | None]] = {}
     for objective, wish in zip(front.objectives, wishes, strict=True):
@@ -27,7 +27,7 @@ def stated_wishes(front: ParetoFront, wishes: Sequence[Wish]) -> dict[str, tuple
 
 
 def wishes_as_entered(front: ParetoFront, stated: Wished) -> dict[str, str]:
-    """Return wishes of `stated_wishes` as people enter them: "110 N m", "improve", "may worsen to 40 deg"."""
+    """Return wishes of `wishes_by_objective` as people enter them: "110 N m", "improve", "may worsen to 40 deg"."""
     words = {}
     for name, (kind, value) in stated.items():
         unit = front.problem.quantity(name).unit.symbol
@@ -38,15 +38,15 @@ def wishes_as_entered(front: ParetoFront, stated: Wished) -> dict[str, str]:
 
 def wishes_of_run(folder: Path) -> list[MadeWish]:
     """Return the wishes for the run in a folder, newest first; none for a run without a job."""
-    from ..store.remarks import wishes_of
+    from ..store.bookmarks_and_wishes import wishes_of
 
     with _store_and_job(folder) as store_and_job:
         return wishes_of(*store_and_job) if store_and_job else []
 
 
-def keep_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
+def record_wish(folder: Path, wishes: Wished, design: int | None) -> bool:
     """Record a wish for the run in a folder. Return whether the run has a job to store it with."""
-    from ..store.remarks import note_wish
+    from ..store.bookmarks_and_wishes import note_wish
 
     with _store_and_job(folder) as store_and_job:
         if store_and_job:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...model.errors import InputError, NotFound
-from ..runs.run_folder import runs_place, translate_disk_errors
+from ..runs.run_folder import runs_folder, translate_disk_errors
 from ..text.screen import print_message
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ Name = Annotated[str, typer.Argument(metavar="JOB", help='The job: its number, o
 
 def store_address(option: str | None, runs: Path | None = None) -> str:
     """Return the address of the store: the option, or SLIDERCRANK_STORE, or a file in the folder of runs."""
-    return option or os.environ.get(STORE_VARIABLE) or str(runs_place(runs) / FILE)
+    return option or os.environ.get(STORE_VARIABLE) or str(runs_folder(runs) / FILE)
 
 
 def printable_store_address(option: str | None, runs: Path | None = None) -> str:
@@ -80,7 +80,7 @@ def has_store(option: str | None, runs: Path | None = None) -> bool:
 
 def warn_without_workers(store: Store) -> None:
     """Report waiting jobs if no worker is available to solve them."""
-    if not store.workers_at_work():
+    if not store.count_present_workers():
         print_message("slidercrank: no worker is running, so jobs wait; start one with: slidercrank serve")
 
 

@@ -20,7 +20,7 @@ from ...objectives.tables.swing_curves import curves_at_even_times
 from ..drawings.linkage_shapes import fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
-from ..figures.painting import paint_shapes, show_rectangle
+from ..figures.shape_painting import paint_shapes, show_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, add_axes, new_figure, write_text
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scen
         degrees = round(math.degrees(angle)) % (360 * turns)
         bar, per_bar = metric_unit_in("bar", system)
         pressures = ", ".join(f"{1e-5 * per_bar * pressure[step]:.3g}" for pressure in gas)
-        reading = f"crank angle {degrees}°, slider at {_length(slider[0], system)}"
+        reading = f"crank angle {degrees}°, slider at {_length_text(slider[0], system)}"
         frames.append((moving_shapes(pin, slider, look), f"{reading}, {pressures} {bar}" if gas else reading))
     return _Scene(
         look.extent, look.size, fixed_shapes(linkage, look, bearing_below=True), frames, "dead centres dashed"
@@ -97,12 +97,12 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: S
         for angle in of_way.crank_angle.tolist()
     ):
         slider = pin_positions(drawn.linkage, angle)[1]
-        reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length(slider[0], system)}"
+        reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length_text(slider[0], system)}"
         frames.append((moving_swing_shapes(drawn, angle), reading))
     return _Scene(drawn.extent, drawn.look.size, fixed_swing_shapes(drawn), frames, "ends of the swing dashed")
 
 
-def _length(mm: float, system: System) -> str:
+def _length_text(mm: float, system: System) -> str:
     unit, factor = metric_unit_in("mm", system)
     return f"{factor * mm:.5g} {unit}"
 

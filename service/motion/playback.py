@@ -21,7 +21,7 @@ from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves
 from ..designs.design_curves import CurveColumn, cycle_table
 from ..drawings import layers as on
-from ..drawings.linkage_shapes import LinkageSizes, bar, block, fixed_shapes, lengths_in_words, linkage_sizes
+from ..drawings.linkage_shapes import LinkageSizes, bar, fixed_shapes, lengths_in_words, linkage_sizes, slider_block
 from ..drawings.shapes import Circle, Shape
 from ..drawings.swing_parts import body_shapes, fixed_swing_shapes, piston_rod_and_barrel, swing_sizes
 
@@ -112,7 +112,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
         },
         columns=[
             *(column for key in _READOUT for column in curves if column.key.startswith(key)),
-            *_pressures(mechanism, linkage, angles),
+            *_pressure_columns(mechanism, linkage, angles),
         ],
         marks=tuple(angle + 360.0 * number for number in range(turns) for angle in dead),
         still=fixed_shapes(linkage, look, bearing_below=True),
@@ -128,7 +128,7 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
     )
 
 
-def _pressures(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[CurveColumn]:
+def _pressure_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[CurveColumn]:
     """Return the pressure in each cylinder at crank angles, rad."""
     loads = cylinders(mechanism)
     return [
@@ -160,7 +160,7 @@ def moving_link_shapes(look: LinkageSizes) -> dict[str, list[Shape]]:
     """Return slider, rod, crank and pins, each in its own coordinates."""
     pin = (0.0, 0.0)
     return {
-        "slider": [block(on.SLIDER, pin, look)],
+        "slider": [slider_block(on.SLIDER, pin, look)],
         "rod": [bar(on.ROD, pin, (look.rod, 0.0), look.rod_width)],
         "crank": [bar(on.CRANK, pin, (look.crank, 0.0), look.crank_width)],
         **{name: [Circle(on.PINS, pin, look.pin)] for name in ("pivot", "crank-pin", "slider-pin")},

@@ -16,7 +16,7 @@ from ...objectives.kinds import System, metric_unit_in, unit_text
 from ...optimise.front.constant_numbers import is_constant
 from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
-from ..drawings.svg import elements, opening_tag
+from ..drawings.svg import opening_tag, svg_elements
 from ..render.numerals import format_number as number
 from .playback import ANGLES, Playback, swing_playback, turn_playback
 
@@ -46,7 +46,7 @@ def player_page(
         play = turn_playback(mechanism, linkage, system)
     else:
         play = swing_playback(mechanism, linkage, swing, system)
-    play = replace(play, columns=[_column_in(column, system) for column in play.columns])
+    play = replace(play, columns=[_column_in_units(column, system) for column in play.columns])
     title = f"{name}, {design}" if design else name
     readout = (
         f'<div><dt>{escape(column.title)}</dt><dd><output data-curve="{escape(column.key)}"></output> '
@@ -72,7 +72,7 @@ def player_page(
     return page.encode()
 
 
-def _column_in(column: CurveColumn, system: System) -> CurveColumn:
+def _column_in_units(column: CurveColumn, system: System) -> CurveColumn:
     """Return a curve with its values in a unit system. Its key stays: the script finds it by that."""
     unit, factor = metric_unit_in(column.unit, system)
     return replace(column, unit=unit, values=[factor * value for value in column.values])
@@ -96,11 +96,11 @@ def _drawing(play: Playback, title: str) -> str:
     for layer in _STILL:
         shapes = [shape for shape in play.still if shape.layer is layer]
         if shapes:
-            lines += [opening_tag(layer, size), *(line for shape in shapes for line in elements(shape)), "</g>"]
+            lines += [opening_tag(layer, size), *(line for shape in shapes for line in svg_elements(shape)), "</g>"]
     for name, shapes in play.moving.items():
         layer = shapes[0].layer
         lines.append(opening_tag(layer, size).replace(f'id="{layer.name}"', f'id="{name}" class="part"', 1))
-        lines += [*(line for shape in shapes for line in elements(shape)), "</g>"]
+        lines += [*(line for shape in shapes for line in svg_elements(shape)), "</g>"]
     return "\n".join([*lines, "</svg>"])
 
 

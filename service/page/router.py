@@ -107,7 +107,7 @@ def content_tag(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def files_of(folder: Path) -> dict[str, _File]:
+def page_files(folder: Path) -> dict[str, _File]:
     """Return the files of a folder by name, read once.
 
     A name from a client is never used as a path.
@@ -127,4 +127,4 @@ def files_of(folder: Path) -> dict[str, _File]:
     return files
 
 
-_FILES = files_of(Path(__file__).parent / "static")
+_FILES = page_files(Path(__file__).parent / "static")

@@ -24,9 +24,9 @@ from ...optimise.problem.constraint_violation import constraints_of
 from ...optimise.problem.job_remark import Change, Remark
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Word
-from .feasibility import Ends, Possible, possible_values
 from .partial_job import geometry_problem, omitted_requirements
-from .swinging import PossibleSwing, possible_swing
+from .possible_swing import PossibleSwing, possible_swing
+from .possible_values import Ends, Possible, possible_values
 
 _COUNT = re.compile(r"\d+ problems|very many problems")
 _PLACE = re.compile(r'((?:[a-z_]\w*|"[^"\n]*")(?: #\d+)?(?:\.(?:\w+|"[^"\n]*")(?: #\d+)?)*): (.+)', re.DOTALL)
@@ -75,7 +75,7 @@ def job_preview(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], P
         require_few_values(tables)
     except InputError as error:
         return JobPreview(_mistakes_in(error), None, None, None, [], [])
-    look = _find_mistakes(tables, read)
+    look = _preview_without_formulas(tables, read)
     formulas = stated_formulas(tables)
     wrong = look.wrong if look.problem is not None else _with_formula_mistakes(look.wrong, formulas)
     swing = possible_swing(tables, look.problem)
@@ -99,7 +99,7 @@ def _with_formula_mistakes(wrong: list[Wrong], formulas: list[StatedFormula]) ->
     ]
 
 
-def _find_mistakes(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> JobPreview:
+def _preview_without_formulas(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> JobPreview:
     """Return the findings about a job except those on its formulas."""
     try:
         stated = geometry_problem(tables, None)
@@ -177,15 +177,15 @@ def infeasibility_sentences(
     for name in ("stroke", "time_ratio", "transmission_angle"):
         ends: Ends | None = getattr(possible_values, name)
         if name in constraints and ends is not None:
-            sentences += _nearest_possible(problem, constraints[name], ends)
+            sentences += _nearest_possible_remarks(problem, constraints[name], ends)
     if possible_values.turning == 0.0 and not possible_values.example_feasible:
         sentences.append(_locking_sentence(problem, tables))
     elif possible_values.sampled and not possible_values.example_feasible and not sentences:
-        sentences.append(_none_sentence(problem, possible_values, fixed_names))
+        sentences.append(_none_meets_all_sentence(problem, possible_values, fixed_names))
     return sentences
 
 
-def _none_sentence(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> str:
+def _none_meets_all_sentence(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> str:
     """Return a sentence on samples of which none meets everything: the hardest requirement, and a value to ask for."""
     hardest, change = "", None
     if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
@@ -199,7 +199,7 @@ def _none_sentence(problem: Problem, possible_values: Possible, fixed_names: Seq
             item = None if nearest is None else relaxation_of_missed_bound(problem, constraint, word, bound, nearest)
             if item is not None:
                 hardest += f", and one in ten that meet all others has {item.relation} {item.with_unit}"
-                change = _asking(problem, constraint, word, item)
+                change = _change_to_reachable_value(problem, constraint, word, item)
     values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
     return Remark(
         f"none of {counted(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
@@ -237,7 +237,7 @@ def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
     return Remark(sentence, change)
 
 
-def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> list[Remark]:
+def _nearest_possible_remarks(problem: Problem, constraint: Constraint, ends: Ends) -> list[Remark]:
     """Return, in words, the nearest possible value for a requirement outside the possible range."""
     sentences: list[Remark] = []
     for word, bound in constraint.sides:
@@ -246,11 +246,15 @@ def _nearest_possible(problem: Problem, constraint: Constraint, ends: Ends) -> l
         item = relaxation_of_missed_bound(problem, constraint, word, bound, nearest) if is_beyond else None
         if item is not None:
             item = replace(item, alone=bool(is_constant(ends)))
-            sentences.append(Remark(item.sentence(other_requirements=_REST), _asking(problem, constraint, word, item)))
+            sentences.append(
+                Remark(
+                    item.sentence(other_requirements=_REST), _change_to_reachable_value(problem, constraint, word, item)
+                )
+            )
     return sentences
 
 
-def _asking(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> Change:
+def _change_to_reachable_value(problem: Problem, constraint: Constraint, word: Word, item: Relaxation) -> Change:
     """Return the change that asks for the reachable value on one side of a requirement."""
     unit = problem.quantity(constraint.quantity).unit
     bounds = {side: bound * unit.factor for side, bound in constraint.sides} | {word: item.number}

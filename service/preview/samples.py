@@ -54,28 +54,30 @@ class Screening:
         return np.asarray(self.violation <= FEASIBLE)
 
     @property
-    def sampled(self) -> int:
+    def uniform_sample_count(self) -> int:
         """Number of uniform samples."""
         return int(self.is_uniform.sum())
 
     @property
-    def feasible(self) -> float:
+    def feasible_fraction(self) -> float:
         """Fraction of the uniform samples that meet every requirement."""
-        return float(self.is_feasible[self.is_uniform].mean()) if self.sampled else 0.0
+        return float(self.is_feasible[self.is_uniform].mean()) if self.uniform_sample_count else 0.0
 
 
-def designs_of(problem: Problem) -> tuple[Array, NDArray[np.bool_]]:
+def sampled_designs(problem: Problem) -> tuple[Array, NDArray[np.bool_]]:
     """Return designs (n, 3) in the box that meet the eliminable equalities, and whether each is a uniform sample.
 
     Some may not be linkages. Designs of a swing with a variable start have the start as a fourth number.
     """
     branches = elimination_branches(problem)
-    parts = list(_points(branches, SAMPLES, 0))
+    parts = list(_points_of_branches(branches, SAMPLES, 0))
     designs = [branches[index].dimensions(points)[:, _length_columns(problem)] for index, points, _ in parts]
     return np.concatenate(designs), np.repeat([part[2] for part in parts], [len(points) for points in designs])
 
 
-def _points(branches: Sequence[EliminationBranch], count: int, stream: int) -> Iterator[tuple[int, Array, bool]]:
+def _points_of_branches(
+    branches: Sequence[EliminationBranch], count: int, stream: int
+) -> Iterator[tuple[int, Array, bool]]:
     """Yield points of each branch by its index, with whether they are uniform: by the width of its offsets."""
     ranges = [branch.bounds["offset"] for branch in branches]
     by_width = all("offset" in branch.free for branch in branches)
@@ -99,7 +101,7 @@ def _length_columns(problem: Problem) -> list[int]:
 
 
 def screened_samples(problem: Problem) -> Screening:
-    """Return designs as in `designs_of` with their violations, as many as a short time allows."""
+    """Return designs as in `sampled_designs` with their violations, as many as a short time allows."""
     end = time.monotonic() + _MOMENT
     columns = _length_columns(problem)
     designs, violations, uniform = [np.zeros((0, len(columns)))], [np.zeros(0)], [np.zeros(0, dtype=bool)]
@@ -108,7 +110,7 @@ def screened_samples(problem: Problem) -> Screening:
     for place, part in enumerate(parts):
         branches = elimination_branches(part)
         evaluators = [Evaluator(part, branch) for branch in branches]
-        for index, points, is_uniform in _points(branches, SAMPLES // len(parts), 10 * place):
+        for index, points, is_uniform in _points_of_branches(branches, SAMPLES // len(parts), 10 * place):
             if not is_uniform and time.monotonic() > end:
                 continue
             for begin in range(0, len(points), BATCH):

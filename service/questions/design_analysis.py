@@ -11,7 +11,7 @@ from ...model.errors import InputError
 from ..designs.display_units import convert_record, convert_row
 from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules
 from ..designs.violations import violations_of
-from ..runs.result import Row, rows_of
+from ..runs.result import Row, rows_of_columns
 from .design_question import BoundQuestion
 from .discovery import TOPICS
 
@@ -88,7 +88,7 @@ def quantities_of_design(
     from .peaks import lengths_row
 
     return with_undefined_values(
-        rows_of(analysis_columns(mechanism, lengths_row(linkage), custom=custom))[0], mechanism, linkage, custom
+        rows_of_columns(analysis_columns(mechanism, lengths_row(linkage), custom=custom))[0], mechanism, linkage, custom
     )
 
 
@@ -127,7 +127,7 @@ def quantities_of_swing(design: StoredDesign) -> tuple[Row, dict[str, str]]:
 
     from ...objectives.tables.swing_columns import swing_columns
 
-    row = rows_of(swing_columns(design.part.mechanism, np.array([design.values]), design.part.own))[0]
+    row = rows_of_columns(swing_columns(design.part.mechanism, np.array([design.values]), design.part.own))[0]
     return with_undefined_values(row, design.mechanism, design.linkage, design.part.own, design.part.motion)
 
 

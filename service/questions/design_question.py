@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ...model.machine.mechanism import Mechanism
     from ...objectives.kinds import System
     from ...optimise.problem.problem import Problem
-    from ..figures.panels import FigureSource
+    from ..figures.panel_drawing import FigureSource
     from ..render.blocks import Block
 
 
@@ -179,7 +179,7 @@ class BoundQuestion:
 
     def draw(self, folder: Path, units: System = "metric") -> Path:
         """Draw the figure for known numbers into a folder; return the file."""
-        from ..figures.panels import save_figure
+        from ..figures.panel_drawing import save_figure
 
         file = folder / f"{self.name}.png"
         save_figure(self._figure_source(), file, units)
@@ -187,10 +187,10 @@ class BoundQuestion:
 
     def figure(self, cancelled: Callable[[], bool], units: System = "metric") -> Figure:
         """Return the figure without computed numbers. Raises `InputError` if there is none."""
-        from ..figures.panels import figure_of
+        from ..figures.panel_drawing import draw_figure
 
         self._add_shared_options(cancelled)
-        return figure_of(self._figure_source(), units)
+        return draw_figure(self._figure_source(), units)
 
     def _add_shared_options(self, cancelled: Callable[[], bool]) -> None:
         module = self._analysis_module

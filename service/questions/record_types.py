@@ -44,7 +44,7 @@ class Record(TypedDict):
     """JSON record that allows no other keys. A string below a key describes it."""
 
 
-def _title(key: str, _: object = None) -> str:
+def _title_with_unit(key: str, _: object = None) -> str:
     """Return the title of a key: "peak torque, N m"."""
     numerator, per, denominator = key.partition("_per_")
     name, unit, _factor = split_unit(numerator)
@@ -54,7 +54,7 @@ def _title(key: str, _: object = None) -> str:
     return " ".join(words)
 
 
-_CLOSED = {"extra": "forbid", "use_attribute_docstrings": True, "field_title_generator": _title}
+_CLOSED = {"extra": "forbid", "use_attribute_docstrings": True, "field_title_generator": _title_with_unit}
 Record.__pydantic_config__ = _CLOSED  # type: ignore[attr-defined]
 
 

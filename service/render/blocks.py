@@ -176,7 +176,7 @@ def remark_with_value(record: Mapping[str, Any], key: str, remark: str) -> Text:
     return "" if value.number is None else words("{value} {remark}", value=value, remark=remark)
 
 
-def dimensions(linkage: Linkage) -> Text:
+def dimensions_text(linkage: Linkage) -> Text:
     """Return crank, rod and offset of a linkage, and its branch if crossed."""
     crossed = "" if linkage.branch == "open" else ", crossed"
     sizes = {name: Value(float(getattr(linkage, name)), LENGTH) for name in DIMENSIONS}

@@ -26,7 +26,7 @@ def format_on_scale(value: float, low: float, high: float, *, digits: int = 4) -
     return format_number(0.0 if abs(value) < 1e-6 * abs(high - low) else value, digits)
 
 
-def with_unit(title: str, symbol: str, target: float | None = None) -> str:
+def title_with_unit(title: str, symbol: str, target: float | None = None) -> str:
     """Return an axis title with its unit and the target, if any."""
     named = f"{title}, {unit_text(symbol)}" if symbol else title
     return named if target is None else f"{named} (target {f'{target:g} {unit_text(symbol)}'.rstrip()})"
@@ -46,7 +46,7 @@ def format_cell_exactly(cell: Cell) -> str:
     return repr(cell)
 
 
-def length(millimetres: float, system: System, digits: int = 4) -> str:
+def format_length(millimetres: float, system: System, digits: int = 4) -> str:
     """Return a length, mm, for people, in the unit of a unit system."""
     unit, factor = metric_unit_in("mm", system)
     return f"{format_number(millimetres * factor, digits)} {unit}"

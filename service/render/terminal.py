@@ -33,7 +33,7 @@ def _is_note(block: Block | None) -> bool:
 
 def _print_table(screen: Console, block: Table, system: System) -> None:
     titles = table_headings(block, system, separator=",\n" if block.ruled else ", ")
-    rows = table(
+    rows = empty_table(
         *(f"{'>' if column.right_aligned else ''}{title}" for column, title in zip(block.columns, titles, strict=True)),
         ruled=block.ruled,
         **({"padding": (0, 2, 0, 0), "pad_edge": True} if block.space_before else {}),
@@ -45,7 +45,7 @@ def _print_table(screen: Console, block: Table, system: System) -> None:
     print_table(screen, rows)
 
 
-def table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
+def empty_table(*columns: str, ruled: bool = False, **look: Any) -> Drawn:
     """Return an empty table.
 
     columns: headings; a leading ">" right-aligns the column. ruled: whether headings have a rule.

@@ -17,10 +17,10 @@ from ..text.job_in_words import machine_in_words
 from .decision_section import decision_section
 from .design_section import design_section, linkage_picture, numbers_section
 from .document import Facts, Report, Section
-from .evidence_section import sensitivity_section, tolerance_section
 from .job_and_front import front_section, job_section, search_section
 from .lever_section import lever_section
 from .measured_section import measured_section
+from .sensitivity_and_tolerance_sections import sensitivity_section, tolerance_section
 from .subject import Subject
 from .swing_section import SwingOfSubject
 
@@ -46,7 +46,7 @@ def design_report(subject: Subject, *, created: float | None = None) -> Report:
             front_section(subject),
             design_section(subject),
             *([lever_section(subject, motion)] if motion is not None and motion.driver == "cylinder" else []),
-            *([] if swing is None else [swing.section()]),
+            *([] if swing is None else [swing.numbers_section()]),
             *([] if tolerances is None else [tolerances]),
             *([] if subject.measured is None else [measured_section(subject, subject.measured)]),
             sensitivity_section(subject),

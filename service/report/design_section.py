@@ -13,12 +13,12 @@ from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
 from ..designs.judged_requirements import requirements_of
+from ..designs.length_with_tolerance import format_toleranced
 from ..designs.rounding_noise import row_without_noise
-from ..designs.toleranced import format_toleranced
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
-from ..figures.front import datasheet_of
-from ..figures.painting import drawing_figure
+from ..figures.front_figures import datasheet_of
+from ..figures.shape_painting import drawing_figure
 from ..render.numerals import format_cell, format_cell_exactly
 from .document import Block, Paragraph, Picture, Section, Table
 from .subject import Subject
@@ -31,7 +31,7 @@ def design_section(subject: Subject) -> Section:
     return Section(
         subject.label[:1].upper() + subject.label[1:],
         (
-            *_rule_blocks(subject),
+            *_requirement_blocks(subject),
             *(
                 Paragraph(f"Beyond the allowable value: {unit_text(line)}.", "bad")
                 for line in subject.violation_sentences
@@ -99,7 +99,7 @@ def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
         for quantity in (*QUANTITIES.values(), *part.own)
     }
     required = {item.column for item in subject.result.objectives} | {
-        slack.removeprefix("slack_") for slack in _bounds_by_slack(subject)
+        slack.removeprefix("slack_") for slack in _bounds_by_slack_column(subject)
     }
     columns, absent = [], []
     for column in all_columns(subject.row):
@@ -124,11 +124,11 @@ def _dimensions_with_tolerance(subject: Subject) -> dict[str, str]:
     return texts
 
 
-def _rule_blocks(subject: Subject) -> list[Block]:
+def _requirement_blocks(subject: Subject) -> list[Block]:
     slacks = [column for column in all_columns(subject.row) if column.key.startswith("slack_")]
     if not slacks:
         return [Paragraph("The job sets no requirements besides the ranges of the dimensions.", "note")]
-    rows, all_met, bounds = [], True, _bounds_by_slack(subject)
+    rows, all_met, bounds = [], True, _bounds_by_slack_column(subject)
     for column in slacks:
         slack, value = subject.row[column.key], subject.row.get(column.key.removeprefix("slack_"))
         active = _is_active(subject, column)
@@ -152,7 +152,7 @@ def _rule_blocks(subject: Subject) -> list[Block]:
     ]
 
 
-def _bounds_by_slack(subject: Subject) -> dict[str, str]:
+def _bounds_by_slack_column(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):

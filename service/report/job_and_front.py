@@ -10,10 +10,10 @@ from ...objectives.kinds import unit_text
 from ...optimise.search.fingerprint import version_of
 from ..designs.columns import find_column
 from ..designs.violations import front_violations_in_words
-from ..figures.parallel import parallel_coordinates
-from ..figures.scatter import scatter_matrix
+from ..figures.parallel_coordinates import parallel_coordinates
+from ..figures.scatter_matrix import scatter_matrix
 from ..render.numerals import format_cell, format_cell_with_unit
-from ..text.job_in_words import freedom_in_words, summarise
+from ..text.job_in_words import freedom_in_words, problem_in_words
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -22,7 +22,7 @@ _DREW = ("slidercrank", "numpy", "matplotlib", "pandas")
 
 def job_section(subject: Subject) -> Section:
     """Return the section on the job in words, as `slidercrank check` prints it."""
-    words = summarise(subject.problem)
+    words = problem_in_words(subject.problem)
     parts = {
         **{"Given": words["given"], "Tolerances": words["tolerances"], "Costs": words["costs"]},
         **{"May vary": words["variables"], "Requirements": words["rules"], "Objectives": words["objectives"]},
@@ -89,7 +89,7 @@ def front_section(subject: Subject) -> Section:
     result = subject.result
     lines = map(unit_text, front_violations_in_words(result))
     violations = (Paragraph(f"Beyond the allowable value: {line}.", "bad") for line in lines)
-    blocks: list[Block] = [*violations, _ranges(subject), _comparison_table(subject)]
+    blocks: list[Block] = [*violations, _objective_range_table(subject), _comparison_table(subject)]
     raster = len(result.designs) > _MANY
     if len(result.designs) > 1:
         if len(result.objectives) > 1:
@@ -102,7 +102,7 @@ def front_section(subject: Subject) -> Section:
     return Section("The front", tuple(blocks))
 
 
-def _ranges(subject: Subject) -> Table:
+def _objective_range_table(subject: Subject) -> Table:
     rows = []
     for objective in subject.result.objectives:
         ranked = sorted(subject.result.designs, key=objective.minimised_value)

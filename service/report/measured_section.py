@@ -8,8 +8,8 @@ from functools import partial
 from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...objectives.tables.measured_curves import Measured
+from ..figures.panel_drawing import draw_panel_figure
 from ..figures.panel_figure import PanelFigure
-from ..figures.panels import draw_panel_figure
 from ..questions.measured.analysis import curve_value, figure, file_notes, numbers
 from ..render.blocks import Unit
 from ..render.formatting import format_text

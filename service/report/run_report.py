@@ -9,7 +9,7 @@ from typing import Any
 
 from ...model.errors import RunError
 from ...objectives.kinds import System
-from ..designs.measured_file import read_measured
+from ..designs.measured_curves_file import parse_measured_curves
 from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import Result
 from ..runs.stored_runs import problem_of
@@ -33,7 +33,7 @@ def run_report(
     if measured is not None:
         design = subject.design
         require_rotating_crank(design.part.motion, "a comparison with measured curves")
-        subject = replace(subject, measured=read_measured(measured, design.mechanism, design.linkage))
+        subject = replace(subject, measured=parse_measured_curves(measured, design.mechanism, design.linkage))
     report = design_report(subject)
     if pdf:
         from .pdf import pdf_file

@@ -15,14 +15,14 @@ from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation
 from ..designs.display_units import convert_record, convert_result, convert_row
 from ..designs.judged_requirements import faults_in_words
+from ..designs.length_with_tolerance import format_toleranced, tolerances_of
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.toleranced import format_toleranced, tolerances_of
 from ..designs.violations import violations_in_words, violations_of
 from ..render.numerals import format_cell
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
-    from ..store.remarks import Bookmark
+    from ..store.bookmarks_and_wishes import Bookmark
 
 
 @dataclass(frozen=True, kw_only=True)

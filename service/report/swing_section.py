@@ -14,7 +14,7 @@ from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
 from ..render.formatting import table_cells, table_headings
-from ..render.numerals import format_cell, length
+from ..render.numerals import format_cell, format_length
 from .document import Block, Paragraph, Section, Table
 from .subject import Subject
 
@@ -31,7 +31,7 @@ class SwingOfSubject:
         design = self._subject.design
         return summarise(design.mechanism, design.linkage, self._swing)
 
-    def section(self) -> Section:
+    def numbers_section(self) -> Section:
         """Return the numbers of the swing, and the extremes of its curves."""
         record, system = swing_record(self._subject.design.mechanism, self.summary), self._subject.system
         tables = [block for block in swing_blocks(record) if isinstance(block, Numbers)]
@@ -58,7 +58,7 @@ class SwingOfSubject:
                 share.source,
                 f"{format_cell(math.degrees(share.limit))} deg"
                 if share.source == "crank angle"
-                else length(1e3 * share.limit, system, 6),
+                else format_length(1e3 * share.limit, system, 6),
                 format_cell(factor * unit_of_error.factor * share.error),
                 f"{100.0 * share.error / total:.1f}",
             )

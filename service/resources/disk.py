@@ -16,7 +16,7 @@ LEAST = 256_000
 _FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
-def is_full(error: BaseException) -> bool:
+def is_disk_full(error: BaseException) -> bool:
     """Whether an error reports a full disk or an exhausted user quota."""
     return isinstance(error, OSError) and error.errno in _FULL
 

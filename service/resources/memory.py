@@ -25,7 +25,7 @@ class Memory:
     def __init__(self) -> None:
         self._fresh = self._least = 0
 
-    def begin(self) -> None:
+    def begin_job(self) -> None:
         """Record the start of a job."""
         self._least = memory_taken()
         self._fresh = min(self._fresh or self._least, self._least)
@@ -54,7 +54,7 @@ def memory_taken() -> int:
     return total
 
 
-def size_of(text: str, option: str) -> int:
+def parse_size(text: str, option: str) -> int:
     """Return an amount in bytes. Raises `InputError`, which names the option, for invalid text."""
     match = _FORM.fullmatch(text)
     factor = _UNITS.get(match[2].upper()) if match else None

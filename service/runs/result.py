@@ -46,7 +46,7 @@ class StoredObjective:
 
 
 @dataclass(frozen=True)
-class Exact:
+class ExactDesigns:
     """Designs of a front as the search left them: dimensions and derivatives, SI; fields as in `ParetoFront`.
 
     dimensions: (n, 3 + v). variants: (n,), empty if there are no choices. goals: for each design, objective index (p,)
@@ -64,9 +64,9 @@ class Exact:
         if not count == len(self.goals) == len(self.active) or len(self.variants) not in (0, count):
             raise ValueError(f"dimensions of {count} designs, slopes of {len(self.goals)}, {len(self.active)}")
 
-    def select(self, rows: Sequence[int]) -> Exact:
+    def select(self, rows: Sequence[int]) -> ExactDesigns:
         """Return the data of selected designs, in the given order."""
-        return Exact(
+        return ExactDesigns(
             self.dimensions[list(rows)],
             tuple(self.variants[row] for row in rows) if self.variants else (),
             tuple(self.goals[row] for row in rows),
@@ -102,7 +102,7 @@ class Result:
     warnings: tuple[str, ...] = ()
     violated: Mapping[str, Sequence[float]] = field(default_factory=dict)
     discrete: Mapping[str, Any] | None = None
-    exact: Exact | None = field(default=None, repr=False, compare=False)
+    exact: ExactDesigns | None = field(default=None, repr=False, compare=False)
 
     @property
     def strokes_differ(self) -> bool:
@@ -152,7 +152,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         status=front.status,
         message=front.message,
         objectives=tuple(stored_objectives(front.problem)),
-        designs=rows_of(front.columns),
+        designs=rows_of_columns(front.columns),
         hypervolume=float(front.hypervolume),
         evaluations=int(front.evaluations),
         seconds=float(front.seconds),
@@ -168,7 +168,7 @@ def result_of(front: ParetoFront, run: str) -> Result:
         ),
         violated=_violated_columns(front),
         discrete=discrete_record(front),
-        exact=Exact(front.dimensions, front.variants, front.goals, front.active),
+        exact=ExactDesigns(front.dimensions, front.variants, front.goals, front.active),
     )
 
 
@@ -181,7 +181,7 @@ def _violated_columns(front: ParetoFront) -> dict[str, list[float]]:
     }
 
 
-def unsearched_result(error: InfeasibleError, run: str = "") -> Result:
+def infeasible_result(error: InfeasibleError, run: str = "") -> Result:
     """Return the result for an input known to be infeasible before a search. run: its folder, "" if none."""
     from ...optimise.problem.problem import Problem
 
@@ -224,7 +224,7 @@ def discrete_record(front: ParetoFront) -> dict[str, Any] | None:
     }
 
 
-def rows_of(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:
+def rows_of_columns(columns: Mapping[Any, Sequence[Any] | NDArray[Any]]) -> list[Row]:
     """Return the rows of a table given by columns, with plain Python numbers and strings."""
     keys = [str(key) for key in columns]
     cells = zip(*columns.values(), strict=True)
@@ -258,7 +258,7 @@ def json_ready(value: Any, *, gaps: bool = False) -> Any:
     return value
 
 
-def read_row(row: Mapping[str, Any]) -> Row:
+def row_from_json(row: Mapping[str, Any]) -> Row:
     """Return a design from `json_ready` with its infinite numbers restored; words of choices stay words."""
     return {
         key: float(cell) if cell in ("inf", "-inf") and not key.startswith("choice_") else cell

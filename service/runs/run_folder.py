@@ -28,7 +28,7 @@ from types import TracebackType
 
 from ...model.errors import InputError, MissingExtra, RunError
 from ...model.file_name_encoding import path_from_text, path_text
-from ..resources.disk import free_space_text, is_full
+from ..resources.disk import free_space_text, is_disk_full
 from .result import Result, csv_text, json_text
 
 MARK = "UNFINISHED"
@@ -36,7 +36,7 @@ DEFAULT_PLACE = "runs"
 PLACE_VARIABLE = "SLIDERCRANK_RUNS"
 
 
-def runs_place(option: Path | None) -> Path:
+def runs_folder(option: Path | None) -> Path:
     """Return the folder of runs: the option, or SLIDERCRANK_RUNS, or ./runs."""
     return option or Path(os.environ.get(PLACE_VARIABLE) or DEFAULT_PLACE)
 
@@ -78,7 +78,7 @@ class RunFolder:
                 shutil.rmtree(hidden, ignore_errors=True)
                 raise
         self._has_result = self._was_complete = self._is_as_before = False
-        self._lock = _lock(self.path)
+        self._lock = _lock_folder(self.path)
         self.log(f"run {self.path.name} started")
 
     @classmethod
@@ -91,7 +91,7 @@ class RunFolder:
         run.started = time.strftime("%Y-%m-%d %H:%M:%S")
         run.path = path
         with translate_disk_errors(path):
-            run._lock = _lock(path)
+            run._lock = _lock_folder(path)
             run._was_complete, run._has_result = not (path / MARK).exists(), True
         run._is_as_before = True
         return run
@@ -143,9 +143,9 @@ class RunFolder:
         with translate_disk_errors(self.path):
             for folder in (self.figures, self.path):
                 for file in sorted(folder.glob("*")):
-                    sync(file)
+                    flush_to_disk(file)
             (self.path / MARK).unlink(missing_ok=True)
-            sync(self.path)
+            flush_to_disk(self.path)
         self._release()
 
     def _release(self) -> None:
@@ -201,7 +201,7 @@ def write_file(path: Path, content: str | bytes) -> None:
             _write_atomically(path.resolve(), content)
 
 
-def _lock(folder: Path) -> int | None:
+def _lock_folder(folder: Path) -> int | None:
     """Return a handle that locks the folder against other processes while it is open; None if locks are not supported.
 
     The lock ends with the process, however it ends. Raises `InputError` if another process holds it.
@@ -257,7 +257,7 @@ def _write_atomically(path: Path, content: str | bytes) -> None:
         raise
 
 
-def sync(path: Path) -> None:
+def flush_to_disk(path: Path) -> None:
     """Flush a file, or a folder's directory entry, to disk."""
     if os.name == "nt":  # on Windows a read-only handle cannot be flushed, and a folder cannot be opened
         return
@@ -274,7 +274,7 @@ def translate_disk_errors(place: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        if is_full(error):
+        if is_disk_full(error):
             raise RunError(
                 f"Disk full: {free_space_text(place)}; free some space, or choose another folder for runs"
             ) from error

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import JobError, RunError
 from ...model.file_name_encoding import path_text
-from .result import Exact, Result, Row, StoredObjective, json_ready, rows_from_csv
+from .result import ExactDesigns, Result, Row, StoredObjective, json_ready, rows_from_csv
 from .run_folder import MARK
 
 if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 
-def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Result:
+def read_run(folder: Path, resume_command: str = "slidercrank optimise --resume") -> Result:
     """Return the result of a run. Raises `RunError` if it is unfinished, damaged, or not a run.
 
     again: how to continue an unfinished run, in the words of the current interface.
@@ -24,7 +24,7 @@ def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Resu
     try:
         if (folder / MARK).exists():
             text = (folder / MARK).read_text(encoding="utf-8", errors="replace").strip().rstrip(".")
-            raise RunError(f"the run {folder} is unfinished: {text}; continue it with `{again} {folder.name}`")
+            raise RunError(f"the run {folder} is unfinished: {text}; continue it with `{resume_command} {folder.name}`")
         if not (folder / "front.json").is_file():
             raise RunError(f"a run must have a file front.json; {folder} has none; name another folder")
         record = json.loads((folder / "front.json").read_text(encoding="utf-8"))
@@ -38,7 +38,7 @@ def read_run(folder: Path, again: str = "slidercrank optimise --resume") -> Resu
     return result
 
 
-def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: Exact | None = None) -> Result:
+def result_from(record: dict[str, Any], rows: list[Row], run: str, exact: ExactDesigns | None = None) -> Result:
     """Return the result for a record of front.json without its designs, and the rows of its designs.
 
     exact: the same designs as the search left them, if stored.

@@ -10,12 +10,12 @@ from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from .database import Database
 from .database_clock import now
-from .job_rows import the_job
+from .job_rows import job_by_number
 from .schema import history
 from .serialisation import database_text
 
 if TYPE_CHECKING:
-    from .remarks import Bookmark
+    from .bookmarks_and_wishes import Bookmark
 
 Action = Literal["note", "reason", "decided", "withdrawn", "deleted"]
 """What happened to a bookmark. withdrawn: its decision was taken back, without another one in its place."""
@@ -43,7 +43,7 @@ class HistoryEntry:
 def history_of(store: Database, job: int) -> list[HistoryEntry]:
     """Return the history of the bookmarks of a job, oldest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
-        the_job(connection, job)
+        job_by_number(connection, job)
         return entries_of(connection, job)
 
 

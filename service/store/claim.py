@@ -16,10 +16,10 @@ from ..runs.result import Result, json_ready
 from .database import Database, Full, Unavailable
 from .database_clock import JUMP, later, now
 from .job_rows import NewEvent, add_events, evaluation_records, state_event
-from .queue import MOST_DELAY, put_files
+from .queue import MOST_DELAY, write_files
 from .records import NOT_DONE, Artefact, Job
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_of, checksum, database_text, packed, packed_exact, summary_of, text_of
+from .serialisation import cells_json, checksum, compact_json, database_text, packed_exact, packed_record, summary_of
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress
@@ -77,7 +77,7 @@ class Claim:
         """Time since the lease was last renewed, s."""
         return time.monotonic() - self._renewed
 
-    def records(self) -> list[Record]:
+    def evaluation_records(self) -> list[Record]:
         """Return the records of the job's evaluations so far, in order."""
         with self._database.reading() as connection:
             return evaluation_records(connection, self.job.id)
@@ -97,7 +97,7 @@ class Claim:
         self.has_started = self.has_started or not progress.is_preparing
         data = json_ready(asdict(progress), gaps=True)
         standing = data if front is None else {**data, "front": json_ready(front, gaps=True)}
-        self._write({"progress": text_of(standing)}, [("progress", data)])
+        self._write({"progress": compact_json(standing)}, [("progress", data)])
 
     def renew(self) -> None:
         """Renew the lease and check for cancellation; additionally writes only the reason why a write waits."""
@@ -109,7 +109,7 @@ class Claim:
     def check_cancellation(self) -> None:
         """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has claimed it."""
         left = (jobs.c.lease_until - now()).label("left")
-        query = select(jobs.c.cancel_asked, left).where(self._mine, jobs.c.state == "running")
+        query = select(jobs.c.cancel_asked, left).where(self._is_held_row, jobs.c.state == "running")
         with self._database.reading() as connection:
             row = connection.execute(query).first()
         if row is None:
@@ -135,7 +135,7 @@ class Claim:
 
     def write_files(self, *files: Artefact) -> None:
         """Write files of the job, replacing those with the same names."""
-        self._write({}, [], lambda connection: put_files(connection, self.job.id, files))
+        self._write({}, [], lambda connection: write_files(connection, self.job.id, files))
 
     def finish(self, result: Result, files: Sequence[Artefact] = ()) -> None:
         """Write the result and end the job as done, infeasible or cancelled, all in one transaction."""
@@ -143,12 +143,13 @@ class Claim:
         del record["designs"]
         record["columns"] = list(result.designs[0]) if result.designs else []
         rows = [
-            {"job": self.job.id, "number": number, "cells": cells_of(row)} for number, row in enumerate(result.designs)
+            {"job": self.job.id, "number": number, "cells": cells_json(row)}
+            for number, row in enumerate(result.designs)
         ]
         content = None if result.exact is None else packed_exact(result.exact)
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
-        texts = {"result": text_of(record), "summary": text_of(summary_of(result))}
+        texts = {"result": compact_json(record), "summary": compact_json(summary_of(result))}
 
         def write_result(connection: Connection) -> None:
             of_job = jobs.c.id == self.job.id
@@ -161,7 +162,7 @@ class Claim:
                 connection.execute(insert(designs), rows)
             if content is not None:
                 connection.execute(insert(exact), {"job": self.job.id, "content": content})
-            put_files(connection, self.job.id, files)
+            write_files(connection, self.job.id, files)
             if result.status != "cancelled":  # a cancelled job can be resumed
                 connection.execute(delete(records).where(records.c.job == self.job.id))
 
@@ -198,7 +199,7 @@ class Claim:
     def release(self) -> None:
         """End the lease immediately, regardless of clocks, unless another worker has the job."""
         with self._database.writing() as connection:
-            connection.execute(update(jobs).where(self._mine, jobs.c.state == "running").values(lease_until=0.0))
+            connection.execute(update(jobs).where(self._is_held_row, jobs.c.state == "running").values(lease_until=0.0))
 
     def _end_without_result(self, state: str, reason: str, changes: dict[str, Any]) -> None:
         """End the claim without a result. Records that do not fit on the disk are omitted: they are recomputed."""
@@ -268,7 +269,7 @@ class Claim:
         """Write everything in one transaction. tried: whether an earlier attempt may already have taken effect."""
         pending, started = self._unsent if keep else [], time.monotonic()
         rows = [
-            {"job": self.job.id, "number": number, "content": packed(record)}
+            {"job": self.job.id, "number": number, "content": packed_record(record)}
             for number, record in enumerate(pending, self._records)
         ]
         values: dict[str, Any] = {
@@ -279,7 +280,7 @@ class Claim:
         }
         if rows:
             values["attempts"] = 0  # the job makes progress, so earlier failures do not count
-        condition = and_(self._mine, jobs.c.state == "running", jobs.c.writes == self._writes)
+        condition = and_(self._is_held_row, jobs.c.state == "running", jobs.c.writes == self._writes)
         if self.seconds_since_renewal > self.lease and not self.waits:
             condition = and_(condition, jobs.c.lease_until > now())
         change = (
@@ -295,7 +296,7 @@ class Claim:
                 connection.execute(update(workers).where(workers.c.id == self.job.worker).values(seen=now()))
                 if also_write is not None:
                     also_write(connection)
-            elif not tried or connection.scalar(select(jobs.c.writes).where(self._mine)) != self._writes + 1:
+            elif not tried or connection.scalar(select(jobs.c.writes).where(self._is_held_row)) != self._writes + 1:
                 raise self._lease_lost_error()  # otherwise written: only the answer to an earlier attempt was lost
         self._renewed, self.astray = started, False
         self._writes += 1
@@ -304,7 +305,7 @@ class Claim:
         self._attempts = 0 if rows else self._attempts
 
     @property
-    def _mine(self) -> ColumnElement[bool]:
+    def _is_held_row(self) -> ColumnElement[bool]:
         return and_(jobs.c.id == self.job.id, jobs.c.fence == self.job.fence)
 
     def _lease_lost_error(self) -> LeaseLost:

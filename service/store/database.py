@@ -136,23 +136,23 @@ class Database:
     @contextlib.contextmanager
     def reading(self) -> Iterator[Connection]:
         """Enter a transaction that sees one state of the database and does not block writers."""
-        self._require_file()
+        self._require_unchanged_file()
         with self._translated_errors(), self._reader.begin() as connection:
             yield connection
 
     @contextlib.contextmanager
     def writing(self) -> Iterator[Connection]:
         """Enter a write transaction; committed at the end, rolled back completely after an error."""
-        self._require_file()
+        self._require_unchanged_file()
         if self._file is not None and not self._open:
             raise StoreError(
                 f"the store must be a database that can be written; {self.name} is read-only; only read from it, or "
-                f"{remedy_of_rights(self._file)}"
+                f"{permission_remedy(self._file)}"
             )
         with self._translated_errors(), self.engine.begin() as connection:
             yield connection
 
-    def _require_file(self) -> None:
+    def _require_unchanged_file(self) -> None:
         """Raise `StoreError` if the file was deleted or replaced: further writes would be lost."""
         if self._file is not None and _file_identity(self._file) != self._known:
             raise StoreError(
@@ -163,7 +163,7 @@ class Database:
         if self._file is not None and self._open and not is_readable_and_writable(self._file):
             raise StoreError(
                 f"the file of a store must stay readable and writable while it is used; {self.name} is no longer; "
-                f"{remedy_of_rights(self._file)}"
+                f"{permission_remedy(self._file)}"
             )
 
     @contextlib.contextmanager
@@ -173,11 +173,11 @@ class Database:
         except (ArgumentError, DBAPIError, PoolTimeoutError, sqlite3.Error) as error:
             if self._is_full(error):
                 # Its own message contains the secrets.
-                raise self._full_error(self._without_secrets(_reason(error))) from None
+                raise self._full_error(self._without_secrets(_error_text(error))) from None
             kind = Unavailable if _is_temporary(error) else StoreError
             raise kind(
                 f"the store must be a database that can be reached, read and written; {self.name} gave: "
-                f"{self._without_secrets(_reason(error))}; check that it runs, that the disk has space and that "
+                f"{self._without_secrets(_error_text(error))}; check that it runs, that the disk has space and that "
                 "you may write there"
             ) from None
 
@@ -220,7 +220,7 @@ def is_readable_and_writable(path: Path) -> bool:
     return os.access(path, os.R_OK | os.W_OK)
 
 
-def remedy_of_rights(path: Path) -> str:
+def permission_remedy(path: Path) -> str:
     """Return the remedy for missing permissions: a command, or another folder if the disk is read-only."""
     if os.name == "posix" and os.statvfs(path).f_flag & os.ST_RDONLY:
         place = path_text(path.parent)
@@ -283,6 +283,6 @@ def _is_temporary(error: Exception) -> bool:
     return passing or (isinstance(error, DBAPIError) and error.connection_invalidated)
 
 
-def _reason(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     cause = error.orig if isinstance(error, DBAPIError) and error.orig is not None else error
     return " ".join(str(cause).split()) or type(cause).__name__

@@ -26,7 +26,7 @@ SETTLING = 2.0
 lease."""
 
 
-class Jumps:
+class ClockJumps:
     """Jumps of the database clock, detected by comparing it with a monotonic clock at every check."""
 
     def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:

@@ -12,7 +12,7 @@ from ...model.errors import InputError, NotFound, RunError
 from .database_clock import now
 from .records import JOB_COLUMNS, RESUMABLE, Event, Job, News, State
 from .schema import events, jobs, records
-from .serialisation import checksum, text_of, unpacked
+from .serialisation import checksum, compact_json, unpacked_record
 
 if TYPE_CHECKING:
     from ...optimise.search.checkpoints import Record
@@ -22,7 +22,7 @@ NewEvent = tuple[str, Mapping[str, Any]]
 _TOGETHER = 100  # jobs per query: databases reject very long ones
 
 
-def the_job(connection: Connection, number: int, *, lock: bool = False) -> Job:
+def job_by_number(connection: Connection, number: int, *, lock: bool = False) -> Job:
     """Return a job, locked for the transaction on request. Raises `NotFound` if it does not exist."""
     query = select(*JOB_COLUMNS).where(jobs.c.id == number)
     row = connection.execute(query.with_for_update() if lock else query).first() if 0 < number < 2**63 else None
@@ -36,7 +36,7 @@ def change_state(connection: Connection, job: Job, state: State, reason: str, **
     values = {"state": state, "reason": reason, "events": job.events + 1, **changes}
     connection.execute(update(jobs).where(jobs.c.id == job.id).values(values))
     add_events(connection, job.id, job.events + 1, [state_event(state, reason)])
-    return the_job(connection, job.id)
+    return job_by_number(connection, job.id)
 
 
 def require_resumable(job: Job) -> None:
@@ -73,7 +73,7 @@ def require_checksum(expected: str, *parts: str | bytes | None) -> None:
 def evaluation_records(connection: Connection, number: int) -> list[Record]:
     """Return the records of a job's evaluations so far, in order."""
     query = select(records.c.content).where(records.c.job == number).order_by(records.c.number)
-    return [unpacked(content) for content in connection.execute(query).scalars()]
+    return [unpacked_record(content) for content in connection.execute(query).scalars()]
 
 
 def damaged_result_error(number: int, error: Exception) -> RunError:
@@ -84,7 +84,7 @@ def damaged_result_error(number: int, error: Exception) -> RunError:
 def add_events(connection: Connection, job: int, last: int, new_events: Sequence[NewEvent]) -> None:
     """Add events to a job whose row was updated in this transaction; the last event gets the number `last`."""
     for number, (kind, data) in enumerate(new_events, last - len(new_events) + 1):
-        row = {"job": job, "number": number, "at": now(), "kind": kind, "data": text_of(data)}
+        row = {"job": job, "number": number, "at": now(), "kind": kind, "data": compact_json(data)}
         connection.execute(insert(events).values(row))
 
 

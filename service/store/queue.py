@@ -10,12 +10,12 @@ from typing import Any
 from sqlalchemy import Connection, and_, delete, exists, func, insert, not_, or_, select, text, update
 
 from ...model.errors import InputError, QueueFull
-from .database_clock import JUMP, Jumps, later, now
+from .database_clock import JUMP, ClockJumps, later, now
 from .job_rows import add_events, change_state, state_event
 from .records import JOB_COLUMNS, LIMITS, Artefact, Job, Limits
 from .schema import artefacts, jobs, workers
 from .schema_version import LOCK
-from .serialisation import database_text, text_of
+from .serialisation import compact_json, database_text
 
 MOST_DELAY = 60.0
 """s after which a job is due again at the latest: a later due time comes from a clock that was set back since."""
@@ -37,7 +37,7 @@ _CLAIMABLE = (
 )
 
 
-def require_bounds(priority: int, key: str | None, most_attempts: int) -> None:
+def require_valid_submission(priority: int, key: str | None, most_attempts: int) -> None:
     """Raise `InputError` for values that no job can have."""
     if not (abs(priority) <= 1000 and 1 <= most_attempts <= 1000):
         raise InputError(
@@ -60,7 +60,7 @@ def submitted_before(connection: Connection, key: str, tables: Mapping[str, Any]
     row = connection.execute(select(*JOB_COLUMNS, jobs.c.tables).where(jobs.c.key == key)).first()
     if row is None:
         return None
-    if json.loads(row.tables) != json.loads(text_of(tables)):
+    if json.loads(row.tables) != json.loads(compact_json(tables)):
         raise InputError(
             f"a key may only be used for one job; {key!r} is that of job {row.id}, which differs; use another key"
         )
@@ -88,7 +88,7 @@ def add_job(
     row = {
         "name": database_text(name),
         "run": _free_run_name(connection, run),
-        "tables": text_of(tables),
+        "tables": compact_json(tables),
         "state": "queued",
         "submitted": now(),
         "due": now(),
@@ -97,7 +97,7 @@ def add_job(
         **values,
     }
     number = connection.execute(insert(jobs).values(row).returning(jobs.c.id)).scalar_one()
-    put_files(connection, number, files)
+    write_files(connection, number, files)
     add_events(connection, number, 1, [state_event("queued")])
     return int(number)
 
@@ -114,7 +114,7 @@ def claim_changes(worker: str, lease: float) -> dict[str, Any]:
     }
 
 
-def any_claimable(connection: Connection, jumps: Jumps, last_full: float) -> bool:
+def any_claimable(connection: Connection, jumps: ClockJumps, last_full: float) -> bool:
     """Whether any job may be claimed; checked before claiming, so that idle workers do not write.
 
     jumps: jumps of the database clock. last_full: time when its disk was full, s. No job is claimed shortly after
@@ -141,7 +141,7 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
         if foremost is None:
             return None
         if foremost.state == "running" and foremost.attempts >= foremost.most_attempts:
-            _set_aside(connection, Job.from_row(foremost))
+            _fail_abandoned(connection, Job.from_row(foremost))
             continue
         new_events = [state_event("running", f"claimed by {worker}")]
         if foremost.state == "running":
@@ -163,14 +163,14 @@ def claim_next(connection: Connection, worker: str, lease: float) -> Job | None:
         return Job.from_row(row)
 
 
-def _set_aside(connection: Connection, job: Job) -> None:
+def _fail_abandoned(connection: Connection, job: Job) -> None:
     times = "once" if job.attempts == 1 else f"{job.attempts} times in a row"
     end = f"its worker stopped without a report {times}, the last one was {job.worker}"
     left = {"worker": None, "lease_until": None, "finished": now()}
     change_state(connection, job, "failed", f"set aside: {end}; resume it to try again", **left)
 
 
-def put_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
+def write_files(connection: Connection, job: int, files: Sequence[Artefact]) -> None:
     """Write files of a job, replacing those with the same names."""
     for file in files:
         connection.execute(delete(artefacts).where(artefacts.c.job == job, artefacts.c.name == file.name))

@@ -20,7 +20,7 @@ LATEST = "0008"
 LOCK = 0x51C7  # PostgreSQL advisory lock for changing the tables
 
 
-def upgrade(database: Database) -> None:
+def create_or_upgrade_tables(database: Database) -> None:
     """Create the tables, or upgrade those of an earlier release, in one transaction.
 
     Raises `StoreError` if they come from a later release.
@@ -30,7 +30,7 @@ def upgrade(database: Database) -> None:
             return
     from alembic import command
 
-    config, scripts = _alembic()
+    config, scripts = _alembic_config_and_scripts()
     with database.writing() as connection:
         if not database.sqlite:
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
@@ -50,14 +50,14 @@ def upgrade(database: Database) -> None:
         command.upgrade(config, "head")
 
 
-def versions(database: Database) -> tuple[str | None, str | None, bool]:
+def stored_and_known_version(database: Database) -> tuple[str | None, str | None, bool]:
     """Return the version of the tables (or None), that of this software, and whether this software knows the former."""
     with database.reading() as connection:
         version = _stored_version(connection)
-    return version, LATEST, version == LATEST or _knows_version(_alembic()[1], version)
+    return version, LATEST, version == LATEST or _knows_version(_alembic_config_and_scripts()[1], version)
 
 
-def _alembic() -> tuple[Config, ScriptDirectory]:
+def _alembic_config_and_scripts() -> tuple[Config, ScriptDirectory]:
     """Return Alembic's configuration, and the scripts of all versions."""
     from alembic.config import Config
     from alembic.script import ScriptDirectory
@@ -70,7 +70,7 @@ def _alembic() -> tuple[Config, ScriptDirectory]:
 def foreign_tables_text(database: Database) -> str:
     """Return, in words, the tables of a foreign database; empty for a store or an empty database."""
     with database.reading() as connection:
-        return _foreign_tables(connection, _alembic()[1])
+        return _foreign_tables(connection, _alembic_config_and_scripts()[1])
 
 
 def _foreign_tables(connection: Connection, scripts: ScriptDirectory) -> str:

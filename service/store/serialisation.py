@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import RunError
-from ..runs.result import Cell, Exact, Result, Row, json_ready
+from ..runs.result import Cell, ExactDesigns, Result, Row, json_ready
 
 if TYPE_CHECKING:
     from numpy.lib.npyio import NpzFile
@@ -24,11 +24,11 @@ _FORM = 1
 _POINTS = 64
 
 
-def packed(record: Record) -> bytes:
+def packed_record(record: Record) -> bytes:
     """Return a search record as a file in NumPy's .npz format, without pickles."""
     import numpy as np
 
-    return _saved(
+    return _npz_bytes(
         problem=np.array(record.identity.problem),
         versions=np.array(record.identity.versions),
         counts=np.array([record.number, record.rounds], dtype=np.int64),
@@ -37,14 +37,14 @@ def packed(record: Record) -> bytes:
     )
 
 
-def unpacked(content: bytes) -> Record:
-    """Return the record that was passed to `packed`. Raises `RunError` if the content is damaged."""
+def unpacked_record(content: bytes) -> Record:
+    """Return the record that was passed to `packed_record`. Raises `RunError` if the content is damaged."""
     import numpy as np
 
     from ...optimise.search.checkpoints import Identity, Record
 
     try:
-        with _loaded(content) as file:
+        with _load_npz(content) as file:
             number, rounds = file["counts"].tolist()
             words = file["words"]
             if words.dtype != np.int64 or words.ndim != 1:
@@ -57,14 +57,14 @@ def unpacked(content: bytes) -> Record:
         ) from error
 
 
-def packed_exact(exact: Exact) -> bytes:
-    """Return exact designs as a file like `packed`: concatenated derivatives, with the shapes for each design."""
+def packed_exact(exact: ExactDesigns) -> bytes:
+    """Return exact designs as an .npz file: concatenated derivatives, with the shapes for each design."""
     import numpy as np
 
     parts_by_design = [(*pieces, edges) for pieces, edges in zip(exact.goals, exact.active, strict=True)]
     shapes = [(len(owner), len(edges), slopes.shape[1]) for owner, slopes, edges in parts_by_design]
     numbers = [part.ravel() for parts in parts_by_design for part in parts]
-    return _saved(
+    return _npz_bytes(
         dimensions=exact.dimensions,
         variants=np.array(exact.variants, dtype=np.int64),
         shapes=np.array(shapes, dtype=np.int64).reshape(-1, 3),
@@ -72,12 +72,12 @@ def packed_exact(exact: Exact) -> bytes:
     )
 
 
-def unpacked_exact(content: bytes) -> Exact:
+def unpacked_exact(content: bytes) -> ExactDesigns:
     """Return the designs that were passed to `packed_exact`. Raises ValueError if the content is damaged."""
     import numpy as np
 
     try:
-        with _loaded(content) as file:
+        with _load_npz(content) as file:
             dimensions, variants, slopes = file["dimensions"], file["variants"].tolist(), file["slopes"]
             goals: list[Any] = []
             active: list[Any] = []
@@ -92,10 +92,10 @@ def unpacked_exact(content: bytes) -> Exact:
                 raise ValueError(f"{len(slopes)} numbers of slopes, {at} expected")
     except (OSError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise ValueError(f"{type(error).__name__}: {error}") from error
-    return Exact(dimensions, tuple(variants), tuple(goals), tuple(active))
+    return ExactDesigns(dimensions, tuple(variants), tuple(goals), tuple(active))
 
 
-def _saved(**arrays: Any) -> bytes:
+def _npz_bytes(**arrays: Any) -> bytes:
     import numpy as np
 
     out = io.BytesIO()
@@ -103,7 +103,7 @@ def _saved(**arrays: Any) -> bytes:
     return out.getvalue()
 
 
-def _loaded(content: bytes) -> NpzFile:
+def _load_npz(content: bytes) -> NpzFile:
     import numpy as np
 
     file: NpzFile = np.load(io.BytesIO(content), allow_pickle=False)
@@ -122,7 +122,7 @@ def checksum(*parts: str | bytes | None) -> str:
     return digest.hexdigest()
 
 
-def text_of(value: Any) -> str:
+def compact_json(value: Any) -> str:
     """Return strict, compact JSON in ASCII. Raises ValueError for a non-finite number."""
     return json.dumps(value, allow_nan=False, separators=(",", ":"))
 
@@ -133,13 +133,13 @@ def database_text(text: str) -> str:
     return text if len(text) <= _LONGEST else text[: _LONGEST - 4] + " ..."
 
 
-def cells_of(row: Mapping[str, Cell]) -> str:
+def cells_json(row: Mapping[str, Cell]) -> str:
     """Return the cells of a design as a JSON array: infinities as "inf" and "-inf", undefined values as null."""
-    return text_of([_stored_cell(cell) for cell in row.values()])
+    return compact_json([_stored_cell(cell) for cell in row.values()])
 
 
-def rows_of(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
-    """Return the designs passed to `cells_of`; undefined values become NaN, as in a table read from CSV.
+def rows_from_cells(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
+    """Return the designs passed to `cells_json`; undefined values become NaN, as in a table read from CSV.
 
     Raises ValueError for a text that is not such an array. Optimised for fronts of 10,000 designs: pydantic's parser
     gives the same numbers as `json` in a quarter of the time. Cells are checked individually only if some may be

@@ -16,23 +16,23 @@ from ..runs.run_folder import run_name
 from ..runs.stored_runs import result_from
 from . import queue
 from .claim import Claim
-from .database_clock import Jumps, now
+from .database_clock import ClockJumps, now
 from .job_rows import (
     add_events,
     change_state,
     damaged_result_error,
     evaluation_records,
+    job_by_number,
     news_of,
     require_checksum,
     require_resumable,
     result_record,
-    the_job,
 )
 from .listing import Order, ordered_jobs
 from .records import ENDED, JOB_COLUMNS, NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, Queueing, State
 from .schema import artefacts, designs, events, exact, jobs
-from .schema_version import upgrade
-from .serialisation import database_text, rows_of, unpacked_exact
+from .schema_version import create_or_upgrade_tables
+from .serialisation import database_text, rows_from_cells, unpacked_exact
 from .workers import Workers
 
 if TYPE_CHECKING:
@@ -59,9 +59,9 @@ class Store(Workers):
         """
         super().__init__(address)
         self.most_queued = most_queued
-        self._jumps = Jumps()
+        self._jumps = ClockJumps()
         try:
-            upgrade(self)
+            create_or_upgrade_tables(self)
         except BaseException:
             self.close()
             raise
@@ -89,7 +89,7 @@ class Store(Workers):
         Raises `QueueFull`, and `InputError` if the key belongs to another job.
         """
         queueing_values: Queueing = {"priority": 0, "key": None, "most_attempts": MOST_ATTEMPTS, **queueing}
-        queue.require_bounds(**queueing_values)
+        queue.require_valid_submission(**queueing_values)
         key, values = queueing_values["key"], {**queueing_values, "origin": origin}
         with self.writing() as connection:
             queue.lock_submissions(connection)  # so that two submissions can neither share a key nor overfill the queue
@@ -106,7 +106,7 @@ class Store(Workers):
         with self.writing() as connection:
             queue.lock_submissions(connection)
             number = queue.add_job(connection, tables, files, NO_LIMITS, name=name, run=run, most_attempts=1)
-            return self._claim(connection, the_job(connection, number), worker, lease, f"begun by {worker}")
+            return self._claim(connection, job_by_number(connection, number), worker, lease, f"begun by {worker}")
 
     def reclaim(self, number: int, *, worker: str, lease: float, alone: bool = False) -> Claim:
         """Claim a cancelled or failed job immediately, to continue it.
@@ -116,7 +116,7 @@ class Store(Workers):
         Raises `InputError` for a job in another state.
         """
         with self.writing() as connection:
-            job = the_job(connection, number, lock=True)
+            job = job_by_number(connection, number, lock=True)
             if not (alone and job.state == "running"):
                 require_resumable(job)
             return self._claim(connection, job, worker, lease, f"taken up by {worker}")
@@ -131,7 +131,7 @@ class Store(Workers):
     def job(self, number: int) -> Job:
         """Return a job with its state. The reason of a waiting job says whether disk space or a worker is missing."""
         with self.reading() as connection:
-            stored = the_job(connection, number)
+            stored = job_by_number(connection, number)
         return self._with_waiting_reasons([stored])[0]
 
     def _with_waiting_reasons(self, listed: list[Job]) -> list[Job]:
@@ -141,13 +141,13 @@ class Store(Workers):
             reason = f"waits: {error}"
             return [replace(job, reason=reason) if job.state in ("queued", "running") else job for job in listed]
         if any(job.state == "queued" and not job.reason for job in listed):
-            crew = self.count_workers()
+            crew = self.count_workers_and_waiting_jobs()
             busy = f"every worker is busy ({crew.workers})" if crew.workers else "no worker is running"
             reason = busy if crew.busy == crew.workers else ""
             return [replace(job, reason=reason) if job.state == "queued" and not job.reason else job for job in listed]
         return listed
 
-    def records(self, number: int) -> list[Record]:
+    def evaluation_records(self, number: int) -> list[Record]:
         """Return the records of a job's evaluations so far, in order."""
         with self.reading() as connection:
             return evaluation_records(connection, number)
@@ -199,7 +199,7 @@ class Store(Workers):
     def tables(self, number: int) -> dict[str, Any]:
         """Return the tables of a job's file."""
         with self.reading() as connection:
-            the_job(connection, number)
+            job_by_number(connection, number)
             text = connection.execute(select(jobs.c.tables).where(jobs.c.id == number)).scalar_one()
         tables: dict[str, Any] = json.loads(text)
         return tables
@@ -208,7 +208,7 @@ class Store(Workers):
         """Return at most `limit` events of a job after a given number, in order."""
         query = select(events).where(and_(events.c.job == number, events.c.number > after))
         with self.reading() as connection:
-            the_job(connection, number)
+            job_by_number(connection, number)
             return [Event.from_row(row) for row in connection.execute(query.order_by(events.c.number).limit(limit))]
 
     def news(self, after: Mapping[int, int], *, limit: int = 1000) -> dict[int, News]:
@@ -222,7 +222,7 @@ class Store(Workers):
         Raises `RunError` if it has no result (yet), or a damaged one.
         """
         with self.reading() as connection:
-            job = the_job(connection, number)
+            job = job_by_number(connection, number)
             record, _ = result_record(connection, job)
             if job.summary is not None:
                 return {**record, "count": job.summary["designs"]}
@@ -233,7 +233,7 @@ class Store(Workers):
     def result(self, number: int) -> Result:
         """Return the result of a job. Raises `RunError` if it has no result (yet), or a damaged one."""
         with self.reading() as connection:
-            stored, expected = result_record(connection, the_job(connection, number))
+            stored, expected = result_record(connection, job_by_number(connection, number))
             cells = select(designs.c.cells).where(designs.c.job == number).order_by(designs.c.number)
             cell_texts = connection.execute(cells).scalars().all()
             content = connection.execute(select(exact.c.content).where(exact.c.job == number)).scalar_one_or_none()
@@ -241,14 +241,14 @@ class Store(Workers):
             require_checksum(expected, *cell_texts, content)
             columns = stored.pop("columns")
             exact_designs = None if content is None else unpacked_exact(content)
-            return result_from(stored, rows_of(columns, cell_texts), str(stored["run"]), exact_designs)
+            return result_from(stored, rows_from_cells(columns, cell_texts), str(stored["run"]), exact_designs)
         except (ValueError, KeyError, TypeError) as error:
             raise damaged_result_error(number, error) from error
 
     def artefact_names(self, number: int) -> list[str]:
         """Return the names of a job's files, in alphabetical order."""
         with self.reading() as connection:
-            the_job(connection, number)
+            job_by_number(connection, number)
             return sorted(connection.execute(select(artefacts.c.name).where(artefacts.c.job == number)).scalars())
 
     def artefact(self, number: int, name: str) -> Artefact:
@@ -266,7 +266,7 @@ class Store(Workers):
         A cancelled job keeps its result so far, and can be resumed. An ended job does not change.
         """
         with self.writing() as connection:
-            job = the_job(connection, number, lock=True)
+            job = job_by_number(connection, number, lock=True)
             ended = select(queue.ENDED_LEASE).where(jobs.c.id == number)
             if job.state == "queued" or (job.state == "running" and connection.scalar(ended)):
                 left: dict[str, Any] = {"finished": now(), "worker": None, "lease_until": None}
@@ -275,7 +275,7 @@ class Store(Workers):
                 values = {"cancel_asked": True, "events": job.events + 1}
                 connection.execute(update(jobs).where(jobs.c.id == number).values(values))
                 add_events(connection, number, job.events + 1, [("message", {"text": "asked to stop"})])
-            return the_job(connection, number)
+            return job_by_number(connection, number)
 
     def resume(self, number: int) -> Job:
         """Queue a cancelled or failed job again, to continue from its records, and return it.
@@ -283,7 +283,7 @@ class Store(Workers):
         Raises `InputError` for a job in another state.
         """
         with self.writing() as connection:
-            job = the_job(connection, number, lock=True)
+            job = job_by_number(connection, number, lock=True)
             require_resumable(job)
             again = {"attempts": 0, "cancel_asked": False, "due": now(), "finished": None}
             change_state(connection, job, "queued", "resumed", **again)
@@ -292,7 +292,7 @@ class Store(Workers):
     def delete(self, number: int) -> None:
         """Delete an ended job and all its data. Raises `InputError` for a job that has not ended."""
         with self.writing() as connection:
-            job = the_job(connection, number, lock=True)
+            job = job_by_number(connection, number, lock=True)
             if job.state not in ENDED:
                 raise InputError(
                     f"only a job that has ended can be deleted; job {number} is {job.state}; cancel it first"

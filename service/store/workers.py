@@ -29,20 +29,20 @@ class Workers(Database):
         with self.writing() as connection:
             connection.execute(delete(workers).where(workers.c.id == worker))
 
-    def has_waiting(self) -> bool:
+    def has_waiting_jobs(self) -> bool:
         """Whether a job waits for a worker, even if it is not due or cannot be claimed yet."""
         query = select(jobs.c.id).where(or_(jobs.c.state == "queued", LEFT)).limit(1)
         with self.reading() as connection:
             return connection.execute(query).first() is not None
 
-    def count_workers(self) -> Crew:
+    def count_workers_and_waiting_jobs(self) -> Crew:
         """Return the number of workers with a recent heartbeat, and the number of jobs that wait for one."""
         busy = [worker.busy for worker in self.workers() if worker.at_work]
         with self.reading() as connection:
             waiting = connection.scalar(select(func.count()).where(jobs.c.state == "queued")) or 0
         return Crew(workers=len(busy), busy=sum(busy), waiting=waiting)
 
-    def workers_at_work(self) -> int:
+    def count_present_workers(self) -> int:
         """Return the number of workers with a recent heartbeat, busy or not."""
         return sum(worker.at_work for worker in self.workers())
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..designs.choice_options import chosen_row
+from ..designs.design_selection_options import chosen_row
 from ..designs.selection import chosen_rows
 from ..runs.result import Result
 from .options import DesignOfRun

@@ -37,7 +37,7 @@ from ...optimise.search.stroke_warnings import stroke_warnings
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 
 
-def summarise(problem: Problem) -> dict[str, Any]:
+def problem_in_words(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
     Each is a list of lines except name, search, the degrees of freedom, the minimum values, see `_default_floors`, and
@@ -68,7 +68,7 @@ def summarise(problem: Problem) -> dict[str, Any]:
         ],
         "rules": [
             *([f"slow stroke {problem.slow_stroke}"] if problem.slow_stroke else []),
-            *(_rule_text(constraint, problem) for constraint in constraints_of(problem)),
+            *(_constraint_text(constraint, problem) for constraint in constraints_of(problem)),
             *_limit_lines(problem),
         ],
         "floors": _default_floors(problem),
@@ -83,10 +83,10 @@ def summarise(problem: Problem) -> dict[str, Any]:
 
 
 def job_in_words(problem: Problem, tables: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `summarise` of a problem, with the content of files, and notes on the tables that state it."""
+    """Return `problem_in_words` of a problem, with the content of files, and notes on the tables that state it."""
     from ...optimise.job.job_notes import file_summaries, notes_of
 
-    return summarise(problem) | {"files": file_summaries(tables), "notes": notes_of(tables)}
+    return problem_in_words(problem) | {"files": file_summaries(tables), "notes": notes_of(tables)}
 
 
 def freedom_in_words(problem: Problem) -> str:
@@ -348,7 +348,7 @@ def _limit_lines(problem: Problem) -> list[str]:
     if len(limited) > _MOST_LISTED:
         return [f"limits set by {len(limited)} combinations of choices"]
     return [
-        f"with {' and '.join(variant.labels)}: {_rule_text(limit, problem, is_stated=True)}"
+        f"with {' and '.join(variant.labels)}: {_constraint_text(limit, problem, is_stated=True)}"
         for variant in limited
         for limit in variant.limits
     ]
@@ -360,7 +360,7 @@ def _length_range_text(bounds: Range) -> str:
     return f"{1e3 * bounds.lower:.6g} to {1e3 * bounds.upper:.6g} mm"
 
 
-def _rule_text(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
+def _constraint_text(constraint: Constraint, problem: Problem, *, is_stated: bool = False) -> str:
     """Return a constraint in words. is_stated: whether it certainly comes from the job."""
     quantity = problem.quantity(constraint.quantity)
     is_stated = is_stated or constraint in problem.constraints

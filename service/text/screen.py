@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from ...objectives.kinds import System
     from ...optimise.front.progress import Progress
-    from ..figures.panels import FigureSource
+    from ..figures.panel_drawing import FigureSource
 
 
 def console() -> Console:
@@ -67,7 +67,7 @@ def show_activity(text: str) -> contextlib.AbstractContextManager[Status | None]
 
 def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "metric") -> None:
     """Write a figure as PNG, create its folder if missing, and print its path."""
-    from ..figures.panels import save_figure
+    from ..figures.panel_drawing import save_figure
 
     with translate_disk_errors(file.parent), show_activity("drawing the figure"):
         file.parent.mkdir(parents=True, exist_ok=True)

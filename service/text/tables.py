@@ -14,7 +14,7 @@ from ...objectives.count_text import counted
 from ..designs.columns import Column, choice_column_keys, find_column
 from ..designs.rounding_noise import row_without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
-from ..render.terminal import print_table, table
+from ..render.terminal import empty_table, print_table
 from ..runs.result import Cell, Result, Row, StoredObjective
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def show_design(
     custom: custom quantities of its job, whose titles and units are more informative than their column keys.
     """
     row, custom_by_column = row_without_noise(row), {quantity.field: quantity for quantity in custom}
-    rows = table("", ">", "")
+    rows = empty_table("", ">", "")
     for key in only or row:
         value = row[key]
         if value is None or (isinstance(value, float) and math.isnan(value)):
@@ -155,7 +155,7 @@ def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
 def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column]) -> Table:
     from rich.text import Text
 
-    rich_table = table(ruled=True, padding=0, pad_edge=True, show_header=True)
+    rich_table = empty_table(ruled=True, padding=0, pad_edge=True, show_header=True)
     rich_table.add_column("no.", justify="right", vertical="bottom")
     for column in columns:
         narrow = textwrap.wrap(column.title.removesuffix(", worst case"), 8, break_long_words=False)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.file_name_encoding import path_text
 from ...model.optional_packages import is_installed
-from ..jobs.direct_run import begin_run, claim_stopped_job, end_job_on_error, folder_of, stopped_job
+from ..jobs.direct_run import begin_run, claim_stopped_job, end_job_on_error, folder_to_resume, stopped_job
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
 from .heartbeat import Budget, Heartbeat
@@ -55,9 +55,9 @@ def resumed_run(
     from ...optimise.solve import require_resumable
 
     job = stopped_job(store, text, place)
-    with folder_of(store, job, place) as folder:
+    with folder_to_resume(store, job, place) as folder:
         problem = read(store.tables(job.id), folder.path)
-        require_resumable(problem, store.records(job.id))
+        require_resumable(problem, store.evaluation_records(job.id))
         claim = claim_stopped_job(store, job)
         with end_job_on_error(claim):
             folder.resume()
@@ -95,13 +95,13 @@ def search(
         progress=report_and_log,
         stages=report,
         cancelled=lambda: cancelled() or claim.cancel_asked,
-        resume=tuple(claim.records()),
+        resume=tuple(claim.evaluation_records()),
         keep=claim.keep_record,
         engine=engine,
     )
 
 
-def keep_front(opened: Opened, front: ParetoFront, budget: Budget | None = None) -> Result:
+def save_result(opened: Opened, front: ParetoFront, budget: Budget | None = None) -> Result:
     """Write the result of a search to its run folder and the store, and return it. budget: budget of the search."""
     run, _, claim = opened
     result = result_of(front, path_text(run.path))

@@ -45,20 +45,20 @@ class Budget:
     _began: float = field(default_factory=time.monotonic, init=False)
     _evaluations: int = field(default=0, init=False)
 
-    def count(self, evaluations: int) -> None:
+    def count_evaluations(self, evaluations: int) -> None:
         """Record the number of designs evaluated so far."""
         self._evaluations = evaluations
 
-    def spent(self) -> bool:
+    def is_spent(self) -> bool:
         """Whether the search must end with its result so far."""
-        return bool(self.reason())
+        return bool(self.exhausted_limit_text())
 
     def with_limit_named(self, result: Result) -> Result:
         """Return a result whose message names the limit that ended its search, if any."""
-        reason = self.reason() if result.status == "cancelled" else ""
+        reason = self.exhausted_limit_text() if result.status == "cancelled" else ""
         return replace(result, message=f"{result.message}; {reason}") if reason else result
 
-    def reason(self) -> str:
+    def exhausted_limit_text(self) -> str:
         """Return the exhausted limit in words; empty if there is none."""
         seconds, evaluations = self.limits.seconds, self.limits.evaluations
         if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
@@ -151,7 +151,7 @@ class Heartbeat:
         end_process_tree(EXHAUSTED)
 
     def _check_unresponsive_search(self) -> None:
-        reason = NOT_DONE if self.claim.cancel_asked else self.budget.reason()
+        reason = NOT_DONE if self.claim.cancel_asked else self.budget.exhausted_limit_text()
         if self.claim.waits:  # waits for space: then it cannot end
             self._since.pop("told to end", None)
             return

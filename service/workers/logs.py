@@ -24,7 +24,7 @@ def set_up_logs(form: Format = "text", *, stream: TextIO | None = None) -> None:
     """
     handler = logging.StreamHandler(stream or sys.stderr)
     handler.addFilter(_with_subject)
-    handler.setFormatter(_json() if form == "json" else _Text())
+    handler.setFormatter(_json_formatter() if form == "json" else _Text())
     root = logging.getLogger()
     root.handlers[:] = [handler]
     root.setLevel(logging.INFO)
@@ -72,7 +72,7 @@ class _Text(logging.Formatter):
         return super().formatMessage(record).replace("\r", "\\r").replace("\n", "\\n")
 
 
-def _json() -> logging.Formatter:
+def _json_formatter() -> logging.Formatter:
     with NamingExtra("logs as JSON need"):
         from pythonjsonlogger.json import JsonFormatter
 

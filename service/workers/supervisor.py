@@ -78,7 +78,7 @@ class Supervisor:
         running = [place.process for place in self._places]
         return [process.pid for process in running if process is not None and process.poll() is None]
 
-    def finished(self) -> bool:
+    def is_finished(self) -> bool:
         """Whether all workers have drained the queue and ended."""
         return all(place.is_drained for place in self._places)
 
@@ -100,7 +100,7 @@ class Supervisor:
             return
         code = place.process.poll()
         if code is not None:
-            _release(place.process)
+            _close_input(place.process)
             place.process = None
             self._plan_next(place, code)
 
@@ -116,7 +116,7 @@ class Supervisor:
         _log.info("worker %d of %d started as process %d", place.number, len(self._places), process.pid)
         assert process.stdin is not None
         with contextlib.suppress(OSError):  # it has already ended, as the next check will show
-            process.stdin.write(self.settings.line())
+            process.stdin.write(self.settings.to_line())
             process.stdin.flush()
 
     def _plan_next(self, place: _Place, code: int) -> None:
@@ -125,7 +125,7 @@ class Supervisor:
             _log.info("worker %d ended: no job waits", place.number)
             return
         soon = code not in (EXHAUSTED, DEAF, STALE) and time.monotonic() - place.started < _SOON
-        self._plan(place, f"ended: {reason_of(code)}", soon=soon)
+        self._plan(place, f"ended: {exit_reason(code)}", soon=soon)
 
     def _plan(self, place: _Place, event: str, *, soon: bool) -> None:
         place.ended_soon = place.ended_soon + 1 if soon else 0
@@ -136,7 +136,7 @@ class Supervisor:
     def _stop(self) -> None:
         running = [place.process for place in self._places if place.process is not None]
         for process in running:
-            _release(process)
+            _close_input(process)
         end = time.monotonic() + (self.settings.terms.grace or 0.0) + MARGIN
         for process in running:
             try:
@@ -147,14 +147,14 @@ class Supervisor:
                 process.wait()
 
 
-def _release(process: subprocess.Popen[bytes]) -> None:
+def _close_input(process: subprocess.Popen[bytes]) -> None:
     """Close the standard input of a worker, which tells it to stop."""
     if process.stdin is not None:
         with contextlib.suppress(OSError):  # buffered data that could not be written to an ended worker
             process.stdin.close()
 
 
-def reason_of(code: int) -> str:
+def exit_reason(code: int) -> str:
     """Return why a process ended, from its exit code."""
     if code < 0:
         try:

@@ -21,9 +21,9 @@ from ..jobs.submission import (
     parse_with_allowed_functions,
     with_time_limit_per_call,
 )
-from ..resources.disk import full_places_text, is_full
+from ..resources.disk import full_places_text, is_disk_full
 from ..resources.memory import TOLERATED, Memory
-from ..runs.result import json_text, result_of, unsearched_result
+from ..runs.result import infeasible_result, json_text, result_of
 from ..store import LEASE, NO_LIMITS, Artefact, Claim, Limits, Store
 from ..store.database import Full
 from .engines import EngineOptions, engine_of
@@ -119,14 +119,14 @@ def work(
                 _log.info("the store is available again")
                 away = False
             if claim is not None:
-                memory.begin()
+                memory.begin_job()
                 if _is_out_of_memory(claim, memory, terms):
                     with contextlib.suppress(StoreError):
                         store.unregister(name)
                     raise Stale
                 solve_claimed(store, claim, stop, terms, engine, memory)
                 count += 1
-            elif drain and not store.has_waiting():
+            elif drain and not store.has_waiting_jobs():
                 break
             else:
                 time.sleep(PULSE)
@@ -182,7 +182,7 @@ def _solve_and_end(claim: Claim, solve: Callable[[], None]) -> None:
         claim.hand_back("its worker stopped; another one continues")
         _log.info("handed back")
     except InfeasibleError as error:
-        claim.finish(unsearched_result(error, claim.job.run))
+        claim.finish(infeasible_result(error, claim.job.run))
         _log.info("infeasible: %s", error)
     except InputError as error:
         claim.fail(str(error), again=False)
@@ -196,7 +196,7 @@ def _solve_and_end(claim: Claim, solve: Callable[[], None]) -> None:
     except (LeaseLost, StoreError):
         raise
     except OSError as error:
-        if not is_full(error):
+        if not is_disk_full(error):
             _fail_and_retry(claim, error)
             return
         claim.hand_back(f"waits: Disk full: {full_places_text(error)}", delay=_FULL)
@@ -235,16 +235,16 @@ def _solve(
 
     def report(at: Progress) -> None:
         claim.report(at, latest)
-        budget.count(at.evaluations)
+        budget.count_evaluations(at.evaluations)
 
     def should_end() -> bool:
-        return _must_end(claim, heartbeat, stop) or budget.spent()
+        return _must_end(claim, heartbeat, stop) or budget.is_spent()
 
     solve_and_report = partial(solve, problem, progress=report, stages=report, fronts=show)
     search = partial(solve_and_report, cancelled=should_end, keep=claim.keep_record, engine=engine)
     with end_custom_processes_on_exit(problem, engine):
         try:
-            front = search(resume=claim.records())
+            front = search(resume=claim.evaluation_records())
         except ForeignRecords as error:  # from an earlier release, or another type of machine
             claim.start_over(f"starts again: {error}")
             latest = None

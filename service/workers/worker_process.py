@@ -48,13 +48,13 @@ class WorkerSettings:
     terms: Terms = Terms(grace=GRACE)
     log_format: Format = "text"
 
-    def line(self) -> bytes:
+    def to_line(self) -> bytes:
         """Return the settings in the form that the process reads."""
         settings = TypeAdapter(WorkerSettings).dump_python(self)
         return json.dumps(settings, default=str).encode() + b"\n"  # escapes path bytes that no encoding can represent
 
     @classmethod
-    def read(cls, line: bytes) -> WorkerSettings:
+    def from_line(cls, line: bytes) -> WorkerSettings:
         """Return the settings from a line."""
         return TypeAdapter(WorkerSettings).validate_python(json.loads(line))
 
@@ -67,11 +67,11 @@ def main() -> int:
     line = _first_line()
     if not line:
         return 0
-    settings = WorkerSettings.read(line)
+    settings = WorkerSettings.from_line(line)
     set_up_logs(settings.log_format)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    threading.Thread(target=_wait_for_end, args=(stop, settings.terms.grace), daemon=True).start()
+    threading.Thread(target=_exit_with_supervisor, args=(stop, settings.terms.grace), daemon=True).start()
     try:
         store = _open_store(settings, stop)
         if store is None:
@@ -120,7 +120,7 @@ def _first_line() -> bytes:
     return line
 
 
-def _wait_for_end(stop: threading.Event, grace: float | None) -> None:
+def _exit_with_supervisor(stop: threading.Event, grace: float | None) -> None:
     """Stop when standard input ends, and exit after the grace time: the supervisor may have ended.
 
     This ends even hangs that the heartbeat cannot end, for example if a database does not answer.

@@ -9,7 +9,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.mechanism import Clearances
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.text.job_in_words import summarise
+from slidercrank.service.text.job_in_words import problem_in_words
 
 
 def job(**tolerances: Any) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def test_clearances_are_read_with_their_units() -> None:
     problem = parse_job(job(clearances=clearances))
     found = problem.mechanism.tolerances.clearances
     assert found == Clearances(crank_pivot=2e-5, crank_pin=3e-5, slider_pin=4e-5, guide=5.08e-5)
-    assert "radial clearance of the crank pin 0.03 mm" in summarise(problem)["tolerances"]
+    assert "radial clearance of the crank pin 0.03 mm" in problem_in_words(problem)["tolerances"]
 
 
 def test_without_clearances_there_are_none() -> None:

@@ -25,7 +25,7 @@ from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
-from slidercrank.service.text.job_in_words import summarise
+from slidercrank.service.text.job_in_words import problem_in_words
 
 FEEDER = tomllib.loads((Path(__file__).parents[2] / "runs/feeder.toml").read_text(encoding="utf-8"))
 TABLE = {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}}
@@ -97,10 +97,10 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
     assert floors(own) == [Constraint(quantity="self_locking_margin", lower=math.radians(12.0))]
     low = job(constraints={"self_locking_margin": {"max": "4 deg"}})
     assert floors(low)[0].lower == pytest.approx(math.radians(2.0))
-    rules = summarise(job())["rules"]
+    rules = problem_in_words(job())["rules"]
     assert "self-locking margin at least 5 deg (default, as the job sets none)" in rules
     assert any(
-        "friction in the crank pin: radius 10 mm, coefficient 0.08" in line for line in summarise(job())["given"]
+        "friction in the crank pin: radius 10 mm, coefficient 0.08" in line for line in problem_in_words(job())["given"]
     )
 
 
@@ -108,7 +108,7 @@ def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_
     off = job(constraints={"self_locking_margin": {"min": "0 deg"}})
     assert [c for c in constraints_of(off) if c.quantity == "self_locking_margin"] == list(off.constraints)
     assert off.constraints[0].lower == 0.0
-    told = summarise(off)
+    told = problem_in_words(off)
     assert "self-locking margin at least 0 deg (replaces the default of 5 deg)" in told["rules"]
     floors = {item["quantity"]: item for item in told["floors"]}
     assert floors["self_locking_margin"] == {
@@ -118,7 +118,7 @@ def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_
         "is_default": False,
     }
     assert floors["transmission_angle"]["is_default"]
-    held = {item["quantity"]: item for item in summarise(job())["floors"]}
+    held = {item["quantity"]: item for item in problem_in_words(job())["floors"]}
     assert (held["self_locking_margin"]["least"], held["self_locking_margin"]["is_default"]) == (
         pytest.approx(5.0),
         True,

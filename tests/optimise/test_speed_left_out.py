@@ -15,7 +15,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.text.job_in_words import summarise
+from slidercrank.service.text.job_in_words import problem_in_words
 
 TABLES: dict[str, Any] = {
     "name": "Pusher",
@@ -31,7 +31,7 @@ TABLES: dict[str, Any] = {
 def test_dimensions_are_sized_without_a_speed_and_the_check_says_so() -> None:
     problem = parse_job(TABLES)
     assert problem.mechanism.speed == 0.0
-    assert "no crank speed: static" in summarise(problem)["given"]
+    assert "no crank speed: static" in problem_in_words(problem)["given"]
     other = parse_job(TABLES | {"mechanism": TABLES["mechanism"] | {"speed": "200 rpm"}})
     np.testing.assert_array_equal(solve(problem).dimensions, solve(other).dimensions)
 

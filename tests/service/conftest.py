@@ -15,7 +15,7 @@ from typer.testing import CliRunner, Result
 from slidercrank.service.cli import app
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
-from slidercrank.service.store.schema_version import LATEST, upgrade
+from slidercrank.service.store.schema_version import LATEST, create_or_upgrade_tables
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, solved_in
 
@@ -46,7 +46,7 @@ def _compiled_once() -> Iterator[None]:
 def _tables_made_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Copy the tables of another store into a new one; Alembic takes ten times as long."""
     kept = Database(tmp_path_factory.mktemp("tables") / "store.db")
-    upgrade(kept)
+    create_or_upgrade_tables(kept)
     with kept.reading() as connection:
         told = connection.exec_driver_sql("SELECT sql FROM sqlite_master WHERE name NOT LIKE 'sqlite_%'")
         statements = [*told.scalars(), f"INSERT INTO alembic_version VALUES ('{LATEST}')"]
@@ -58,10 +58,10 @@ def _tables_made_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None
                 if not inspect(connection).get_table_names():
                     for statement in statements:
                         connection.exec_driver_sql(statement)
-        upgrade(database)
+        create_or_upgrade_tables(database)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("slidercrank.service.store.store.upgrade", copied)
+        patch.setattr("slidercrank.service.store.store.create_or_upgrade_tables", copied)
         yield
 
 

@@ -519,6 +519,6 @@ def test_a_fault_of_the_server_is_one_sentence(monkeypatch: pytest.MonkeyPatch) 
         (InputError("a rule; got it; mend it"), "a rule; got it; mend it"),
     ):
         monkeypatch.setitem(server._BY_NAME, "list", Tool("list", broken(error)))
-        answer = server._run("list", {}, None)  # type: ignore[arg-type]
+        answer = server._run_tool("list", {}, None)  # type: ignore[arg-type]
         assert answer.is_error
         assert sentence in answer.text

@@ -20,7 +20,7 @@ from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, balance
 from slidercrank.optimise.sizing.input_words import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import allocate
-from slidercrank.service.figures.panels import draw_panel_figure
+from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.questions.allocate.figure import allocation_curves, allocation_figure
 from slidercrank.service.questions.counterweight import analysis as counterweight
 from tests.service.conftest import Command

@@ -19,7 +19,7 @@ from slidercrank.objectives.column_keys import kind_of_key, split_unit
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
-from slidercrank.service.designs.measured_file import read_measured
+from slidercrank.service.designs.measured_curves_file import parse_measured_curves
 from slidercrank.service.questions.design_question import BoundQuestion, DesignQuestion
 from slidercrank.service.questions.discovery import DESIGN_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from slidercrank.service.questions.measured import MEASURED
@@ -212,7 +212,7 @@ def test_deviations_of_measured_curves_are_as_declared_and_the_same_in_inches(so
     noisy = [curve.kind.metric.factor * curve.values * random.uniform(0.9, 1.1, 12) for curve in curves]
     rows = np.column_stack([np.degrees(angles), *noisy]).tolist()
     text = "\n".join([",".join(heads), *(",".join(map(repr, row)) for row in rows)])
-    asked = MEASURED.bind_to_design(machine, linkage, {"measured": read_measured(text, machine, linkage)})
+    asked = MEASURED.bind_to_design(machine, linkage, {"measured": parse_measured_curves(text, machine, linkage)})
     numbers = asked.numbers()
     assert len(numbers["curves"]) == len(curves)
     inch = asked.numbers_in_units(numbers, "inch")

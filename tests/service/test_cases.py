@@ -15,7 +15,7 @@ from slidercrank.model.machine.clearance import Clearance
 from slidercrank.service.cases import case_2, figures
 from slidercrank.service.cases.case_table import collect_cases
 from slidercrank.service.cases.figures import draw_cases
-from slidercrank.service.cases.printed_values import CASES, Case, Row, is_confirmed, read_table
+from slidercrank.service.cases.printed_values import CASES, Case, Row, is_confirmed, read_printed_table
 from slidercrank.service.figures.style import new_figure
 from tests.model.virtual_work import path
 from tests.service.conftest import Command
@@ -74,7 +74,7 @@ def test_exact_values_to_a_billionth_by_other_means(cases: list[Case]) -> None:
 
     support, step = rows(cases, 4), 1e-30
     shares = {"crank": (0, 1.4), "rod": (1, 1.8), "offset": (2, -0.05)}
-    for number, line in enumerate(read_table("position_error_table1.csv"), start=1):
+    for number, line in enumerate(read_printed_table("position_error_table1.csv"), start=1):
         angle = math.radians(float(line["crank_angle_deg"]))
         design = np.array([1.4, 1.8, -0.05])
         at = path(design, angle, 1.0)
@@ -94,7 +94,7 @@ def test_exact_values_to_a_billionth_by_other_means(cases: list[Case]) -> None:
 
 
 def test_every_cell_of_the_printed_table_is_a_row(cases: list[Case]) -> None:
-    lines = read_table("position_error_table1.csv")
+    lines = read_printed_table("position_error_table1.csv")
     assert (len(lines), len(lines[0])) == (10, 8)  # the crank angle is given, seven columns are found
     printed = [row.printed for row in cases[3].rows if row.where.startswith("Table 1")]
     assert sorted(map(str, printed)) == sorted(text for line in lines for text in list(line.values())[1:])
@@ -104,7 +104,7 @@ def test_tables_are_as_printed(cases: list[Case], request: pytest.FixtureRequest
     """The copy that ships is the one that the tests of the model read."""
     file = request.config.rootpath / "tests" / "data" / "position_error_table1.csv"
     body = [line for line in file.read_text().splitlines() if not line.startswith("#")]
-    assert read_table("position_error_table1.csv") == list(csv.DictReader(body))
+    assert read_printed_table("position_error_table1.csv") == list(csv.DictReader(body))
 
 
 def test_every_verdict_has_what_it_needs(cases: list[Case]) -> None:
@@ -170,7 +170,7 @@ def test_reasons_hold(cases: list[Case]) -> None:
     for key, low in (("crank_mass", 0.2), ("crank_Mxx", 0.6), ("crank_Mzz", 0.3), ("rod_Mxx", 0.3), ("rod_Mzz", 0.1)):
         printed = float(str(sieve[key].printed))
         assert 100.0 * (1.0 - printed / value(sieve[key])) == pytest.approx(low, abs=0.05)
-    for number, line in enumerate(read_table("position_error_table1.csv"), start=1):
+    for number, line in enumerate(read_printed_table("position_error_table1.csv"), start=1):
         factor = -(2.0 * math.pi - math.radians(float(line["crank_angle_deg"])))
         claimed = factor * value(support[f"crank_angle_{number}"])
         assert float(line["error_from_crank_angle_printed_mm"]) == pytest.approx(claimed, abs=0.01)

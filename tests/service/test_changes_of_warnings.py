@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.job_remark import Change, Remark
 from slidercrank.service.cli import app
-from slidercrank.service.text.job_in_words import summarise
+from slidercrank.service.text.job_in_words import problem_in_words
 
 Job = dict[str, Any]
 CONSTANT = [{"force": "300 N", "direction": "outward", "during": "outward stroke"}]
@@ -56,11 +56,11 @@ def feeder(pytestconfig: pytest.Config) -> Job:
 def test_a_warning_is_gone_once_its_change_is_made(name: str, feeder: Job, tmp_path: Path) -> None:
     tables, words = JOBS[name]
     job = changed(feeder, tables)
-    summary = summarise(parse_job(job))
+    summary = problem_in_words(parse_job(job))
     (change,) = (one for one in summary["changes"] if words in one["sentence"])
     assert change["sentence"] in summary["warnings"]
     table, _, key = change["path"].partition(".")
-    settled = summarise(parse_job(changed(job, {table: {key: change["value"]} if key else change["value"]})))
+    settled = problem_in_words(parse_job(changed(job, {table: {key: change["value"]} if key else change["value"]})))
     assert not any(words in sentence for sentence in settled["warnings"])
 
     file = tmp_path / "job.json"

@@ -20,9 +20,9 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.cases import case_5
 from slidercrank.service.cases import figures as of_cases
-from slidercrank.service.cases.printed_values import read_table
+from slidercrank.service.cases.printed_values import read_printed_table
+from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure
-from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.approximations import analysis as approximations_analysis
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.polygons import analysis as polygons_analysis
@@ -44,7 +44,7 @@ def line(panel: Panel, label: str) -> Line:
 
 
 def test_polygon_panels_hold_the_vertices_of_both_branches() -> None:
-    found = polygons_analysis.both_branches(LINKAGE, 0.5, speed=3.0, acceleration=2.0)
+    found = polygons_analysis.polygons_by_branch(LINKAGE, 0.5, speed=3.0, acceleration=2.0)
     sheet = polygons_analysis.polygon_panels(found, title="", subtitle="")
     position, velocity, acceleration = sheet.panels
     for branch in ("open", "crossed"):
@@ -173,7 +173,7 @@ def test_in_line_panels_are_the_formulas() -> None:
 
 def test_position_error_panels_show_exact_and_printed_columns() -> None:
     panels = of_cases.position_error_figure().panels
-    lines = read_table("position_error_table1.csv")
+    lines = read_printed_table("position_error_table1.csv")
     columns = list(lines[0])[3:]
     for panel, column in zip(panels, columns, strict=True):
         np.testing.assert_array_equal(line(panel, "printed").y, [float(row[column]) for row in lines])

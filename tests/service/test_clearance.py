@@ -19,7 +19,7 @@ from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.kinds import ACCELERATION, LENGTH, SPEED
-from slidercrank.service.figures.panels import figure_of
+from slidercrank.service.figures.panel_drawing import draw_figure
 from slidercrank.service.figures.style import figure_bytes
 from slidercrank.service.questions.clearance.analysis import blocks, figure, numbers, run_simulation
 from slidercrank.service.questions.clearance.figure import loose_joint_curves, speed_runs, speeds_figure
@@ -129,7 +129,7 @@ def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
 
 def test_figures_are_drawn(run: ClearanceRun) -> None:
     for drawn in (figure(MACHINE, LINKAGE, run=run), speeds_figure([run, run])):
-        metric, inch = figure_of(drawn), figure_of(drawn, "inch")
+        metric, inch = draw_figure(drawn), draw_figure(drawn, "inch")
         assert figure_bytes(metric, "png").startswith(b"\x89PNG")
         for before, after in zip(metric.axes, inch.axes, strict=True):
             unit = before.get_title(loc="left").rpartition(", ")[2]

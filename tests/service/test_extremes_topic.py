@@ -20,7 +20,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves as curves_of_figure
-from slidercrank.service.figures.panels import draw_panel_figure
+from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.questions.extremes import analysis as extremes
 from slidercrank.service.render.formatting import format_text

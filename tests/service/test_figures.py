@@ -26,10 +26,10 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.service.figures.datasheet import Curves, cycle_curves, design_datasheet
 from slidercrank.service.figures.design_marks import marked_designs
-from slidercrank.service.figures.front import draw_front
+from slidercrank.service.figures.front_figures import write_front_figures
 from slidercrank.service.figures.panel_figure import Panel, panel_in_units
-from slidercrank.service.figures.parallel import parallel_coordinates
-from slidercrank.service.figures.scatter import scatter_matrix
+from slidercrank.service.figures.parallel_coordinates import parallel_coordinates
+from slidercrank.service.figures.scatter_matrix import scatter_matrix
 from slidercrank.service.figures.style import add_axes, colour_map, new_figure, style_axes
 from slidercrank.service.render.formatting import format_text
 from slidercrank.service.render.numerals import format_number
@@ -323,7 +323,7 @@ def test_a_design_that_is_best_twice_is_marked_once() -> None:
 )
 def test_the_files_of_a_front(names: tuple[str, ...], designs: int, expected: set[str], tmp_path: Path) -> None:
     front = fronts.front(names, designs=designs)
-    files = list(draw_front(front, tmp_path / "figures"))
+    files = list(write_front_figures(front, tmp_path / "figures"))
     assert {file.stem for file in files} == expected
     assert all(file.read_bytes().startswith(b"\x89PNG") for file in files)
 
@@ -332,8 +332,8 @@ def test_the_files_of_a_front(names: tuple[str, ...], designs: int, expected: se
 def test_figures_do_without_pyplot(tmp_path: Path) -> None:
     script = (
         "import sys; from pathlib import Path; from tests.service import fronts; "
-        "from slidercrank.service.figures.front import draw_front; "
-        f"list(draw_front(fronts.front(fronts.FOUR[:2], designs=2), Path({str(tmp_path)!r}))); "
+        "from slidercrank.service.figures.front_figures import write_front_figures; "
+        f"list(write_front_figures(fronts.front(fronts.FOUR[:2], designs=2), Path({str(tmp_path)!r}))); "
         "sys.exit('matplotlib.pyplot' in sys.modules)"
     )
     root = str(Path(fronts.__file__).parents[2])
@@ -344,7 +344,7 @@ def test_figures_do_without_pyplot(tmp_path: Path) -> None:
 def test_drawing_again_gives_the_same_files_and_leaves_matplotlib_as_it_was(tmp_path: Path) -> None:
     front = fronts.front(fronts.FOUR[:2], designs=3)
     before = dict(matplotlib.rcParams)
-    first, again = (list(draw_front(front, tmp_path / name)) for name in ("a", "b"))
+    first, again = (list(write_front_figures(front, tmp_path / name)) for name in ("a", "b"))
     assert dict(matplotlib.rcParams) == before
     assert {file.stem for file in first} >= {"scatter_matrix", "parallel_coordinates", "knee"}
     for one, other in zip(first, again, strict=True):

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.service.resources.memory import size_of, size_text
+from slidercrank.service.resources.memory import parse_size, size_text
 from slidercrank.service.store import NO_LIMITS, Limits
 from slidercrank.service.workers.heartbeat import Budget
 from tests.service.store.contents import result
@@ -23,17 +23,17 @@ def test_the_stricter_of_two_limits_holds() -> None:
 
 def test_a_search_without_limits_is_never_over() -> None:
     budget = Budget(NO_LIMITS)
-    budget.count(10**12)
-    assert not budget.spent()
+    budget.count_evaluations(10**12)
+    assert not budget.is_spent()
     assert budget.with_limit_named(result("cancelled")) == result("cancelled")
 
 
 def test_evaluations_are_spent_when_as_many_were_made() -> None:
     budget = Budget(Limits(evaluations=100))
-    budget.count(99)
-    assert not budget.spent()
-    budget.count(100)
-    assert budget.spent()
+    budget.count_evaluations(99)
+    assert not budget.is_spent()
+    budget.count_evaluations(100)
+    assert budget.is_spent()
     assert (
         budget.with_limit_named(result("cancelled")).message
         == "2 designs; its search reached its limit of 100 evaluations"
@@ -42,16 +42,16 @@ def test_evaluations_are_spent_when_as_many_were_made() -> None:
 
 def test_time_is_spent_when_it_has_passed() -> None:
     budget = Budget(Limits(seconds=0.05))
-    assert not budget.spent()
+    assert not budget.is_spent()
     time.sleep(0.06)
-    assert budget.spent()
+    assert budget.is_spent()
     message = budget.with_limit_named(result("cancelled")).message
     assert message == "2 designs; its search reached its time limit of 0.05 s"
 
 
 def test_a_search_that_was_done_in_time_says_nothing_of_limits() -> None:
     budget = Budget(Limits(evaluations=1))
-    budget.count(1)
+    budget.count_evaluations(1)
     assert budget.with_limit_named(result("done")) == result("done")
 
 
@@ -60,13 +60,13 @@ def test_a_search_that_was_done_in_time_says_nothing_of_limits() -> None:
     [("500 MB", 500_000_000), ("2GB", 2_000_000_000), ("1.5 GiB", 1_610_612_736), ("1000", 1000), (" 3 kb ", 3000)],
 )
 def test_amounts_of_memory_are_read_with_their_unit(text: str, size: int) -> None:
-    assert size_of(text, "--memory") == size
+    assert parse_size(text, "--memory") == size
 
 
 @pytest.mark.parametrize("text", ["", "much", "-1 GB", "1 parsec", "0 MB", "1e9", "nan", "9" * 30, "1 GB 2"])
 def test_what_is_no_amount_of_memory_is_refused_with_the_name_of_the_option(text: str) -> None:
     with pytest.raises(InputError, match="--memory must be an amount of memory with its unit"):
-        size_of(text, "--memory")
+        parse_size(text, "--memory")
 
 
 def test_amounts_are_shown_with_three_digits() -> None:

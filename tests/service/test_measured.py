@@ -18,10 +18,10 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
 from slidercrank.objectives.tables.curve_deviation import deviations
-from slidercrank.service.designs import measured_file
-from slidercrank.service.designs.measured_file import measured_text, read_measured
+from slidercrank.service.designs import measured_curves_file
+from slidercrank.service.designs.measured_curves_file import parse_measured_curves, text_of_measured_file
+from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.figures.panel_figure import panel_in_units
-from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.measured import MEASURED
 from slidercrank.service.questions.measured import analysis as topic
 from slidercrank.service.render.terminal import print_blocks
@@ -55,7 +55,7 @@ ROWS = 120_000
 
 
 def read(text: str) -> list[list[float]]:
-    found = read_measured(text, fronts.MACHINE, LINKAGE)
+    found = parse_measured_curves(text, fronts.MACHINE, LINKAGE)
     return [found.crank_angle.tolist(), *(values.tolist() for values in found.values.values())]
 
 
@@ -110,7 +110,7 @@ def test_a_file_is_read_however_it_was_written(text: str) -> None:
     ],
 )
 def test_a_column_may_have_any_unit_of_its_kind(name: str, curve: str, factor: float) -> None:
-    found = read_measured(f'crank_angle_deg\t"{name}"\n0\t2\n', fronts.MACHINE, LINKAGE)
+    found = parse_measured_curves(f'crank_angle_deg\t"{name}"\n0\t2\n', fronts.MACHINE, LINKAGE)
     assert {given: float(values[0]) for given, values in found.values.items()} == {
         curve: pytest.approx(2.0 * factor, rel=1e-12)
     }
@@ -187,7 +187,7 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
             text = text[:start] + str(random.choice(pieces)) + text[start + int(random.choice([0, 0, 1, 8])) :]
         said = ""
         try:
-            measured = read_measured(text, fronts.MACHINE, LINKAGE)
+            measured = parse_measured_curves(text, fronts.MACHINE, LINKAGE)
             numbers: Any = MEASURED.bind_to_design(fronts.MACHINE, LINKAGE, {"measured": measured}).numbers(
                 lambda: False
             )
@@ -200,7 +200,7 @@ def test_damaged_files_are_read_or_refused_in_one_line() -> None:
 
 
 def test_files_that_are_none_are_refused(tmp_path: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measured_file, "_LARGEST", 1000)
+    monkeypatch.setattr(measured_curves_file, "_LARGEST", 1000)
     large, sheet = tmp_path / "large.csv", tmp_path / "sheet.xlsx"
     large.write_text(PLAIN + "\n" * 1000)
     sheet.write_bytes(b"PK\x03\x04\x14\0")
@@ -220,7 +220,7 @@ def test_many_rows_are_read(sign: str) -> None:
     angles = np.arange(ROWS) % 3600
     lines = [f"{angle / 10};{angle}" for angle in range(3600)]
     text = "crank_angle_deg;slider_position_mm\n" + "\n".join(lines[angle] for angle in angles)
-    found = read_measured(text.replace(".", sign), fronts.MACHINE, LINKAGE)
+    found = parse_measured_curves(text.replace(".", sign), fronts.MACHINE, LINKAGE)
     assert np.array_equal(np.round(1e3 * found.values["slider_position"]), angles)
     np.testing.assert_allclose(found.crank_angle, np.radians(angles / 10.0), rtol=1e-12)
 
@@ -299,7 +299,9 @@ def test_known_shifts_are_told_in_text_json_and_figure(tmp_path: Path, command: 
     for words in ("Measured minus computed, 200 rows", f"{position['rms_mm']:.6g}", "-8 ", "omitted: room"):
         assert words in told.stdout
     assert (place / "measured.png").read_bytes().startswith(b"\x89PNG")
-    sheet = topic.figure(fronts.MACHINE, LINKAGE, measured=read_measured(measured_text(file), fronts.MACHINE, LINKAGE))
+    sheet = topic.figure(
+        fronts.MACHINE, LINKAGE, measured=parse_measured_curves(text_of_measured_file(file), fronts.MACHINE, LINKAGE)
+    )
     assert [len(panel.lines) for panel in sheet.panels] == [4, 4]
     assert overlaps(draw_panel_figure(sheet)) == []
     for panel, entry in zip(sheet.panels, record["curves"].values(), strict=True):
@@ -325,7 +327,7 @@ def test_a_design_of_a_run_is_compared(tmp_path: Path, kept: Path, command: Comm
 def test_what_friction_leaves_undetermined_is_told() -> None:
     locked = replace(fronts.MACHINE, friction=Friction(guide=1.5))
     text = "crank_angle_deg,torque_Nm\n,3\n" + "\n".join(f"{angle},1" for angle in range(0, 360, 5))
-    measured = read_measured(text, locked, LINKAGE)
+    measured = parse_measured_curves(text, locked, LINKAGE)
     numbers: Any = MEASURED.bind_to_design(locked, LINKAGE, {"measured": measured}).numbers(lambda: False)
     assert numbers["rows_without_crank_angle"] == 1
     assert numbers["curves"]["torque"]["rms_Nm"] is None
@@ -341,7 +343,7 @@ def test_what_friction_leaves_undetermined_is_told() -> None:
 def test_at_most_some_thousand_samples_are_drawn() -> None:
     angles = np.linspace(0.0, 3600.0, 40_000)
     text = "crank_angle_deg,slider_position_mm\n" + "\n".join(f"{angle},300" for angle in angles)
-    measured = read_measured(text, fronts.MACHINE, LINKAGE)
+    measured = parse_measured_curves(text, fronts.MACHINE, LINKAGE)
     (panel,) = topic.figure(fronts.MACHINE, LINKAGE, measured=measured).panels
     assert len(panel.lines[-2].x) == 3000
     (found,) = deviations(fronts.MACHINE, LINKAGE, measured.crank_angle, measured.values)

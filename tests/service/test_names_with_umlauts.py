@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.file_name_encoding import path_from_text, path_text
 from slidercrank.optimise.job import load_job, needed_files
-from slidercrank.service.jobs.direct_run import files_of
+from slidercrank.service.jobs.direct_run import job_and_attached_files
 from slidercrank.service.store.address import address_without_secrets, url_of
 from slidercrank.service.workers.worker_process import WorkerSettings
 from tests.service import fronts
@@ -35,7 +35,7 @@ def test_files_that_a_job_names_are_kept_under_their_names(tmp_path: Path) -> No
     job = tmp_path / "job.toml"
     job.write_text(f'{fronts.JOB}\n[target_motion]\nfile = "Größe.csv"\n', encoding="utf-8")
     assert load_job(job).own
-    assert [file.name for file in files_of(job, needed_files(job))] == ["job.toml", "Größe.csv"]
+    assert [file.name for file in job_and_attached_files(job, needed_files(job))] == ["job.toml", "Größe.csv"]
 
 
 def test_a_run_in_a_folder_of_such_a_name_is_read_exported_and_reported(
@@ -67,7 +67,7 @@ def test_a_run_in_a_folder_of_such_a_name_is_read_exported_and_reported(
 
 def test_a_worker_process_takes_an_address_of_such_a_name(tmp_path: Path) -> None:
     given = WorkerSettings(address=str(tmp_path / f"{LATIN}.db"))
-    assert WorkerSettings.read(given.line()) == given
+    assert WorkerSettings.from_line(given.to_line()) == given
     assert address_without_secrets(url_of(given.address)).endswith("F%EF%BF%BDrderer.db")
 
 

@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from slidercrank.service.preview.feasibility import run_within
+from slidercrank.service.preview.possible_values import run_within
 
 
 def test_what_is_done_in_time_is_returned() -> None:

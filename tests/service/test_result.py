@@ -11,7 +11,15 @@ import pytest
 
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
-from slidercrank.service.runs.result import Row, csv_text, json_ready, json_text, read_row, result_of, rows_from_csv
+from slidercrank.service.runs.result import (
+    Row,
+    csv_text,
+    json_ready,
+    json_text,
+    result_of,
+    row_from_json,
+    rows_from_csv,
+)
 from slidercrank.service.runs.stored_runs import result_from
 from tests.service import fronts
 
@@ -57,7 +65,7 @@ def test_random_designs_read_back_from_json_as_from_csv() -> None:
     for _ in range(50):
         row: Row = {f"column_{place}_mm": float(value) for place, value in enumerate(random.choice(values, 9))}
         row |= {"choice_motor": str(random.choice(["inf", "-inf", "GM 4"])), "slow_stroke": "inward"}
-        read = read_row(json.loads(json_text(row)))
+        read = row_from_json(json.loads(json_text(row)))
         assert read.keys() == row.keys()
         (line,) = rows_from_csv(csv_text([row]))
         for key, value in row.items():

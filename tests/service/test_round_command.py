@@ -141,7 +141,7 @@ def test_the_option_that_is_suggested_makes_the_nearest_designs_do(kept: Path, c
 
 
 def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:
-    from slidercrank.service.commands import input_options
+    from slidercrank.service.commands import question_options
 
     shown: list[str] = []
 
@@ -149,7 +149,7 @@ def test_a_terminal_shows_the_progress(kept: Path, command: Command, monkeypatch
         def update(self, text: str) -> None:
             shown.append(text)
 
-    monkeypatch.setattr(input_options, "show_activity", lambda _: contextlib.nullcontext(Status()))
+    monkeypatch.setattr(question_options, "show_activity", lambda _: contextlib.nullcontext(Status()))
     done = command("round", "latest", 3, "--runs", kept, "--to", "0.5 mm")
     assert done.exit_code == 3, done.stderr
     assert shown[0].startswith("screening combinations 0/")

@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.errors import InputError, RunError
 from slidercrank.service.runs import run_folder
 from slidercrank.service.runs.result import Result, result_of
-from slidercrank.service.runs.run_folder import MARK, RunFolder, runs_place, slug, write_file
+from slidercrank.service.runs.run_folder import MARK, RunFolder, runs_folder, slug, write_file
 from slidercrank.service.runs.stored_runs import read_run
 from tests.service import fronts
 
@@ -186,7 +186,7 @@ def test_a_folder_name_is_made_of_plain_letters(name: str, expected: str) -> Non
 
 def test_the_place_is_the_option_then_the_variable_then_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(run_folder.PLACE_VARIABLE, "elsewhere")
-    assert runs_place(Path("here")) == Path("here")
-    assert runs_place(None) == Path("elsewhere")
+    assert runs_folder(Path("here")) == Path("here")
+    assert runs_folder(None) == Path("elsewhere")
     monkeypatch.setenv(run_folder.PLACE_VARIABLE, "")
-    assert runs_place(None) == Path("runs")
+    assert runs_folder(None) == Path("runs")

@@ -18,7 +18,7 @@ import pytest
 from slidercrank.service.store import Job, Limits, Store
 from slidercrank.service.workers.engines import EngineOptions
 from slidercrank.service.workers.heartbeat import EXHAUSTED
-from slidercrank.service.workers.supervisor import WORKER, Supervisor, reason_of
+from slidercrank.service.workers.supervisor import WORKER, Supervisor, exit_reason
 from slidercrank.service.workers.worker import Terms
 from slidercrank.service.workers.worker_process import REFUSED, WorkerSettings
 from tests.service import made_up_process
@@ -219,14 +219,14 @@ def test_a_program_that_cannot_be_started_is_told(store: Store, caplog: pytest.L
 def test_draining_workers_are_not_replaced(store: Store) -> None:
     jobs = [put_in(store, "rounds") for _ in range(3)]
     with Supervisor(settings(store, drain=True), 2, program=MADE_UP) as supervisor:
-        until(supervisor.finished, "end of the queue")
+        until(supervisor.is_finished, "end of the queue")
         assert supervisor.processes() == []
     assert [store.job(job.id).state for job in jobs] == ["done"] * 3
 
 
 def test_a_worker_refuses_a_store_that_is_none(tmp_path: Path) -> None:
     (tmp_path / "no.db").write_text("no database")
-    line = WorkerSettings(address=str(tmp_path / "no.db")).line()
+    line = WorkerSettings(address=str(tmp_path / "no.db")).to_line()
     # Its standard input stays open: the end of it asks a worker to stop, perhaps before it looks at the store.
     with subprocess.Popen(WORKER, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdin is not None
@@ -242,7 +242,7 @@ def test_a_worker_waits_for_a_store_that_is_away_until_it_is_told_to_stop(tmp_pa
     with subprocess.Popen(WORKER, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as process:
         assert process.stdin is not None
         assert process.stderr is not None
-        process.stdin.write(settings.line())
+        process.stdin.write(settings.to_line())
         process.stdin.flush()
         assert b"the store must be a database that can be reached" in process.stderr.readline()
         process.stdin.close()
@@ -261,7 +261,7 @@ def test_a_worker_waits_for_a_store_that_is_away_until_it_is_told_to_stop(tmp_pa
     ],
 )
 def test_exit_codes_are_told_in_words(code: int, reason: str) -> None:
-    assert reason_of(code) == reason
+    assert exit_reason(code) == reason
 
 
 def test_settings_come_as_they_were_sent() -> None:
@@ -274,4 +274,4 @@ def test_settings_come_as_they_were_sent() -> None:
         ),
         most_running=2,
     )
-    assert WorkerSettings.read(sent.line()) == sent
+    assert WorkerSettings.from_line(sent.to_line()) == sent

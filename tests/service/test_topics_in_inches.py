@@ -26,8 +26,8 @@ from slidercrank.objectives.kinds import (
     unit_text,
 )
 from slidercrank.service.designs.display_units import convert_record
+from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, panel_in_units
-from slidercrank.service.figures.panels import draw_panel_figure
 from slidercrank.service.questions.discovery import TOPICS
 from slidercrank.service.render.blocks import Table, Text, Unit, Value, column, heading, words
 from slidercrank.service.render.formatting import PlainBlock, format_text, format_value, plain_blocks

@@ -55,7 +55,7 @@ def test_a_killed_job_goes_on_and_finds_the_same_designs(
     claim.hand_back = lambda reason, **_: None  # type: ignore[method-assign] # the dead do not
     with pytest.raises(Killed):
         solve_claimed(store, claim, lambda: False)
-    kept = claim.records()
+    kept = claim.evaluation_records()
     assert len(kept) >= 2  # more where a round took long
     end_lease(address, killed.id)
     monkeypatch.setattr("slidercrank.optimise.solve.solve", watched)

@@ -178,7 +178,7 @@ def figure(
 def blocks(numbers: Tolerances) -> list[Block]:
     """Return the answer in human-readable form."""
     kind = "worst case" if numbers["kind"] == "worst case" else "root-sum-square"
-    rows = [_row(tolerance) for tolerance in numbers["tolerances"]]
+    rows = [_tolerance_row(tolerance) for tolerance in numbers["tolerances"]]
     rows.append(("together", "", value_from_record(numbers, "cost", digits=5), "", _job_cost_text(numbers)))
     columns = column("tolerance of", left=True), column("±"), column("costs"), column("share"), column(left=True)
     limit = value_from_record(numbers, "limit_mm")
@@ -204,7 +204,7 @@ def blocks(numbers: Tolerances) -> list[Block]:
     ]
 
 
-def _row(tolerance: Tolerance) -> tuple[Text, ...]:
+def _tolerance_row(tolerance: Tolerance) -> tuple[Text, ...]:
     length = tolerance["tolerance_deg"] is None
     remark: Text = ""
     if tolerance["bound"]:

@@ -17,7 +17,7 @@ from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
-from ...render.numerals import format_number, with_unit
+from ...render.numerals import format_number, title_with_unit
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     figure = style.new_figure(9.2, foot + 4.25)
     gaps = _uncounted_ranges(data.counted)
     note = f"{data.kind} within {format_number(limit)} {unit.symbol}" + ("; pale: not counted" if gaps else "")
-    style.heading(figure, "Least-cost tolerances", note)
+    style.write_heading(figure, "Least-cost tolerances", note)
     error = style.add_axes(figure, 0.8, foot + 0.85, 5.9, 2.7)
     style.style_axes(error, most_y_ticks=6)
     style.show_full_turn(error)
@@ -112,7 +112,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
         *([] if data.error_before is None else [data.error_before.max()]),
     ]
     error.set_ylim(0.0, 1.06 * unit.factor * max(tops))
-    error.set_ylabel(with_unit("position error", unit.symbol), fontsize=style.TEXT)
+    error.set_ylabel(title_with_unit("position error", unit.symbol), fontsize=style.TEXT)
     error.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     style.legend_at_right(error, stacked=len(data.sources))
 

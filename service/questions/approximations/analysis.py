@@ -25,7 +25,7 @@ from ...render.blocks import (
     Text,
     Unit,
     column,
-    dimensions,
+    dimensions_text,
     heading,
     joined,
     note,
@@ -98,13 +98,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     return {
         "rotating_mass_kg": rotating,
         "reciprocating_mass_kg": reciprocating,
-        "exact_peak_acceleration_m_s2": _greatest_size(comparison.acceleration),
-        "exact_peak_torque_Nm": _greatest_size(comparison.torque),
+        "exact_peak_acceleration_m_s2": _greatest_magnitude(comparison.acceleration),
+        "exact_peak_torque_Nm": _greatest_magnitude(comparison.torque),
         "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # for a negative offset the first one is -0.0
         "accelerations": [
             {
                 "name": name,
-                "peak_acceleration_m_s2": _greatest_size(curve),
+                "peak_acceleration_m_s2": _greatest_magnitude(curve),
                 "error_percent": _percent(relative_error(curve, comparison.acceleration)),
                 "error_over_offset_percent": list(map(_percent, offsets.accelerations[name].tolist())),
             }
@@ -113,7 +113,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
         "torques": [
             {
                 "name": name,
-                "peak_torque_Nm": _greatest_size(curve),
+                "peak_torque_Nm": _greatest_magnitude(curve),
                 "error_percent": _percent(relative_error(curve, comparison.torque)),
                 "error_over_offset_percent": list(map(_percent, offsets.torques[name].tolist())),
             }
@@ -122,7 +122,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     }
 
 
-def _greatest_size(curve: Array) -> float:
+def _greatest_magnitude(curve: Array) -> float:
     return float(np.abs(curve).max())
 
 
@@ -192,6 +192,6 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     if np.all(errors.peak_torque > 0.0):
         lines = tuple(Line(label, offsets, 100.0 * errors.torques[name], style) for label, style, name in torques)
         panels.append(Panel("greatest error in torque, %", "offset", lines, x_kind=LENGTH))
-    subtitle = joined([dimensions(linkage), f"{format_number(mechanism.speed)} rad/s; inertia only"])
+    subtitle = joined([dimensions_text(linkage), f"{format_number(mechanism.speed)} rad/s; inertia only"])
     title = "Approximate and exact models"
     return PanelFigure(title, subtitle, tuple(panels), columns=2, width=7.6, height=3.0)

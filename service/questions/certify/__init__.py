@@ -2,7 +2,7 @@
 
 from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ..front_or_job_question import FrontOrJobQuestion
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,
@@ -15,14 +15,14 @@ QUESTION = FrontOrJobQuestion(
     Searches the whole design box and adds designs where the front has gaps. No feasible design then beats all of them
     by more than epsilon.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "epsilon",
             title="Largest gap, as a fraction of each objective's range",
             help="Distance to prove, as a fraction of each objective's range over the front.",
             usual=str(EPSILON),
             limits={"gt": 0.0, "lt": 1.0},
         ),
-        TypedInput(
+        PlainInput(
             "seconds",
             title="Time limit in seconds",
             help="Time limit; reports what is proven so far.",

@@ -17,7 +17,7 @@ from ....optimise.front.front import ParetoFront
 from ....optimise.problem.problem import Problem
 from ...designs.display_units import convert_record
 from ...render.blocks import Block, Value, heading, joined, sentence, words
-from ...runs.result import rows_of
+from ...runs.result import rows_of_columns
 from ..front_or_job_question import Answer, SearchListener
 
 _MOST_NOTES = 8
@@ -28,7 +28,7 @@ def analyse(
 ) -> Answer:
     """Return the certificate, or the proof for a front without designs. Raises the errors of `certify_designs`."""
     if not len(front):
-        return _nothing_feasible(front.problem, seconds)
+        return _infeasibility_result(front.problem, seconds)
 
     def report(step: Step) -> None:
         proven = f"{100.0 * step.epsilon:.3g} % proven" if math.isfinite(step.epsilon) else "nothing proven yet"
@@ -53,7 +53,7 @@ def analyse(
     )
 
 
-def _nothing_feasible(problem: Problem, seconds: float) -> Answer:
+def _infeasibility_result(problem: Problem, seconds: float) -> Answer:
     proven = prove_infeasible(problem, seconds=seconds)
     text = "no design within the ranges meets all requirements"
     message = f"proven: {text}" if proven else f"not proven that {text}; allow more time"
@@ -73,7 +73,7 @@ def _certificate_record(certificate: Certificate, problem: Problem) -> dict[str,
         "epsilon": certificate.epsilon,
         "epsilon_of_delivered": certificate.delivered,
         "gap_of_delivered": certificate.gap,
-        "hole": _by_number(certificate.hole, problem),
+        "hole": _values_by_column(certificate.hole, problem),
         "ranges": {
             quantity.field: float(span) * quantity.unit.factor
             for quantity, span in zip(quantities, certificate.span, strict=True)
@@ -82,14 +82,14 @@ def _certificate_record(certificate: Certificate, problem: Problem) -> dict[str,
         "boxes": certificate.boxes,
         "open_boxes": certificate.open,
         "remaining_share": certificate.remaining,
-        "remaining_where": _by_number(certificate.worst_open_box, problem),
+        "remaining_where": _values_by_column(certificate.worst_open_box, problem),
         "notes": list(certificate.notes),
         "seconds": certificate.seconds,
-        "added": rows_of(certificate.table.to_dict("list")) if len(certificate.table) else [],
+        "added": rows_of_columns(certificate.table.to_dict("list")) if len(certificate.table) else [],
     }
 
 
-def _by_number(values: Array | None, problem: Problem) -> dict[str, Any] | None:
+def _values_by_column(values: Array | None, problem: Problem) -> dict[str, Any] | None:
     if values is None:
         return None
     columns = columns_of_numbers(problem.mechanism.varying).values()

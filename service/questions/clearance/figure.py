@@ -16,9 +16,9 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, ENERGY, FORCE, LENGTH, PERCENT, RATIO, SPEED, Kind, System
+from ...figures.panel_drawing import draw_panel
 from ...figures.panel_figure import CRANK_ANGLE, DASHED, DOTS, SOLID, Line, Panel, PanelFigure
-from ...figures.panels import draw_panel
-from ...figures.style import add_axes, heading, new_figure, write_text
+from ...figures.style import add_axes, new_figure, write_heading, write_text
 from ...render.blocks import Text, Unit, Value, words
 from ...render.formatting import format_text
 from ...render.numerals import format_number
@@ -75,7 +75,7 @@ def clearance_figure(run: ClearanceRun, system: System = "metric") -> Figure:
     figure = new_figure(12.4, 7.6)
     title = words("{clearance}, {speed}", clearance=_clearance_text(run), speed=_speed_value(run))
     subtitle = f"turn {run.cycles} of the crank; solid: loose joint, dashed: ideal joints"
-    heading(figure, format_text(title, system, printed=True), subtitle)
+    write_heading(figure, format_text(title, system, printed=True), subtitle)
     position, velocity, acceleration = (_motion_panel(curves, kind) for kind in _TITLES)
     loose, ideal = position.lines
     off = float(np.abs(loose.y - ideal.y).max())

@@ -1,7 +1,7 @@
 """Fronts of several runs compared with each other: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,
@@ -15,7 +15,7 @@ QUESTION = FrontOrJobQuestion(
     The runs must have the same objectives; their constraints and machines may differ. Also reports
     where each run is better, and how the jobs differ.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "tolerance",
             help="Fraction of an objective's range that counts as equal.",
             usual="1e-06",

@@ -15,7 +15,7 @@ from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
 from ....optimise.decisions.front_comparison import compare
-from ...designs.choice_options import minimised_values
+from ...designs.design_selection_options import minimised_values
 from ...designs.display_units import convert_objective
 from ...designs.front_comparison import comparison_sentences
 from ...preview.partial_job import ranges_of
@@ -54,7 +54,7 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
         values = [minimised_values(run.result) for run in solved]
         if all(np.isfinite(front).all() for front in values):
             comparison = compare(values, tolerance=tolerance)
-    places = differences([run.tables for run in runs if run.tables is not None])
+    places = differences_between_jobs([run.tables for run in runs if run.tables is not None])
     sentences = {system: _better_sentences(solved, system) for system in _SYSTEMS}
     caution = _different_jobs_sentence(len(runs), places) if sentences["metric"] else []
 
@@ -97,7 +97,7 @@ def _objectives_message(runs: Sequence[ComparedRun]) -> str:
         if {_objective_identity(item) for item in run.result.objectives} != {
             _objective_identity(item) for item in runs[0].result.objectives
         }:
-            words = [f"{one.name} has {_objectives(one.result)}" for one in (runs[0], run)]
+            words = [f"{one.name} has {_objectives_text(one.result)}" for one in (runs[0], run)]
             return f"the runs must have the same objectives; {', '.join(words)}"
     return ""
 
@@ -112,7 +112,7 @@ def _reorder_objectives(result: Result, first: Result) -> Result:
     return replace(result, objectives=tuple(by_key[_objective_identity(item)] for item in first.objectives))
 
 
-def _objectives(result: Result, system: System = "metric") -> str:
+def _objectives_text(result: Result, system: System = "metric") -> str:
     return ", ".join(
         f"{item.sense} {item.quantity}" + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
         for item in (convert_objective(objective, system) for objective in result.objectives)
@@ -164,7 +164,7 @@ def _front_measures(solved: Sequence[ComparedRun], comparison: Comparison, units
 
 
 def _heading(solved: Sequence[ComparedRun]) -> Block:
-    objectives = Phrase(*(_objectives(solved[0].result, system) for system in _SYSTEMS))
+    objectives = Phrase(*(_objectives_text(solved[0].result, system) for system in _SYSTEMS))
     return heading("{count} runs: {objectives}", count=str(len(solved)), objectives=objectives)
 
 
@@ -235,7 +235,7 @@ def _samples_sentence(inner: ComparedRun, outer: ComparedRun) -> list[str]:
     if inner.tables is None or outer.tables is None:
         return []
     keys = {f"variables.{name}" for name in DIMENSIONS}
-    places = [place for place, _ in differences([inner.tables, outer.tables])]
+    places = [place for place, _ in differences_between_jobs([inner.tables, outer.tables])]
     if any(place not in keys and place.partition(".")[0] != "optimiser" for place in places):
         return []
     inner_ranges, outer_ranges = ranges_of(inner.tables), ranges_of(outer.tables)
@@ -263,7 +263,7 @@ def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence
     return [title, Table(tuple(columns), tuple(rows))]
 
 
-def differences(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
+def differences_between_jobs(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:
     """Return the paths at which the tables of jobs differ, such as "load.1.force", with the value in each job.
 
     The value is None if a job has nothing there. Names and descriptions are omitted.

@@ -68,23 +68,23 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
     return {
         "cylinders": [_single_cylinder(member, linkage) for member in member_machines(mechanism)],
         "peak_torque_Nm": abs(shaft.peak.value),
-        "peak_torque_angle_deg": _degrees(shaft.peak),
+        "peak_torque_angle_deg": _extreme_angle_deg(shaft.peak),
         "least_torque_Nm": shaft.least.value,
-        "least_torque_angle_deg": _degrees(shaft.least),
+        "least_torque_angle_deg": _extreme_angle_deg(shaft.least),
         "greatest_torque_Nm": shaft.greatest.value,
-        "greatest_torque_angle_deg": _degrees(shaft.greatest),
+        "greatest_torque_angle_deg": _extreme_angle_deg(shaft.greatest),
         "mean_torque_Nm": shaft.mean,
         "rms_torque_Nm": shaft.rms,
         "torque_fluctuation_Nm": shaft.fluctuation,
         "energy_change_J": shaft.energy_change,
         "peak_shaking_force_N": shaft.shaking_force.value,
-        "peak_shaking_force_angle_deg": _degrees(shaft.shaking_force),
+        "peak_shaking_force_angle_deg": _extreme_angle_deg(shaft.shaking_force),
         "rms_shaking_force_N": shaft.rms_shaking_force,
         "peak_shaking_moment_Nm": shaft.shaking_moment.value,
-        "peak_shaking_moment_angle_deg": _degrees(shaft.shaking_moment),
+        "peak_shaking_moment_angle_deg": _extreme_angle_deg(shaft.shaking_moment),
         "rms_shaking_moment_Nm": shaft.rms_shaking_moment,
         "peak_rocking_couple_Nm": shaft.couple.value,
-        "peak_rocking_couple_angle_deg": _degrees(shaft.couple),
+        "peak_rocking_couple_angle_deg": _extreme_angle_deg(shaft.couple),
         "peak_shaking_force_of_one_N": peak(single_cylinder(mechanism), Signal.SHAKING_FORCE, linkage).value,
         "peak_shaking_moment_of_one_Nm": peak(single_cylinder(mechanism), Signal.SHAKING_MOMENT, linkage).value,
     }
@@ -105,7 +105,7 @@ def _single_cylinder(member: Member, linkage: Linkage) -> Cylinder:
     }
 
 
-def _degrees(extreme: Extreme) -> float | None:
+def _extreme_angle_deg(extreme: Extreme) -> float | None:
     return None if math.isnan(extreme.angle) else math.degrees(extreme.angle)
 
 

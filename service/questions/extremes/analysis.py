@@ -28,7 +28,7 @@ from ...render.blocks import (
     NamedNumber,
     Text,
     Value,
-    dimensions,
+    dimensions_text,
     heading,
     joined,
     number_list,
@@ -101,11 +101,11 @@ def _curve_entry(curve: CurveExtremes) -> dict[str, Any]:
     entry: dict[str, Any] = {"title": curve.title}
     for word, extreme in (("least", curve.least), ("greatest", curve.greatest)):
         entry[f"{word}{curve.kind.metric.suffix}"] = finite_or_none(curve.kind.metric.factor * extreme.value)
-        entry |= _place_fields(word, extreme)
+        entry |= _location_fields(word, extreme)
     return entry
 
 
-def _place_fields(word: str, extreme: Extreme) -> dict[str, float | None]:
+def _location_fields(word: str, extreme: Extreme) -> dict[str, float | None]:
     return {
         f"{word}_at_crank_angle_deg": finite_or_none(math.degrees(extreme.crank_angle)),
         f"{word}_at_slider_position_mm": finite_or_none(1e3 * extreme.slider_position),
@@ -140,7 +140,7 @@ def _stroke_numbers(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtre
         strokes[name] |= {
             "duration_s": duration,
             "greatest_speed_m_s": abs(extreme.value),
-            **_place_fields("greatest_speed", extreme),
+            **_location_fields("greatest_speed", extreme),
         }
     fast, back = (strokes[name]["greatest_speed_m_s"] for name in _STROKES)
     outward_s, inward_s = durations
@@ -198,7 +198,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     degrees = np.degrees(theta)
     panels = tuple(_curve_panel(extremes[name], degrees, curves[name]) for name in _PANELS if name in extremes)
     return PanelFigure(
-        "Extreme values over the turn", dimensions(linkage), panels, columns=min(2, len(panels)), width=5.2
+        "Extreme values over the turn", dimensions_text(linkage), panels, columns=min(2, len(panels)), width=5.2
     )
 
 

@@ -137,7 +137,9 @@ def blocks(numbers: LawNumbers) -> list[Block]:
         named_number(numbers, "work_J", "of the drive in a turn"),
     ]
     found: list[Block] = [
-        *number_list(f"Motion law with the least {_name(numbers['objective'])} (torques at the crank)", lines),
+        *number_list(
+            f"Motion law with the least {_objective_text(numbers['objective'])} (torques at the crank)", lines
+        ),
         sentence(f"{_gain_text(numbers)}"),
     ]
     if numbers["proven"]:
@@ -156,7 +158,7 @@ def _gain_text(numbers: LawNumbers) -> str:
     return f"Against constant speed at the same cycle time: {' and '.join(changes)}."
 
 
-def _name(objective: LawObjective) -> str:
+def _objective_text(objective: LawObjective) -> str:
     return objective.replace("rms", "RMS")
 
 
@@ -195,5 +197,5 @@ def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Prob
         panel("drive torque at the crank", TORQUE, now.curves.torque, even.curves.torque),
         panel("slider speed", SPEED, now.curves.slider_velocity, even.curves.slider_velocity),
     )
-    title = f"{problem.name}: motion law with the least {_name(optimum.limits.request.objective)}"
+    title = f"{problem.name}: motion law with the least {_objective_text(optimum.limits.request.objective)}"
     return PanelFigure(title, "", panels, width=6.4, height=2.25, stacked=True)

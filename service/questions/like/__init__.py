@@ -1,7 +1,7 @@
 """Design nearest to one on a front that also meets further conditions: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,
@@ -16,7 +16,7 @@ QUESTION = FrontOrJobQuestion(
     It is the nearest of the designs that are Pareto-optimal for the run's job with the conditions added. Distance is
     measured in the objectives, each relative to its range over the run's front. Nothing is saved.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "where",
             title="Conditions, separated by semicolons",
             type=list[str],

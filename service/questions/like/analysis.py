@@ -19,7 +19,7 @@ from ...designs.display_units import convert_record
 from ...designs.judged_requirements import quantity_names
 from ...designs.selection import Condition, parse_condition
 from ...render.blocks import Block, Sentence, Table, Text, Value, column, heading, value_from_record
-from ...runs.result import Row, rows_of
+from ...runs.result import Row, rows_of_columns
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
 from . import QUESTION
@@ -30,7 +30,7 @@ _EXAMPLE = f"{QUESTION.inputs[0].flag} {QUESTION.inputs[0].example}"
 def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> Answer:
     """Return the nearest design that meets the conditions. Raises the errors of `like.nearest_optimal_design`."""
     front.part(row)  # raises an error for an invalid row
-    before = rows_of(front.columns)[row]
+    before = rows_of_columns(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
     values, span = front.values[row], scaling(front.values)[1]
     similar = nearest_optimal_design(front.problem, before, values, span, constraints, ranges)
@@ -39,7 +39,7 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
         return Answer(
             record=lambda _: record, blocks=[Sentence(similar.message)], is_satisfied=False, message=similar.message
         )
-    after = rows_of(similar.columns)[0]
+    after = rows_of_columns(similar.columns)[0]
     record |= {"distance": float(distance(similar.values, values, span)[0]), "design": after, "before": before}
     record["moved"] = {key: value for key in after if (value := _change_of(before, after, key)) is not None}
     title = heading(

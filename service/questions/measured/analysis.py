@@ -27,7 +27,7 @@ from ...render.blocks import (
     Unit,
     Value,
     column,
-    dimensions,
+    dimensions_text,
     heading,
     value_from_record,
     words,
@@ -166,7 +166,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> Pan
     )
     subtitle = words(
         "{sizes}; line: computed, dashed: shifted to fit, dots: measured, ring: largest deviation",
-        sizes=dimensions(linkage),
+        sizes=dimensions_text(linkage),
     )
     return PanelFigure("Measured and computed", subtitle, panels, columns=min(2, len(panels)), width=5.2)
 

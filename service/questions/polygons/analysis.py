@@ -13,7 +13,18 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED
 from ...figures.panel_figure import Line, Panel, PanelFigure
-from ...render.blocks import Block, Table, Text, Unit, Value, column, dimensions, heading, joined, value_from_record
+from ...render.blocks import (
+    Block,
+    Table,
+    Text,
+    Unit,
+    Value,
+    column,
+    dimensions_text,
+    heading,
+    joined,
+    value_from_record,
+)
 from ...render.numerals import format_number
 from ..record_types import Record
 from . import AT
@@ -49,7 +60,7 @@ _POLYGONS = (
 _COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, which both branches share
 
 
-def both_branches(
+def polygons_by_branch(
     linkage: Linkage, crank_angle: float, *, speed: float, acceleration: float
 ) -> Mapping[Branch, Polygons]:
     """Return the polygons of the linkage on each branch at one crank angle, rad."""
@@ -63,7 +74,7 @@ def both_branches(
 def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PolygonNumbers:
     """Return the vertices at a crank angle, rad, by branch and polygon. Without a crank speed, 1 rad/s applies."""
     speed = mechanism.speed or 1.0
-    by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
+    by_branch = polygons_by_branch(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     return {
         "crank_angle_deg": math.degrees(crank_angle),
         "speed_rad_s": speed,
@@ -113,10 +124,10 @@ def blocks(numbers: Mapping[str, Any]) -> list[Block]:
 def figure(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.default) -> PanelFigure:
     """Return the polygons at one crank angle, rad; for 1 rad/s if there is no crank speed."""
     speed = mechanism.speed or 1.0
-    by_branch = both_branches(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
+    by_branch = polygons_by_branch(linkage, crank_angle, speed=speed, acceleration=mechanism.acceleration)
     rates = f"{format_number(speed)} rad/s, {format_number(mechanism.acceleration)} rad/s²"
     at = f"crank angle {format_number(math.degrees(crank_angle))}°, {rates}"
-    subtitle = joined([dimensions(linkage), at], "; ")
+    subtitle = joined([dimensions_text(linkage), at], "; ")
     return polygon_panels(by_branch, title="Kinematic polygons", subtitle=subtitle)
 
 

@@ -24,7 +24,7 @@ from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel,
 from ...render.blocks import Block, named_number, number_list
 from ..peaks import lengths_row
 from ..record_types import Note, Record
-from ..static_forces.analysis import massless
+from ..static_forces.analysis import massless_mechanism
 
 
 class Delivery(Record):
@@ -48,14 +48,14 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
         raise InputError(reason)
     alone = _with_pressures_only(mechanism)
     return {
-        "flow_L_min": VOLUME_FLOW.metric.factor * _value(FLOW, mechanism, linkage),
-        "flow_ripple": _value(FLOW_RIPPLE, mechanism, linkage) if _has_ripple(mechanism) else None,
-        "mean_torque_Nm": _value(MEAN_TORQUE, alone, linkage),
-        "peak_torque_Nm": _value(PEAK_TORQUE, alone, linkage),
+        "flow_L_min": VOLUME_FLOW.metric.factor * _evaluate_quantity(FLOW, mechanism, linkage),
+        "flow_ripple": _evaluate_quantity(FLOW_RIPPLE, mechanism, linkage) if _has_ripple(mechanism) else None,
+        "mean_torque_Nm": _evaluate_quantity(MEAN_TORQUE, alone, linkage),
+        "peak_torque_Nm": _evaluate_quantity(PEAK_TORQUE, alone, linkage),
     }
 
 
-def _value(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
+def _evaluate_quantity(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:
     return float(quantity.evaluate(mechanism, lengths_row(linkage)).values[0])
 
 
@@ -66,7 +66,9 @@ def _has_ripple(mechanism: Mechanism) -> bool:
 
 def _with_pressures_only(mechanism: Mechanism) -> Mechanism:
     """Return the machine with the cylinder pressures as its only loads."""
-    return replace(massless(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder)))
+    return replace(
+        massless_mechanism(mechanism), loads=tuple(load for load in mechanism.loads if isinstance(load, Cylinder))
+    )
 
 
 def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:

@@ -1,7 +1,7 @@
 """Best designs with round numbers near one on a front: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,
@@ -19,7 +19,7 @@ QUESTION = FrontOrJobQuestion(
     continues with designs that miss slightly but lose clearly less. If no design meets every requirement, lists the
     nearest ones with what each misses and by how much.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "to",
             type=list[str],
             help='Step of crank, rod and offset, such as "0.5 mm" or "1/32 in", or of one variable: "rod=1 mm". May '
@@ -30,7 +30,7 @@ QUESTION = FrontOrJobQuestion(
             limits={"min_length": 1, "max_length": 50},
             sent=["0.5 mm", "rod=1 mm"],
         ),
-        TypedInput(
+        PlainInput(
             "allow",
             type=list[str],
             help='REQUIREMENT=AMOUNT by which designs may miss the requirement, such as "stroke=0.1 mm". May be '
@@ -41,7 +41,7 @@ QUESTION = FrontOrJobQuestion(
             limits={"max_length": 50},
             sent=["stroke=0.1 mm"],
         ),
-        TypedInput(
+        PlainInput(
             "count",
             type=int,
             help="Maximum number of designs to list.",

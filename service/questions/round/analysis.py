@@ -32,7 +32,7 @@ from ...render.blocks import (
 )
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer, SearchListener
-from ..typed_input import TypedInput, texts_by_name
+from ..plain_input import PlainInput, texts_by_name
 from . import QUESTION
 
 if TYPE_CHECKING:
@@ -40,19 +40,19 @@ if TYPE_CHECKING:
     from ....optimise.front.rounding_search import Stage
     from ....optimise.problem.problem import Problem
 
-_TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, TypedInput) and one.example)
+_TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, PlainInput) and one.example)
 
 
 def analyse(front: ParetoFront, *, row: int, watch: SearchListener, words: Mapping[str, str], **inputs: Any) -> Answer:
-    """Return the rounded neighbours of a design. Raises the errors of `search`."""
-    for at in search(front, row, words, **inputs):
+    """Return the rounded neighbours of a design. Raises the errors of `search_rounded_neighbours`."""
+    for at in search_rounded_neighbours(front, row, words, **inputs):
         if isinstance(at, Answer):
             return at
         watch.report(stage_text(vars(at)))
     raise AssertionError("the search ends with its answer")
 
 
-def search(
+def search_rounded_neighbours(
     front: ParetoFront,
     row: int,
     words: Mapping[str, str],
@@ -76,7 +76,7 @@ def search(
 def _rounded_result(rounded: Rounded, row: int) -> Answer:
     record = _rounding_record(rounded)
     return Answer(
-        record=lambda units: _record_in(units, record, rounded),
+        record=lambda units: _record_in_units(units, record, rounded),
         blocks=_rounding_blocks(rounded, record, row) if len(rounded) else [],
         is_satisfied=rounded.is_met,
         message=rounded.message,
@@ -159,7 +159,7 @@ def _rounding_record(rounded: Rounded) -> dict[str, Any]:
     }
 
 
-def _record_in(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
+def _record_in_units(units: System, record: dict[str, Any], rounded: Rounded) -> dict[str, Any]:
     """Return the answer in a unit system, with round numbers as entered in that system."""
     converted: dict[str, Any] = convert_record(deepcopy(record), units) | {"message": rounded.message_in(units)}
     keys = [column_key_in_system(rounded.names[name][0], units)[0] for name in rounded.steps]

@@ -14,7 +14,7 @@ from ....objectives.kinds import DISPLAYED_KINDS, LENGTH, RATIO, Kind, System, d
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
-from ...runs.result import json_ready, rows_of
+from ...runs.result import json_ready, rows_of_columns
 from ..peaks import lengths_row
 from ..record_types import Keys, Note, Record
 
@@ -59,7 +59,9 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Sensitivity:
     (<dimension>_tolerance), in the unit of the entry; again with _below for the derivative towards smaller values.
     """
     return {
-        "quantities": json_ready(rows_of(sensitivity(mechanism, lengths_row(linkage)[0]).to_dict("list")), gaps=True)
+        "quantities": json_ready(
+            rows_of_columns(sensitivity(mechanism, lengths_row(linkage)[0]).to_dict("list")), gaps=True
+        )
     }
 
 

@@ -13,7 +13,19 @@ from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing
 from ....objectives.kinds import System
 from ....objectives.tables.sensitivity import sensitivity
-from ...figures.style import BLUE, FRAME, INK, MUTED, SMALL, TEXT, VERMILION, add_axes, heading, new_figure, style_axes
+from ...figures.style import (
+    BLUE,
+    FRAME,
+    INK,
+    MUTED,
+    SMALL,
+    TEXT,
+    VERMILION,
+    add_axes,
+    new_figure,
+    style_axes,
+    write_heading,
+)
 from ...render.numerals import format_number
 from ..peaks import lengths_row
 
@@ -54,7 +66,7 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
     figure = new_figure(width, height)
     note = "change in % if each dimension grows by 1 % (the offset: its size); "
     note += f"{left_out} others change less" if left_out > 0 else "at a kink: derivatives below and above"
-    heading(figure, "Sensitivity", note)
+    write_heading(figure, "Sensitivity", note)
     panel_width = (width - 2.56) / len(DIMENSIONS)
     columns = [f"{name}_percent" for name in DIMENSIONS]
     all_columns = [*columns, *(f"{column}_below" for column in columns)]
@@ -77,16 +89,16 @@ def tornado_figure(rows: pd.DataFrame, system: System = "metric", *, width: floa
             if np.isnan(upper):
                 continue
             if abs(upper - lower) <= 1e-9 * max(abs(upper), abs(lower)):
-                _bar(panel, at, 0.62, float(upper), half_width)
+                _draw_bar(panel, at, 0.62, float(upper), half_width)
             else:  # at a kink: a bar in the lower half of the row
-                _bar(panel, at - 0.19, 0.3, float(lower), half_width, "below ")
-                _bar(panel, at + 0.19, 0.3, float(upper), half_width, "above ")
+                _draw_bar(panel, at - 0.19, 0.3, float(lower), half_width, "below ")
+                _draw_bar(panel, at + 0.19, 0.3, float(upper), half_width, "above ")
         if rows[column].isna().all():
             panel.text(0.0, 0.5 * (count - 1), f"no {name}:\nnot defined", ha="center", fontsize=SMALL, color=MUTED)
     return figure
 
 
-def _bar(panel: Axes, at: float, height: float, value: float, half_width: float, side: str = "") -> None:
+def _draw_bar(panel: Axes, at: float, height: float, value: float, half_width: float, side: str = "") -> None:
     up = value >= 0.0
     panel.barh(at, value, height=height, color=BLUE if up else "white", edgecolor=BLUE if up else VERMILION)
     text = side + (f"{'+' if up else ''}{format_number(value, 3)}" if abs(value) >= 5e-4 else "0")

@@ -25,7 +25,7 @@ from ...render.blocks import (
     Table,
     Text,
     column,
-    dimensions,
+    dimensions_text,
     heading,
     joined,
     sentence,
@@ -64,7 +64,7 @@ _STEP = 30
 _MOST_ADVANTAGE = 10.0  # larger values show only that a dead centre is near
 
 
-def massless(mechanism: Mechanism, load: float | None = None) -> Mechanism:
+def massless_mechanism(mechanism: Mechanism, load: float | None = None) -> Mechanism:
     """Return the mechanism without masses, gravity and friction, optionally with a constant load, N outward.
 
     If there are neither loads nor a given load, the load is 1 N towards the crank pivot.
@@ -94,7 +94,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
 
     load: load on the slider, N outward; None for the loads of the mechanism or, if it has none, 1 N towards the crank.
     """
-    machine = massless(mechanism, load)
+    machine = massless_mechanism(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
     torque, guide = peak(machine, Signal.TORQUE, linkage), peak(machine, Signal.GUIDE_FORCE, linkage)
     rod = peak(machine, Signal.SLIDER_PIN_FORCE, linkage)
@@ -164,7 +164,7 @@ def _load_text(numbers: StaticForces) -> Text:
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> PanelFigure:
     """Return forces, torque and mechanical advantage over the cycle; load as in `numbers`."""
-    machine = massless(mechanism, load)
+    machine = massless_mechanism(mechanism, load)
     turns = cycle_turns(machine)
     theta = np.linspace(0.0, turns * 2.0 * math.pi, turns * 720 + 1)
     at = static_forces(linkage, theta, load=cycle(machine, linkage, theta).load)
@@ -181,5 +181,5 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None)
         crank_angle_panel(f"mechanical advantage, up to {_MOST_ADVANTAGE:g}", Line("", degrees, advantage)),
     )
     return PanelFigure(
-        "Static forces", joined([dimensions(linkage), "without masses and friction"], "; "), panels, width=8.0
+        "Static forces", joined([dimensions_text(linkage), "without masses and friction"], "; "), panels, width=8.0
     )

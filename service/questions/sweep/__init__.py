@@ -3,7 +3,7 @@
 from ....objectives.kinds import LENGTH
 from ..front_or_job_question import FrontOrJobQuestion
 from ..inputs import Input
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,
@@ -13,7 +13,7 @@ QUESTION = FrontOrJobQuestion(
 
     Where the linkage cannot rotate fully, or friction locks it, there is no value; the reason is shown instead.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "over",
             type=list[str],
             help='Parameter to sweep: "offset=0 mm..20 mm:5" (5 values). Give it twice for a grid.',
@@ -21,7 +21,7 @@ QUESTION = FrontOrJobQuestion(
             metavar="RANGE",
             required=True,
         ),
-        TypedInput(
+        PlainInput(
             "of",
             type=list[str],
             help='Quantity or formula to compute, such as peak_torque or "crank + rod". May be repeated.',

@@ -19,7 +19,7 @@ from ...designs.display_units import convert_rows
 from ...designs.rotating_crank import require_rotating_crank
 from ...designs.selection import parse_value
 from ...render.blocks import Table, Value, column, value_from_record
-from ...runs.result import Row, rows_of
+from ...runs.result import Row, rows_of_columns
 from ...text.options import length_option
 from ..front_or_job_question import Answer
 
@@ -55,7 +55,7 @@ def analyse(
     names = [name for text in of for name in _split_names(text)]
     quantities = [problem.quantity(name) for name in names]
     table = sweep(problem.mechanism.nominal, np.array(lengths), axes, names, custom=problem.own)
-    rows = rows_of(table.to_dict("list"))
+    rows = rows_of_columns(table.to_dict("list"))
     stuck = [row["reason"] for row in rows if row["reason"]]
     return Answer(
         record=lambda units: {"rows": convert_rows(rows, units)},

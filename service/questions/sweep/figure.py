@@ -23,13 +23,13 @@ from ...figures.style import (
     TEXT,
     add_axes,
     colour_map,
-    heading,
     new_figure,
     padded_limits,
     style_axes,
     title_panel,
+    write_heading,
 )
-from ...render.numerals import with_unit
+from ...render.numerals import title_with_unit
 
 Array = NDArray[np.float64]
 MOST = 6
@@ -78,7 +78,9 @@ def sweep_figure(
         for n, (axis, (name, factor)) in enumerate(zip(axes, titles, strict=True))
         if n not in drawn
     ]
-    heading(figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *fixed_values]))
+    write_heading(
+        figure, textwrap.shorten(title, 60, placeholder=" ..."), "; ".join([f"sweep over {names}", *fixed_values])
+    )
     for n, item in enumerate(items):
         left, foot = 0.95 + _WIDTH * (n % columns), height - 0.95 - _SIDE - (_SIDE + 0.85) * (n // columns)
         grids, values = sweep_grid(table, axes, item)
@@ -100,14 +102,14 @@ def sweep_figure(
             _draw_contour(panel, scale, grids, values)
             panel.set_ylabel(titles[1][0], fontsize=TEXT)
             note = "grey: no value"
-        title_panel(panel, with_unit(item.title, symbol), note if missing.any() else "")
+        title_panel(panel, title_with_unit(item.title, symbol), note if missing.any() else "")
     return figure
 
 
 def _axis_title(axis: Axis, system: System) -> tuple[str, float]:
     """Return the title of an axis with its unit, and the size of that unit in its column's unit."""
     symbol, factor = metric_unit_in("rpm" if axis.parameter == "speed" else "mm", system)
-    return with_unit(axis.parameter, symbol), factor
+    return title_with_unit(axis.parameter, symbol), factor
 
 
 def _draw_line(panel: Axes, x: Array, values: Array) -> None:

@@ -67,7 +67,7 @@ _PLACES = {"at_crank_angle_deg": _Place, "at_slider_position_mm": _Place}
 _KINDS = (*KINDS, ANGULAR_SPEED, ANGULAR_ACCELERATION)
 
 
-def _place_keys(name: str, *, way: bool = True) -> dict[str, Any]:
+def _location_keys(name: str, *, way: bool = True) -> dict[str, Any]:
     """Return the keys for the location of a value."""
     return {f"{name}_{place}": kind for place, kind in (_PLACES | ({"way": _Way} if way else {})).items()}
 
@@ -79,8 +79,8 @@ def _optional_keys(keys: dict[str, Any]) -> dict[str, Any]:
 _CURVE = {
     "title": str,
     **keys_of_kinds(("least", "greatest"), _KINDS),
-    **_place_keys("least"),
-    **_place_keys("greatest"),
+    **_location_keys("least"),
+    **_location_keys("greatest"),
 }
 _Curve = Annotated[
     dict[str, Any], Keys("SwingExtremes", "Minimum and maximum of a curve over both strokes.", _CURVE, 9)
@@ -101,9 +101,9 @@ SwingNumbers = Annotated[
             **{f"{end}_slider_position_mm": float for end in ("start", "end")},
             "travel_mm": float,
             "least_transmission_angle_deg": float,
-            **_place_keys("least_transmission_angle", way=False),
+            **_location_keys("least_transmission_angle", way=False),
             **keys_of_kinds(("peak_drive",), _DRIVES),
-            **_place_keys("peak_drive"),
+            **_location_keys("peak_drive"),
             **keys_of_kinds(_ENDS, _DRIVES),
             "holds_by_friction": bool,
             "energy_forth_J": _Known,
@@ -111,11 +111,11 @@ SwingNumbers = Annotated[
             "stored_energy_J": _Known,
             "efficiency": Annotated[float | None, Note("null where neither stroke is driven")],
             "peak_power_W": NotRequired[_Known],
-            **_optional_keys(_place_keys("peak_power")),
+            **_optional_keys(_location_keys("peak_power")),
             **keys_of_kinds(("slider_position_error",), (LENGTH,)),
             **keys_of_kinds(("crank_position_error",), (ANGLE,)),
-            **_optional_keys(_place_keys("slider_position_error", way=False)),
-            **_optional_keys(_place_keys("crank_position_error", way=False)),
+            **_optional_keys(_location_keys("slider_position_error", way=False)),
+            **_optional_keys(_location_keys("crank_position_error", way=False)),
             "extremes": Annotated[dict[str, _Curve], Note("by curve")],
             "notes": Annotated[list[str], Note("what is undefined or left out, and why")],
         },
@@ -151,7 +151,7 @@ def curves(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: Any) -> Figure:
     """Return the curves of both strokes below the machine."""
-    from ...figures.swing import swing_figure
+    from ...figures.swing_figure import swing_figure
 
     machine, swing = _swing_from_inputs(mechanism, **options)
     return swing_figure(machine, linkage, swing, units)
@@ -173,8 +173,8 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
         "start_slider_position_mm": 1e3 * summary.slider_positions[0],
         "end_slider_position_mm": 1e3 * summary.slider_positions[1],
         "travel_mm": 1e3 * summary.travel,
-        **_value_and_place("least_transmission_angle_deg", summary.least_transmission, ANGLE.metric.factor),
-        **_value_and_place(f"peak_drive{drive.suffix}", summary.peak_drive, drive.factor, way=True),
+        **_value_and_location("least_transmission_angle_deg", summary.least_transmission, ANGLE.metric.factor),
+        **_value_and_location(f"peak_drive{drive.suffix}", summary.peak_drive, drive.factor, way=True),
     }
     for end, pair in (("start", summary.drive_start), ("end", summary.drive_end)):
         for way, value in zip(("forth", "back"), pair, strict=True):
@@ -187,9 +187,9 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
         "efficiency": summary.efficiency,
     }
     if summary.peak_power is not None:
-        record |= _value_and_place("peak_power_W", summary.peak_power, 1.0, way=True)
+        record |= _value_and_location("peak_power_W", summary.peak_power, 1.0, way=True)
     if summary.position_error is not None:
-        record |= _value_and_place(
+        record |= _value_and_location(
             f"{driven_side(swing)}_position_error{error.suffix}", summary.position_error, error.factor
         )
     return record | {"extremes": _curve_extremes(mechanism, summary), "notes": _swing_notes(mechanism, summary)}
@@ -209,7 +209,7 @@ def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, An
             continue
         entry: dict[str, Any] = {"title": curve.title}
         for word, at in (("least", least), ("greatest", greatest)):
-            fields = _value_and_place(
+            fields = _value_and_location(
                 f"{word}{curve.kind.metric.suffix}", at, curve.kind.metric.factor, way=True, stem=word
             )
             # Near a position where friction locks, forces grow without bound.
@@ -219,7 +219,9 @@ def _curve_extremes(mechanism: Mechanism, summary: SwingSummary) -> dict[str, An
     return entries
 
 
-def _value_and_place(key: str, at: SwingPoint, factor: float, *, way: bool = False, stem: str = "") -> dict[str, Any]:
+def _value_and_location(
+    key: str, at: SwingPoint, factor: float, *, way: bool = False, stem: str = ""
+) -> dict[str, Any]:
     """Return a value and its location. stem: prefix of the location's keys; the value's key without unit if empty."""
     stem = stem or key.rpartition("_")[0]
     return {
@@ -258,7 +260,11 @@ def swing_numbers(record: Mapping[str, Any]) -> list[NamedNumber]:
         is_excluded = isinstance(value, str | list | dict | bool) or key == "duration_s"
         if not is_excluded and "_at_crank_angle" not in name and "_at_slider_position" not in name:
             lines.append(
-                (_TITLES.get(name, name.replace("_", " ")), value_from_record(record, key), _place_text(record, name))
+                (
+                    _TITLES.get(name, name.replace("_", " ")),
+                    value_from_record(record, key),
+                    _location_text(record, name),
+                )
             )
     return [*lines, ("held by friction alone, everywhere", "yes" if record["holds_by_friction"] else "no", "")]
 
@@ -269,7 +275,7 @@ def blocks(record: Mapping[str, Any]) -> list[Block]:
     return [*number_list(swing_title(record), swing_numbers(record)), title, extremes_table(record["extremes"])]
 
 
-def _place_text(record: Mapping[str, Any], name: str) -> Text:
+def _location_text(record: Mapping[str, Any], name: str) -> Text:
     if record.get(f"{name}_at_crank_angle_deg") is None:
         return ""
     return words(

@@ -19,7 +19,7 @@ from ....model.tolerance.first_order import fractions_of_sum
 from ....model.tolerance.monte_carlo import simulate, variance_contributions
 from ....objectives.kinds import LENGTH, System
 from ...figures import style
-from ...render.numerals import with_unit
+from ...render.numerals import title_with_unit
 
 Array = NDArray[np.float64]
 SAMPLES, ANGLES = 10_000, 181
@@ -74,7 +74,7 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     unit = LENGTH.display_unit(system)
     figure = style.new_figure(9.2, 7.2)
     note = "Monte Carlo: normal errors, limits at three standard deviations; pins pressed to either side"
-    style.heading(figure, "Slider position error from tolerances", note)
+    style.write_heading(figure, "Slider position error from tolerances", note)
     upper, lower = style.add_axes(figure, 0.8, 3.35, 5.9, 3.25), style.add_axes(figure, 0.8, 0.65, 5.9, 2.2)
     for panel in (upper, lower):
         style.style_axes(panel, most_y_ticks=6)
@@ -92,7 +92,7 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
         error = sign * unit.factor * bands.root_sum_square
         upper.plot(bands.angles, error, color=style.INK, linewidth=1.2, linestyle=":", label=label)
     upper.axhline(0.0, color=style.FRAME, linewidth=0.8)
-    upper.set_ylabel(with_unit("deviation along the line", unit.symbol), fontsize=style.TEXT)
+    upper.set_ylabel(title_with_unit("deviation along the line", unit.symbol), fontsize=style.TEXT)
     lower.set_ylabel("share of the variance, %", fontsize=style.TEXT)
     lower.set_xlabel("crank angle, deg", fontsize=style.TEXT)
     lower.set_ylim(0, 100)
@@ -101,7 +101,7 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     style.style_axes(counts, most_x_ticks=3)
     counts.hist(unit.factor * bands.machines, bins=40, color="#bdbdbd")
     counts.set_yticks([])
-    counts.set_xlabel(with_unit("greatest error of a machine", unit.symbol), fontsize=style.SMALL)
+    counts.set_xlabel(title_with_unit("greatest error of a machine", unit.symbol), fontsize=style.SMALL)
     style.legend_at_right(upper)
     style.legend_at_right(lower, stacked=len(bands.sources))
     return figure

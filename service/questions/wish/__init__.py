@@ -1,7 +1,7 @@
 """The optimal design nearest to a wish: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..typed_input import TypedInput
+from ..plain_input import PlainInput
 
 _EXAMPLE = {"time_ratio": "1.2", "transmission_angle": "45 deg"}
 QUESTION = FrontOrJobQuestion(
@@ -16,7 +16,7 @@ QUESTION = FrontOrJobQuestion(
     If every target can be met, they are exceeded together; otherwise the conflicting ones are relaxed in equal
     proportion to their ranges over the front. Objectives that are not named are free.""",
     inputs=(
-        TypedInput(
+        PlainInput(
             "at",
             type=dict[str, str | float],
             help='OBJECTIVE=VALUE, a desired value rather than a bound, such as "peak_torque=110 N m"; or improve, '

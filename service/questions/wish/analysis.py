@@ -12,7 +12,7 @@ from ....optimise.decisions.wish_outcome import Outcome, Wished
 from ....optimise.front.front import ParetoFront
 from ...designs.display_units import convert_row
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, value_from_record, words
-from ...runs.result import json_ready, rows_of
+from ...runs.result import json_ready, rows_of_columns
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer
 
@@ -22,17 +22,17 @@ def analyse(front: ParetoFront, *, row: int | None, at: Mapping[str, object], **
 
     Raises the errors of `optimise.decisions.wish.wish`.
     """
-    return compute_wish(Wishes(front).wish(at, row=row), at)
+    return wish_result(Wishes(front).wish(at, row=row), at)
 
 
-def compute_wish(wished: Wished, at: Mapping[str, object]) -> Answer:
+def wish_result(wished: Wished, at: Mapping[str, object]) -> Answer:
     """Return a solved wish as an answer. at: wishes by objective, as entered.
 
     Its numbers: possible: whether every wish is met. sentences: the answer in words. achievement: value of the
     achievement function. objectives: wish and outcome of each, in its unit. design: row of a front's table, null if no
     design stays within the allowed limits.
     """
-    rows = rows_of(wished.found.columns) if len(wished) else []
+    rows = rows_of_columns(wished.found.columns) if len(wished) else []
 
     def record(units: System) -> dict[str, Any]:
         return {

@@ -1,4 +1,4 @@
-"""Entry point for Alembic: runs the migrations on the connection that `schema_version.upgrade` passes to it."""
+"""Entry point for Alembic: runs the migrations on the connection that `create_or_upgrade_tables` passes to it."""
 
 from __future__ import annotations
 

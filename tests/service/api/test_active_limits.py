@@ -12,7 +12,7 @@ import httpx
 import pytest
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
 
@@ -115,7 +115,7 @@ def test_what_is_no_wider_limit_is_refused(
 
 def test_numbers_that_vary_deep_in_a_job_are_widened_where_they_stand() -> None:
     from slidercrank.optimise.job import parse_job
-    from slidercrank.service.designs.following_jobs import widen_limits
+    from slidercrank.service.designs.derived_jobs import widen_limits
 
     tables = tomllib.loads(fronts.JOB)
     for place in ({"mechanism": {"slider": {"mass": ["1 kg", "2 kg"]}}}, {"mechanism.slider.mass": ["1 kg", "2 kg"]}):

@@ -11,8 +11,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from slidercrank.service.api import connections, server
-from slidercrank.service.api.connections import Connection
+from slidercrank.service.api import connection_limits, server
+from slidercrank.service.api.connection_limits import Connection
 from slidercrank.service.store import Store
 from tests.service.api.connected import LIVE, ask_until_nothing_is_read, connected, status_of
 from tests.service.api.serving import TOKEN, client_of
@@ -29,7 +29,7 @@ def ahead(monkeypatch: pytest.MonkeyPatch) -> list[int]:
             super().handle_events()
             sizes.append(len(self.conn.trailing_data[0]))
 
-    monkeypatch.setattr(connections, "Connection", Counted)
+    monkeypatch.setattr(connection_limits, "Connection", Counted)
     return sizes
 
 
@@ -88,7 +88,7 @@ def test_answers_that_nobody_takes_end_the_connection(
 def test_answers_that_nobody_takes_keep_nobody_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, token: str | None
 ) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(connection_limits, "MOST_CONNECTIONS", 3)
     with (
         Store(tmp_path / "store.db") as store,
         client_of(store, token=token) as client,
@@ -103,7 +103,7 @@ def test_answers_that_nobody_takes_keep_nobody_out(
 
 
 def test_who_has_the_token_keeps_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 5)
+    monkeypatch.setattr(connection_limits, "MOST_CONNECTIONS", 5)
     jobs = b"GET /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\n"
     token = f"Authorization: Bearer {TOKEN}\r\n".encode()
     with (
@@ -124,7 +124,7 @@ def test_who_has_the_token_keeps_its_place(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_time_that_a_request_waits_unread_is_not_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "BODY_SECONDS", 0.2)
+    monkeypatch.setattr(connection_limits, "BODY_SECONDS", 0.2)
     stream = b"GET /api/v1/jobs/1/events HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n"
     post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1"
     with Store(tmp_path / "store.db") as store, client_of(store) as client, connected(client) as there:

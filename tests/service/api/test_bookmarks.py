@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.service.client import Client
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service.api.fixed_front import Solved, client_of, served
 
 LENGTHS = ("crank_mm", "rod_mm", "offset_mm")

@@ -18,7 +18,7 @@ from slidercrank.service.api import events
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.client import Client
 from slidercrank.service.client.connection import Connection
-from slidercrank.service.runs.result import read_row
+from slidercrank.service.runs.result import row_from_json
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, served
@@ -99,7 +99,7 @@ def test_results_are_read(solved: Solved, reader: Client, tmp_path: Path) -> Non
     number = solved.number
     front = reader.front(number)
     assert (front.designs, front.knee, front.objectives) == (
-        [read_row(row) for row in solved.store.result(number).record()["designs"]],
+        [row_from_json(row) for row in solved.store.result(number).record()["designs"]],
         solved.result.knee,
         solved.result.objectives,
     )

@@ -18,7 +18,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.decisions.front_comparison import compare
 from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
-from slidercrank.service.questions.compare.analysis import differences
+from slidercrank.service.questions.compare.analysis import differences_between_jobs
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of, put_in
@@ -51,13 +51,13 @@ def test_jobs_differ_where_they_say_other_things() -> None:
     other["variables"]["rod"][1] = "700 mm"
     other["load"] = [{"force": "200 N", "opposes": "motion"}]
     del other["constraints"]["transmission_angle"]
-    assert differences([TABLES, other]) == [
+    assert differences_between_jobs([TABLES, other]) == [
         ("variables.rod", ("60 mm to 600 mm", "60 mm to 700 mm")),
         ("constraints.transmission_angle.min", ("40 deg", None)),
         ("load.1.force", (None, "200 N")),
         ("load.1.opposes", (None, "motion")),
     ]
-    assert differences([TABLES, TABLES]) == []
+    assert differences_between_jobs([TABLES, TABLES]) == []
 
 
 def test_sentences_count_the_designs_that_the_other_run_does_not_match(

@@ -20,7 +20,7 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from slidercrank.service.api import exports
+from slidercrank.service.api import front_files
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
@@ -104,7 +104,7 @@ def test_parquet_without_pyarrow_says_what_to_install(
 
 def test_parquet_is_offered_only_where_pyarrow_is(solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
     for there, expected in ((True, ["csv", "json", "parquet"]), (False, ["csv", "json"])):
-        monkeypatch.setattr(exports, "is_installed", lambda name, there=there: there)
+        monkeypatch.setattr(front_files, "is_installed", lambda name, there=there: there)
         with client_of(solved.store) as client:
             assert client.get(f"{solved.path}/files").json()["exports"] == expected
             schema = client.get(f"{API}/openapi.json").json()

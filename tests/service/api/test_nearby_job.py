@@ -11,9 +11,9 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
-from slidercrank.service.designs.following_jobs import job_near_lengths
+from slidercrank.service.designs.derived_jobs import job_near_lengths
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of
 

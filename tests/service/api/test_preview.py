@@ -17,7 +17,7 @@ import pytest
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job.job_file import MOST
 from slidercrank.optimise.search.polish import polish
-from slidercrank.service.preview import feasibility
+from slidercrank.service.preview import possible_values
 from tests.service.api.serving import refused
 from tests.service.weak_pins import TABLES
 
@@ -271,7 +271,7 @@ def test_what_is_typed_besides_the_ranges_searches_no_ends_anew(
     wider["variables"]["crank"] = ["19.5 mm", "60 mm"]
     first = preview(shared, feeder)
     searched = Mock(side_effect=polish)
-    monkeypatch.setattr(feasibility, "polish", searched)
+    monkeypatch.setattr(possible_values, "polish", searched)
     again = preview(shared, changed)
     assert again["understood"] != first["understood"]
     assert again["allowed"] == first["allowed"]
@@ -297,7 +297,7 @@ def test_a_requirement_that_no_design_meets_is_blamed_and_not_one_that_most_meet
     shared: httpx.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is the safety that none has, not the transmission angle: that is met by many."""
-    monkeypatch.setattr(feasibility, "PATIENCE", 60.0)
+    monkeypatch.setattr(possible_values, "PATIENCE", 60.0)
     for safety in ({"min": 500.0}, {"max": 0.01}):
         job = {**TABLES, "constraints": {"transmission_angle": {"min": "70 deg"}, "static_safety": safety}}
         allowed = preview(shared, job)["allowed"]
@@ -318,7 +318,7 @@ def test_a_requirement_that_no_design_meets_is_blamed_and_not_one_that_most_meet
 def test_what_the_samples_hold_though_the_search_varies_it_is_said(
     shared: httpx.Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(feasibility, "PATIENCE", 60.0)
+    monkeypatch.setattr(possible_values, "PATIENCE", 60.0)
     varying = {**TABLES["variables"], "sections": {"pins": {"crank_pin": ["5 mm", "15 mm"]}}}
     job = {**TABLES, "variables": varying, "constraints": {"static_safety": {"min": 500.0}}}
     (said,) = preview(shared, job)["allowed"]["said"]

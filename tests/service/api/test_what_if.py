@@ -11,8 +11,8 @@ import pytest
 
 from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
-from slidercrank.service.designs.changed_design import variation_of
-from slidercrank.service.designs.choice_options import minimised_values
+from slidercrank.service.designs.changed_design import judged_variation
+from slidercrank.service.designs.design_selection_options import minimised_values
 from slidercrank.service.designs.stored_designs import design_of
 from tests.service.api.fixed_front import Solved, client_of
 
@@ -87,7 +87,7 @@ def test_designs_that_a_change_beats_are_named(solved: Solved) -> None:
     result = solved.result
     design = design_of(load_job(solved.job), result.designs[2])
     worse = minimised_values(result) + 1e3 * np.arange(1.0, 1.0 + len(result.designs))[:, None]
-    found = variation_of(design, result, worse)
+    found = judged_variation(design, result, worse)
     assert sorted(found.dominates) == list(range(len(result.designs)))
     assert found.dominates[0] == len(result.designs) - 1  # the one that is worst by far
     assert found.dominated_by == []

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.client import Client
 from slidercrank.service.store import Store
-from slidercrank.service.store.remarks import MOST_WISHES, note_wish
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.bookmarks_and_wishes import MOST_WISHES, note_wish
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service.api.fixed_front import Solved, client_of, served
 
 AT = {"time_ratio": "1.3", "transmission_angle": "50 deg"}

@@ -27,7 +27,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.swing import Swing
 from slidercrank.objectives.kinds import System
-from slidercrank.service.designs.toleranced import format_toleranced
+from slidercrank.service.designs.length_with_tolerance import format_toleranced
 from slidercrank.service.drawings.design_drawing import linkage_drawing, swing_drawing
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.layers import LAYERS, SWING_LAYERS
@@ -148,7 +148,7 @@ def test_outlines_are_round_about_their_pivots(name: str) -> None:
     drawing = drawing_of(linkage)
     pin, slider = pins(linkage, math.radians(60.0))
     for layer, ends in (("CRANK", ((0.0, 0.0), pin)), ("ROD", (pin, slider))):
-        (outline,) = drawing.shapes_on(layer)
+        (outline,) = drawing.shapes_on_layer(layer)
         assert isinstance(outline, Outline)
         one, two, three, four = outline.corners
         middles = [[0.5 * (a + b) for a, b in zip(*pair, strict=True)] for pair in ((four, one), (two, three))]
@@ -235,7 +235,7 @@ def test_without_offset_there_is_no_dimension_of_it() -> None:
 def test_links_of_a_section_have_their_width() -> None:
     drawing = linkage_drawing(fronts.MACHINE, LINKAGES["below"], name="Sieve")
     for layer in ("CRANK", "ROD"):
-        (outline,) = drawing.shapes_on(layer)
+        (outline,) = drawing.shapes_on_layer(layer)
         assert isinstance(outline, Outline)
         assert math.dist(outline.corners[0], outline.corners[3]) == pytest.approx(30.0)
     assert drawing.title == "Sieve"

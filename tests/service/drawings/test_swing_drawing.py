@@ -24,8 +24,8 @@ from slidercrank.service.drawings.design_drawing import swing_drawing
 from slidercrank.service.drawings.dxf import dxf_file
 from slidercrank.service.drawings.shapes import WIDE, Label
 from slidercrank.service.drawings.svg import svg_file
-from slidercrank.service.figures.painting import drawing_figure
-from slidercrank.service.figures.swing import swing_figure
+from slidercrank.service.figures.shape_painting import drawing_figure
+from slidercrank.service.figures.swing_figure import swing_figure
 from tests.model.swing.swings import Case, random_swings
 
 CASES = random_swings(24, seed=61)
@@ -82,7 +82,7 @@ def test_a_cylinder_reaches_from_the_slider_into_its_barrel_all_over_the_swing(c
     _, linkage, swing = case
     for angle in np.linspace(swing.start, swing.end, 5):
         if swing.driver == "crank":
-            assert swing_drawing(*case, name="Support", crank_angle=float(angle)).shapes_on("ACTUATOR") == []
+            assert swing_drawing(*case, name="Support", crank_angle=float(angle)).shapes_on_layer("ACTUATOR") == []
             continue
         found = read(case, crank_angle=float(angle))
         outlines = found.modelspace().query('LWPOLYLINE[layer=="ACTUATOR"]')

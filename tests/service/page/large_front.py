@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 
 from slidercrank.objectives.tables.all_quantities import analyse
-from slidercrank.service.runs.result import Result, StoredObjective, rows_of
+from slidercrank.service.runs.result import Result, StoredObjective, rows_of_columns
 from slidercrank.service.store import Store
 from tests.service import fronts
 from tests.service.api.fixed_front import put_in
@@ -35,7 +35,7 @@ def large_result(count: int = 10_000) -> Result:
         StoredObjective(quantity=name, sense=sense, column=key, title=title, unit=unit)
         for name, sense, key, title, unit in _OBJECTIVES
     )
-    rows = rows_of(table.to_dict("list"))
+    rows = rows_of_columns(table.to_dict("list"))
     extremes = {item.quantity: min(range(count), key=lambda row: item.minimised_value(rows[row])) for item in wanted}
     return Result(
         run="",

@@ -17,7 +17,7 @@ from playwright.sync_api import Browser, Locator, Page, expect
 
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from slidercrank.service.workers.worker import work
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.conftest import Open, watch

@@ -26,7 +26,7 @@ def test_a_view_in_one_file_and_one_entry_is_shown(
     shell = (folder / "app.js").read_text(encoding="utf-8")
     assert shell.count("const VIEWS = [\n") == 1
     (folder / "app.js").write_text(shell.replace("const VIEWS = [\n", f"const VIEWS = [\n{entry}"), encoding="utf-8")
-    monkeypatch.setattr(router, "_FILES", router.files_of(folder))
+    monkeypatch.setattr(router, "_FILES", router.page_files(folder))
     page = open_page(store, "#/shipped")
     expect(page.get_by_role("main")).to_contain_text("Vibrating sieve")
     expect(page).to_have_title("Shipped jobs · slidercrank")

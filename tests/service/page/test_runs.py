@@ -14,7 +14,7 @@ from slidercrank.service.jobs.submission import submit
 from slidercrank.service.presets.jobs import shipped_jobs
 from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
-from slidercrank.service.store.remarks import bookmark_design
+from slidercrank.service.store.bookmarks_and_wishes import bookmark_design
 from tests.service import fronts
 from tests.service.api.fixed_front import Solved, put_in
 from tests.service.page.accessibility import require_accessible

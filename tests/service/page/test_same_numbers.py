@@ -16,7 +16,7 @@ from playwright.sync_api import Page, expect
 from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import load_job
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, put_in
 from tests.service.page.accessibility import findings

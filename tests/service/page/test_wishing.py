@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service.api.fixed_front import API, Solved
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched

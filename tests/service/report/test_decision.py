@@ -7,8 +7,8 @@ from html import unescape
 from pathlib import Path
 
 from slidercrank.service.store import Store
-from slidercrank.service.store.remarks import bookmark_design, update_bookmark
-from slidercrank.service.store.upkeep import back_up
+from slidercrank.service.store.bookmarks_and_wishes import bookmark_design, update_bookmark
+from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service.api.fixed_front import Solved
 from tests.service.conftest import Command
 

@@ -11,7 +11,7 @@ import pytest
 from slidercrank.objectives.tables.measured_curves import Measured, measured_from
 from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.design_curves import cycle_csv
-from slidercrank.service.designs.measured_file import read_measured
+from slidercrank.service.designs.measured_curves_file import parse_measured_curves
 from slidercrank.service.questions.measured.analysis import numbers
 from slidercrank.service.render.numerals import format_cell
 from slidercrank.service.report.design_report import design_report
@@ -74,7 +74,7 @@ def test_a_report_has_them_where_they_are_given(subject: Subject) -> None:
 @pytest.mark.slow
 def test_all_curves_at_once_are_spread_over_pages(subject: Subject) -> None:
     design = subject.design
-    measured = read_measured(cycle_csv(design.mechanism, design.linkage), design.mechanism, design.linkage)
+    measured = parse_measured_curves(cycle_csv(design.mechanism, design.linkage), design.mechanism, design.linkage)
     section: Section = measured_section(subject, measured)
     pictures = [block for block in section.blocks if isinstance(block, Picture)]
     assert len(measured.values) == 18

@@ -17,7 +17,7 @@ from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Facts, Report, Table
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
-from slidercrank.service.text.job_in_words import summarise
+from slidercrank.service.text.job_in_words import problem_in_words
 
 PRESS = tomllib.loads((Path(__file__).parents[3] / "runs" / "press.toml").read_text(encoding="utf-8"))
 OPTIONS = {"small": ("400 N m", "250 N m"), "large": ("500 N m", "300 N m")}
@@ -57,7 +57,7 @@ def test_a_job_says_material_pins_and_how_stresses_are_judged() -> None:
             "eye_concentration": concentration,
             "material": {**PRESS["sections"]["material"], **{name: f"{value} MPa" for name, value in material.items()}},
         }
-        given = summarise(parse_job(job))["given"]
+        given = problem_in_words(parse_job(job))["given"]
         for name, value in material.items():
             assert f"{name.replace('_', ' ')} of the material: {value:.6g} MPa" in given
         assert "elasticity of the material: 205 GPa" in given
@@ -66,17 +66,17 @@ def test_a_job_says_material_pins_and_how_stresses_are_judged() -> None:
         assert f"mean stresses in fatigue: by {criterion.capitalize()}" in given
     del job["sections"], job["variables"]["sections"]
     job["objectives"] = {"peak_torque": "minimise"}
-    assert not any("material" in line or "pins" in line for line in summarise(parse_job(job))["given"])
+    assert not any("material" in line or "pins" in line for line in problem_in_words(parse_job(job))["given"])
 
 
 def test_a_job_says_the_limits_of_each_option_and_only_counts_them_where_they_are_many() -> None:
-    rules = summarise(parse_job(press()))["rules"]
+    rules = problem_in_words(parse_job(press()))["rules"]
     for name, (peak, mean) in OPTIONS.items():
         assert f"with {name}: peak torque at most {peak}" in rules
         assert f"with {name}: RMS torque over time at most {mean}" in rules
     job = press()
     job["choice"][0]["option"] = [option(f"motor {n}", f"{400 + n} N m", f"{250 - n} N m") for n in range(13)]
-    rules = summarise(parse_job(job))["rules"]
+    rules = problem_in_words(parse_job(job))["rules"]
     assert "limits set by 13 combinations of choices" in rules
     assert not any("motor 1" in rule for rule in rules)
 

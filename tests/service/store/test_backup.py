@@ -10,8 +10,8 @@ import pytest
 
 from slidercrank.model.errors import InputError, StoreError
 from slidercrank.service.store import Store
+from slidercrank.service.store.damage_check_and_backup import back_up, damages
 from slidercrank.service.store.database import Database
-from slidercrank.service.store.upkeep import back_up, damages
 from tests.service.store.contents import add, everything, progress, result, same, search_record, taken
 
 
@@ -42,7 +42,7 @@ def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> N
     assert everything(str(file)) == before
     with Store(file) as store:
         claim = taken(store)
-        assert same(claim.records()[0], search_record(0))
+        assert same(claim.evaluation_records()[0], search_record(0))
         claim.finish(result())
         assert store.job(1).state == "done"
 

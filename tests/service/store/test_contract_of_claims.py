@@ -36,14 +36,14 @@ def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, addr
     end_lease(address, lost.job.id)
     again = taken(store, "second")
     assert (again.job.id, again.job.fence, again.job.worker) == (lost.job.id, 2, "second")
-    found = again.records()
+    found = again.evaluation_records()
     assert len(found) == again.job.records == 2
     assert all(same(one, search_record(number)) for number, one in enumerate(found, 1))
     assert again.job.progress is not None
     assert again.job.progress["evaluations"] == 32
     again.keep_record(search_record(3))
     again.report(progress(3))
-    assert same(again.records()[2], search_record(3))
+    assert same(again.evaluation_records()[2], search_record(3))
 
 
 def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store) -> None:
@@ -215,7 +215,7 @@ def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) ->
     claim = taken(store)
     claim.keep_record(search_record(1))
     claim.hand_back("the machine goes down")
-    assert same(taken(store).records()[0], search_record(1))
+    assert same(taken(store).evaluation_records()[0], search_record(1))
 
 
 def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: Store, address: str) -> None:
@@ -229,7 +229,7 @@ def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: St
     with pytest.raises(LeaseLost):
         gone.report(progress(2))
     store.resume(job.id)
-    assert same(taken(store, "second").records()[0], search_record(1))
+    assert same(taken(store, "second").evaluation_records()[0], search_record(1))
 
 
 @pytest.mark.parametrize("hears", ["look", "renew", "report"])
@@ -247,7 +247,7 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
     assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
     assert not store.resume(job.id).cancel_asked
     again = taken(store, "second")
-    assert same(again.records()[0], search_record(1))
+    assert same(again.evaluation_records()[0], search_record(1))
     again.finish(result("done", ROWS[:1]))
     assert len(store.result(job.id).designs) == 1
     with pytest.raises(InputError, match="only a cancelled or failed job can continue; job 1 is done"):

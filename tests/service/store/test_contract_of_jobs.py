@@ -13,8 +13,8 @@ import pytest
 
 from slidercrank.model.errors import InputError, QueueFull
 from slidercrank.service.store import Artefact, Job, State, Store
+from slidercrank.service.store.bookmarks_and_wishes import bookmark_design
 from slidercrank.service.store.listing import Order
-from slidercrank.service.store.remarks import bookmark_design
 from tests.service.store.contents import (
     TABLES,
     add,
@@ -76,9 +76,9 @@ def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> No
     assert names == sorted(names)
     waiting = [job.id for job in store.jobs(order="state", states=["queued"], name="press")]
     assert waiting == [job.id for job in store.jobs(states=["queued"], name="press")]
-    assert str(store.count_workers()) == "no worker, 12 waiting: start one with slidercrank worker"
+    assert str(store.count_workers_and_waiting_jobs()) == "no worker, 12 waiting: start one with slidercrank worker"
     store.register("one")
-    assert str(store.count_workers()) == "1 worker, 0 busy, 12 waiting"
+    assert str(store.count_workers_and_waiting_jobs()) == "1 worker, 0 busy, 12 waiting"
 
 
 def test_the_highest_priority_is_claimed_first_then_the_oldest(store: Store) -> None:

@@ -60,7 +60,7 @@ def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
     first.keep_record(search_record(1))
     first.finish(result("cancelled"))
     again = store.reclaim(first.job.id, worker="desk", lease=60.0)
-    assert len(again.records()) == 1
+    assert len(again.evaluation_records()) == 1
     assert (again.job.state, again.job.fence) == ("running", 2)
     again.finish(result())
     with pytest.raises(LeaseLost):
@@ -76,7 +76,7 @@ def test_a_running_job_is_taken_from_its_worker_only_where_that_is_known_to_be_g
     with pytest.raises(InputError, match="job 1 is running"):
         store.reclaim(lost.job.id, worker="second", lease=60.0)
     again = store.reclaim(lost.job.id, worker="second", lease=60.0, alone=True)
-    assert len(again.records()) == 1
+    assert len(again.evaluation_records()) == 1
     with pytest.raises(LeaseLost):
         lost.report(progress(2))
 

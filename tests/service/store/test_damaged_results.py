@@ -13,11 +13,11 @@ import pytest
 from sqlalchemy import select, update
 
 from slidercrank.model.errors import RunError
-from slidercrank.service.runs.result import Exact
+from slidercrank.service.runs.result import ExactDesigns
 from slidercrank.service.store import Store
+from slidercrank.service.store.damage_check_and_backup import damages
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, exact, jobs
-from slidercrank.service.store.upkeep import damages
 from tests.service.api.serving import client_of
 from tests.service.conftest import Command
 from tests.service.store.contents import add, result, taken
@@ -35,9 +35,9 @@ SENTENCE = "the result of job 1 is damaged: "
 @pytest.fixture
 def solved(store: Store, monkeypatch: pytest.MonkeyPatch) -> Store:
     """Return a store in which two jobs are done, the first with exact designs."""
-    monkeypatch.setattr("slidercrank.service.store.upkeep._SETTINGS", ())
+    monkeypatch.setattr("slidercrank.service.store.damage_check_and_backup._SETTINGS", ())
     slopes = (np.zeros(1), np.array([[0.5, 0.25]]))
-    found = Exact(np.array([[0.1, 0.3, 0.0], [0.2, 0.4, 0.0]]), (), (slopes, slopes), (np.zeros((0, 2)),) * 2)
+    found = ExactDesigns(np.array([[0.1, 0.3, 0.0], [0.2, 0.4, 0.0]]), (), (slopes, slopes), (np.zeros((0, 2)),) * 2)
     for each in (replace(result(), exact=found), result()):
         add(store)
         taken(store).finish(each)

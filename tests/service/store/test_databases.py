@@ -25,10 +25,10 @@ from sqlalchemy import Connection, create_engine, text
 from slidercrank.model.errors import InputError, LeaseLost, MissingExtra, StoreError
 from slidercrank.service.store import Artefact, Store
 from slidercrank.service.store.address import store_file_exists, without_secrets
+from slidercrank.service.store.damage_check_and_backup import back_up, damages
 from slidercrank.service.store.database import Database, Unavailable
 from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
-from slidercrank.service.store.upkeep import back_up, damages
 from tests.service.conftest import Command
 from tests.service.fronts import job_file
 from tests.service.store.contents import add, end_lease, everything, progress, result, search_record, taken

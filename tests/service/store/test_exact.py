@@ -13,7 +13,7 @@ from slidercrank.optimise.solve import solve
 from slidercrank.service.designs.selection import result_part
 from slidercrank.service.designs.stored_designs import design_of, front_of, stored_design
 from slidercrank.service.designs.trade_offs import trade_offs_of
-from slidercrank.service.runs.result import Exact, Result, result_of
+from slidercrank.service.runs.result import ExactDesigns, Result, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import exact as exact_table
@@ -22,7 +22,7 @@ from tests.service import test_variables
 from tests.service.store.contents import add
 
 
-def made_up(count: int, seed: int) -> Exact:
+def made_up(count: int, seed: int) -> ExactDesigns:
     """Return random designs: some without pieces, constraints or unknowns, some numbers not finite."""
     rng = np.random.default_rng(seed)
     goals, active = [], []
@@ -30,13 +30,15 @@ def made_up(count: int, seed: int) -> Exact:
         pieces, edges, free = rng.integers(0, 4, 3)
         goals.append((rng.integers(0, 3, pieces).astype(float), rng.normal(size=(pieces, free))))
         active.append(rng.choice([np.nan, np.inf, -0.0, 1e-310, 3.0], size=(edges, free)))
-    return Exact(rng.normal(size=(count, 5)), tuple(rng.integers(0, 9, count).tolist()), tuple(goals), tuple(active))
+    return ExactDesigns(
+        rng.normal(size=(count, 5)), tuple(rng.integers(0, 9, count).tolist()), tuple(goals), tuple(active)
+    )
 
 
-def same(one: Exact, other: Exact) -> bool:
+def same(one: ExactDesigns, other: ExactDesigns) -> bool:
     """Whether all numbers are the same, bit for bit, in arrays of the same shapes."""
 
-    def arrays(exact: Exact) -> list[tuple[tuple[int, ...], bytes]]:
+    def arrays(exact: ExactDesigns) -> list[tuple[tuple[int, ...], bytes]]:
         slopes = [
             part
             for (owner, slope), edge in zip(exact.goals, exact.active, strict=True)
@@ -63,7 +65,7 @@ def test_damaged_exact_designs_are_refused() -> None:
 def test_exact_designs_belong_to_as_many_rows() -> None:
     given = made_up(3, seed=2)
     with pytest.raises(ValueError, match="dimensions of 3 designs, slopes of 2, 3"):
-        Exact(given.dimensions, given.variants, given.goals[:2], given.active)
+        ExactDesigns(given.dimensions, given.variants, given.goals[:2], given.active)
 
 
 @pytest.fixture(scope="module")

@@ -9,10 +9,10 @@ import pytest
 from sqlalchemy import delete, insert, update
 
 from slidercrank.service.store import Store
+from slidercrank.service.store.damage_check_and_backup import clock_ahead, damages, server_version
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, events, jobs
-from slidercrank.service.store.schema_version import versions
-from slidercrank.service.store.upkeep import clock_ahead, damages, server_version
+from slidercrank.service.store.schema_version import stored_and_known_version
 from tests.service.store.contents import add, progress, result, search_record, taken
 
 UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
@@ -30,7 +30,7 @@ def found(address: str) -> list[str]:
 @pytest.fixture
 def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
     """Return the address of a store in which jobs have ended, were cancelled, and are under way."""
-    monkeypatch.setattr("slidercrank.service.store.upkeep._SETTINGS", ())
+    monkeypatch.setattr("slidercrank.service.store.damage_check_and_backup._SETTINGS", ())
     for _ in range(4):
         add(store)
     for status in ("done", "cancelled", "infeasible"):
@@ -66,7 +66,7 @@ def test_clock_and_version_are_those_of_the_database(store: Store, address: str)
     database = Database(address)
     assert abs(clock_ahead(database)) < 5.0
     assert server_version(database).startswith(("SQLite 3.", "PostgreSQL 1"))
-    version, latest, known = versions(database)
+    version, latest, known = stored_and_known_version(database)
     assert version == latest
     assert known
     database.close()

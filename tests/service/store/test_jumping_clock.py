@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import LeaseLost
 from slidercrank.service.store import Claim, Store
-from slidercrank.service.store.database_clock import JUMP, SETTLING, Jumps
+from slidercrank.service.store.database_clock import JUMP, SETTLING, ClockJumps
 from slidercrank.service.workers.heartbeat import Heartbeat
 from slidercrank.service.workers.worker import solve_claimed, work
 from tests.service.store.clocks import Clock
@@ -111,7 +111,7 @@ def test_a_job_that_its_worker_leaves_is_free_at_once_whatever_the_clock_says(
     solve_claimed(store, taken(store, "first", lease=30.0), lambda: False)
     clock.ahead = -86_400.0
     store.register("first")  # it lives, so that nothing else tells that it has left the job
-    assert store.has_waiting()
+    assert store.has_waiting_jobs()
     with Store(address) as other:
         again = taken(other, "second")
         assert (again.job.id, again.job.fence) == (job.id, 2)
@@ -181,7 +181,7 @@ def test_a_worker_that_is_gone_does_not_look_alive_when_the_clock_was_set(
 
 def test_jumps_are_told_from_delays_and_from_sleep() -> None:
     here = 100.0
-    jumps = Jumps(lambda: here)
+    jumps = ClockJumps(lambda: here)
     assert jumps.is_steady(5000.0)
     for passed, there, settled in (
         (10.0, 5010.0, True),

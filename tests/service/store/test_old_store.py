@@ -81,5 +81,5 @@ def test_a_job_of_an_old_store_without_designs_says_why(client: httpx.Client) ->
 
 
 def test_the_version_that_opens_at_once_is_that_of_the_last_migration() -> None:
-    _, scripts = schema_version._alembic()
+    _, scripts = schema_version._alembic_config_and_scripts()
     assert scripts.get_current_head() == schema_version.LATEST

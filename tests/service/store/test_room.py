@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.service.store import Limits, Store
 from slidercrank.service.store.database import Full
-from slidercrank.service.store.database_clock import SETTLING, Jumps
+from slidercrank.service.store.database_clock import SETTLING, ClockJumps
 from slidercrank.service.workers.heartbeat import DEAF, Budget, Heartbeat
 from tests.service.made_up_search import until
 from tests.service.store.contents import add, end_lease, progress, same, search_record, taken
@@ -45,8 +45,14 @@ def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Sto
             assert not heartbeat.lost
     assert claim.waited > 0.0
     goes_on = store.job(job.id)
-    assert (goes_on.state, goes_on.reason, goes_on.fence, goes_on.attempts, goes_on.records) == ("running", "", 1, 0, 1)
-    assert same(claim.records()[0], large_record(1))
+    assert (goes_on.state, goes_on.reason, goes_on.fence, goes_on.attempts, goes_on.records) == (
+        "running",
+        "",
+        1,
+        0,
+        1,
+    )
+    assert same(claim.evaluation_records()[0], large_record(1))
 
 
 def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(store: Store, address: str) -> None:
@@ -80,7 +86,7 @@ def test_another_worker_goes_on_with_a_job_whose_worker_died_on_a_full_disk(
     add(store)
     taken(store, lease=LEASE).keep_record(large_record(1))
     disk.fill(to_the_last_byte=True)
-    until(store.has_waiting)
+    until(store.has_waiting_jobs)
     with pytest.raises(Full):
         store.claim("second")
     disk.empty()
@@ -99,7 +105,7 @@ def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(stor
     claim.hand_back("its worker stopped; another one continues")
     waiting = store.job(job.id)
     assert (waiting.state, waiting.records, waiting.attempts) == ("queued", 1, 0)
-    assert [same(one, search_record(1)) for one in store.records(job.id)] == [True]
+    assert [same(one, search_record(1)) for one in store.evaluation_records(job.id)] == [True]
 
 
 def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
@@ -118,7 +124,7 @@ def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
 
 def test_claims_settle_after_a_full_disk_as_after_a_jump() -> None:
     here = 100.0
-    jumps = Jumps(lambda: here)
+    jumps = ClockJumps(lambda: here)
     assert not jumps.is_steady(5000.0, last_full=here - 0.9 * SETTLING)
     assert jumps.is_steady(5000.0, last_full=here - SETTLING)
 
@@ -127,9 +133,9 @@ def test_time_without_room_does_not_count_as_time_of_the_search() -> None:
     waited = 20.0
     budget = Budget(Limits(seconds=60.0), waited=lambda: waited)
     budget._began -= 70.0
-    assert not budget.spent()
+    assert not budget.is_spent()
     waited = 9.0
-    assert budget.spent()
+    assert budget.is_spent()
 
 
 def test_a_search_that_waits_for_room_does_not_count_as_deaf(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:

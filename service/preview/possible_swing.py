@@ -27,9 +27,9 @@ from ...optimise.job.raw_tables import table_in
 from ...optimise.problem.constraint_violation import constraints_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
-from .feasibility import PATIENCE, Ends, example_design, lengths_of, run_within
 from .partial_job import ranges_of, requirement_names
-from .samples import Screening, designs_of, screened_samples
+from .possible_values import PATIENCE, Ends, example_design, lengths_of, run_within
+from .samples import Screening, sampled_designs, screened_samples
 
 Array = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> P
 
 def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: tuple[str, ...]) -> PossibleSwing:
     sign = -1.0 if light.mechanism.nominal.branch == "crossed" else 1.0
-    box, is_uniform = designs_of(replace(light, constraints=()))
+    box, is_uniform = sampled_designs(replace(light, constraints=()))
     turning = swings_without_dead_point(light.mechanism, swing, box)
     designs, good = sample.designs, sample.is_feasible
     closes = np.isfinite(sample.violation)
@@ -130,8 +130,8 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
         branch=sign,
         closing=float(turning[is_uniform].mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
-        feasible=sample.feasible,
-        sampled=sample.sampled,
+        feasible=sample.feasible_fraction,
+        sampled=sample.uniform_sample_count,
         met_by_all=sample.met_by_all,
         example=lengths_of(example),
         example_feasible=bool(good.any()),
@@ -145,7 +145,7 @@ def _possible_lever(problem: Problem) -> PossibleSwing | None:
     if swing is None:
         return None
     light = replace(problem, objectives=(Objective(quantity=CYLINDER_TRAVEL.name, sense="minimise"),))
-    box, is_uniform = designs_of(replace(light, constraints=()))
+    box, is_uniform = sampled_designs(replace(light, constraints=()))
     passing = lever_passes(light.mechanism, swing, box)
     screening = run_within(PATIENCE, lambda: screened_samples(light))
     checked = light if screening is not None else replace(light, constraints=())
@@ -162,8 +162,8 @@ def _possible_lever(problem: Problem) -> PossibleSwing | None:
         branch=1.0,
         closing=float(passing[is_uniform].mean()),
         travel=(float(travel.min()), float(travel.max())) if len(travel) else None,
-        feasible=sample.feasible,
-        sampled=sample.sampled,
+        feasible=sample.feasible_fraction,
+        sampled=sample.uniform_sample_count,
         met_by_all=sample.met_by_all,
         example=lengths_of(example),
         example_feasible=bool(good.any()),

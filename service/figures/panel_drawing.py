@@ -56,7 +56,7 @@ def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, 
     tall = figure_panels.height - (_GAP if figure_panels.stacked else _AXES_GAP)
     head = _HEAD + (_GAP - 0.3 if figure_panels.stacked and figure_panels.subtitle else 0.0)
     figure = style.new_figure(sum(widths), rows * figure_panels.height + head + space_above)
-    style.heading(
+    style.write_heading(
         figure, *(format_text(text, system, printed=True) for text in (figure_panels.title, figure_panels.subtitle))
     )
     for index, panel in enumerate(figure_panels.panels):
@@ -67,7 +67,7 @@ def draw_panel_figure(figure_panels: PanelFigure, system: System = "metric", *, 
     return figure
 
 
-def figure_of(source: FigureSource, system: System = "metric") -> Figure:
+def draw_figure(source: FigureSource, system: System = "metric") -> Figure:
     """Return a finished figure unchanged, or draw panels or a function's figure in a unit system."""
     if isinstance(source, Figure):
         return source
@@ -75,8 +75,8 @@ def figure_of(source: FigureSource, system: System = "metric") -> Figure:
 
 
 def save_figure(source: FigureSource, path: Path, system: System = "metric") -> None:
-    """Write the result of `figure_of` as PNG."""
-    style.save(figure_of(source, system), path)
+    """Write the result of `draw_figure` as PNG."""
+    style.save_png(draw_figure(source, system), path)
 
 
 def draw_panel(axes: Axes, panel: Panel, system: System = "metric", *, has_x_title: bool = True) -> None:

@@ -36,7 +36,7 @@ def file_endpoint_options(media_type: str, *refusals: int) -> dict[str, Any]:
     return {"response_class": Response, "responses": responses}
 
 
-def download(content: str | bytes, media_type: str, name: str, *, policy: str = "") -> Response:
+def download_response(content: str | bytes, media_type: str, name: str, *, policy: str = "") -> Response:
     """Return a file for a browser to save under a name. policy: security policy (CSP) if a browser opens it anyway."""
     headers = {"Content-Disposition": f'attachment; filename="{name}"'}
     if policy:
@@ -44,8 +44,8 @@ def download(content: str | bytes, media_type: str, name: str, *, policy: str = 
     return Response(content, media_type=media_type, headers=headers)
 
 
-def _file(stored_front: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
-    return download(content, media_type, f"{slug(stored_front.result.name)}-{stored_front.job.id}.{ending}")
+def _front_file_response(stored_front: StoredFront, ending: str, media_type: str, content: str | bytes) -> Response:
+    return download_response(content, media_type, f"{slug(stored_front.result.name)}-{stored_front.job.id}.{ending}")
 
 
 @router.get("/jobs/{number}/export.csv", **file_endpoint_options("text/csv"))
@@ -55,7 +55,7 @@ def export_csv(stored_front: FrontDep, units: UnitsParameter = "metric") -> Resp
     Text cells that a spreadsheet would read as a formula begin with an apostrophe. Infinity is written inf.
     """
     content = csv_text(numbered_rows(convert_rows(stored_front.result.designs, units)), spreadsheet=True)
-    return _file(stored_front, "csv", "text/csv; charset=utf-8", content)
+    return _front_file_response(stored_front, "csv", "text/csv; charset=utf-8", content)
 
 
 @router.get("/jobs/{number}/export.json", **file_endpoint_options("application/json"))
@@ -63,7 +63,7 @@ def export_json(stored_front: FrontDep, units: UnitsParameter = "metric") -> Res
     """Return the whole front as `slidercrank export --json` does, but on one line."""
     result = convert_result(stored_front.result, units, None if units == "metric" else stored_front.problem)
     content = to_json(result.record(), inf_nan_mode="null")  # takes a tenth of the time of the `json` module
-    return _file(stored_front, "json", "application/json", content)
+    return _front_file_response(stored_front, "json", "application/json", content)
 
 
 @router.get("/jobs/{number}/export.parquet", **file_endpoint_options("application/vnd.apache.parquet", 501))
@@ -75,4 +75,4 @@ def export_parquet(stored_front: FrontDep, units: UnitsParameter = "metric") -> 
 
     out = io.BytesIO()
     pd.DataFrame(convert_rows(stored_front.result.designs, units)).to_parquet(out, engine="pyarrow", index=False)
-    return _file(stored_front, "parquet", "application/vnd.apache.parquet", out.getvalue())
+    return _front_file_response(stored_front, "parquet", "application/vnd.apache.parquet", out.getvalue())

@@ -18,7 +18,7 @@ from ...objectives.tables.swing_curves import POINTS
 from ..drawings.lever_parts import lever_extent, lever_shapes
 from ..render.blocks import Value, joined, words
 from .panel_figure import CRANK_ANGLE, DASHED, Line, Panel, PanelFigure
-from .swing import figure_below_machine
+from .swing_figure import figure_below_machine
 
 _X = "lever angle, deg"
 

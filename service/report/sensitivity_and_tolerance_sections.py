@@ -13,7 +13,7 @@ from ...objectives.kinds import System, metric_unit_in
 from ..questions.sensitivity.figure import tornado_figure, tornado_rows
 from ..questions.tolerances.analysis import PositionError, numbers
 from ..questions.tolerances.figure import error_bands, tolerances_figure
-from ..render.numerals import format_cell, length
+from ..render.numerals import format_cell, format_length
 from .document import Block, Facts, Paragraph, Picture, Section, Table
 from .subject import Subject
 
@@ -55,18 +55,18 @@ def _tolerance_facts(record: Mapping[str, Any], system: System) -> dict[str, lis
         size, angle = record[f"{name}_mm"], record[f"{name}_angle_deg"]
         if size is None:
             return "undefined: a linkage within the tolerances does not rotate fully"
-        return f"{length(size, system, 6)} at {format_cell(angle)} deg"
+        return f"{format_length(size, system, 6)} at {format_cell(angle)} deg"
 
     spread = record["monte_carlo"]["percentiles_greatest_mm"]
-    percents = [f"{percent} % within {length(value, system, 6)}" for percent, value in spread.items()]
+    percents = [f"{percent} % within {format_length(value, system, 6)}" for percent, value in spread.items()]
     return {
         "Worst case, first order": [size_and_angle("worst_case")],
         "Worst case, exact": [size_and_angle("exact_worst_case")],
         "Root-sum-square": [size_and_angle("root_sum_square")],
         "Random machines": percents or ["none that rotates fully"],
         "Yield": [
-            f"{format_cell(item['yield_percent'])} % within {length(item['limit_mm'], system, 6)} ({item['limit']})"
-            for item in record["yields"]
+            f"{format_cell(one['yield_percent'])} % within {format_length(one['limit_mm'], system, 6)} ({one['limit']})"
+            for one in record["yields"]
         ],
     }
 
@@ -76,7 +76,9 @@ def _source_table(record: PositionError, system: System) -> Table:
     rows = tuple(
         (
             str(row["source"]),
-            f"{format_cell(row['limit_deg'])} deg" if row["limit_mm"] is None else length(row["limit_mm"], system, 6),
+            f"{format_cell(row['limit_deg'])} deg"
+            if row["limit_mm"] is None
+            else format_length(row["limit_mm"], system, 6),
             format_cell(row["contribution_mm"] * factor),
             f"{row['share_of_worst_case_percent']:.1f}",
             f"{row['share_of_variance_percent']:.1f}",

@@ -11,7 +11,7 @@ import typer
 
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
 from ..questions.inputs import Input
-from ..questions.typed_input import TypedInput
+from ..questions.plain_input import PlainInput
 from ..text.screen import show_activity
 
 _Command = Callable[..., None]
@@ -20,7 +20,7 @@ _Command = Callable[..., None]
 def option_of(item: Input) -> inspect.Parameter:
     """Return the command-line option for an input."""
     least, has_default = None, False
-    if isinstance(item, TypedInput):
+    if isinstance(item, PlainInput):
         kind: Any = item.type if get_origin(item.type) is None else list[str]
         default, metavar, least, text = item.value, item.metavar, item.least, item.help
         has_default = bool(item.usual)

@@ -22,9 +22,9 @@ from ..text.design_options import Selection
 from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Units, option_value, require_ending
 from ..text.screen import console, print_message, print_output, show_activity
 from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
-from .ending import NoDesigns, end_without_design
+from .exit_and_interruption import NoDesigns, end_without_design
 from .optimise import show_files
-from .run_choice import Choice, Where, result_in_units, run_of
+from .run_choice import Choice, Where, folder_and_result, result_in_units
 
 
 def front(
@@ -44,12 +44,12 @@ def front(
 
     --knee, --topsis and --lexicographic select among the designs that meet --where; --design names one.
     """
-    folder, result = run_of(run, runs)
+    folder, result = folder_and_result(run, runs)
     if not result.designs:
         raise NoDesigns(result)
     chosen_columns = find_columns(columns, list(result.designs[0])) if columns else None
     chosen, conditions = selection.rows(result), selection.where
-    picked = choice.row(result, chosen) if choice.design is None else choice.number(result, run, conditions) - 1
+    picked = choice.row(result, chosen) if choice.design is None else choice.design_number(result, run, conditions) - 1
     if picked is not None:
         chosen = [picked]
     shows_trade_offs = not conditions and (
@@ -158,11 +158,11 @@ def export(
         require_ending(option, file, *_FILES[option])
     for option, name in (("--csv", csv), ("--json", json)):
         require_ending(option, None if name in (None, "-") else Path(str(name)), option.replace("--", "."))
-    folder, result = run_of(run, runs)
+    folder, result = folder_and_result(run, runs)
     contents: dict[Path, bytes] = {}
     if files:
         of_table = choice.design is not None and tables.is_any_requested
-        number = choice.number(result, run, None if of_table else conditions)
+        number = choice.design_number(result, run, None if of_table else conditions)
         stored = stored_design(problem_of(folder, result), result, number)
         named = {"name": result.name, "design": f"design {number}"}
         with show_activity("drawing"):
@@ -207,16 +207,16 @@ def report(
     if out is not None and pdf and out.suffix.lower() in (".html", ".htm"):
         raise InputError(f"with --pdf the file name must end in .pdf; got --out {out}; rename it, or leave --pdf out")
     require_ending("--out", out, ".html", ".htm", ".pdf")
-    folder, result = run_of(run, runs)
-    number = choice.number(result, run, where)
+    folder, result = folder_and_result(run, runs)
+    number = choice.design_number(result, run, where)
     pdf = pdf or (out is not None and out.suffix.lower() == ".pdf")
     ending = "pdf" if pdf else "html"
     file = out if out is not None else Path(f"{slug(folder.name)}-design-{number}.{ending}")
     with show_activity("writing the report"):
-        from ..designs.measured_file import measured_text
+        from ..designs.measured_curves_file import text_of_measured_file
         from ..report.run_report import run_report
 
-        text = None if measured is None else measured_text(measured)
+        text = None if measured is None else text_of_measured_file(measured)
         content = run_report(folder, result, number, pdf=pdf, units=units, measured=text)
     write_file(file, content)
     print_message(f"report: {file}")

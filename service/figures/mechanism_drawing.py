@@ -14,8 +14,8 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, metric_unit_in
 from ..drawings.linkage_shapes import LinkageSizes, fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Point
-from ..render.numerals import format_number, length
-from .painting import paint_shapes, show_rectangle
+from ..render.numerals import format_length, format_number
+from .shape_painting import paint_shapes, show_rectangle
 from .style import BLUE, INK, MUTED, SMALL, VERMILION
 
 
@@ -29,9 +29,9 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     pin, slider = pin_positions(linkage, least_transmission_crank_angle(linkage))
     paint_shapes(axes, [*fixed_shapes(linkage, look, bearing_below=pin[1] > 0.0), *moving_shapes(pin, slider, look)])
     _draw_rotation(axes, look.crank * linkage.sign, mechanism.speed * linkage.sign)
-    _transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
-    _dimension_stroke(axes, look, size, system)
-    _dimension_offset(axes, left, look.offset, size, system)
+    _draw_transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
+    _draw_stroke_dimension(axes, look, size, system)
+    _draw_offset_dimension(axes, left, look.offset, size, system)
     scale_bar(axes, left, low - 0.13 * size, size, system)
     show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
@@ -61,7 +61,7 @@ def _draw_rotation(axes: Axes, r: float, speed: float) -> None:
     )
 
 
-def _transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -> None:
+def _draw_transmission_angle(axes: Axes, pin: Point, slider: Point, degrees: float) -> None:
     """Mark the angle between the rod and the normal to the slider line, at the slider pin."""
     rod_angle = math.degrees(math.atan2(pin[1] - slider[1], pin[0] - slider[0]))
     normal = -90.0 if pin[1] < slider[1] else 90.0
@@ -88,7 +88,7 @@ def _annotate(axes: Axes, text: str, at: Point, away: Point, colour: str, **styl
     axes.annotate(text, xy=at, xytext=away, textcoords="offset points", fontsize=SMALL, color=colour, zorder=8, **style)
 
 
-def _dimension_stroke(axes: Axes, look: LinkageSizes, size: float, system: System) -> None:
+def _draw_stroke_dimension(axes: Axes, look: LinkageSizes, size: float, system: System) -> None:
     """Dimension the stroke on the side of the guide away from the crank pivot."""
     (inner, e), (outer, _) = look.inner, look.outer
     side = 1.0 if e >= 0.0 else -1.0
@@ -96,17 +96,17 @@ def _dimension_stroke(axes: Axes, look: LinkageSizes, size: float, system: Syste
     for x in (inner, outer):
         axes.plot([x, x], [e, y + side * 0.015 * size], color=BLUE, linewidth=0.6, zorder=2)
     _draw_arrow(axes, (inner, y), (outer, y))
-    text, middle = f"stroke {length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
+    text, middle = f"stroke {format_length(abs(outer - inner), system)}", (0.5 * (inner + outer), y)
     _annotate(axes, text, middle, (0, 3.0 * side), BLUE, ha="center", va="bottom" if side > 0.0 else "top")
 
 
-def _dimension_offset(axes: Axes, left: float, e: float, size: float, system: System) -> None:
+def _draw_offset_dimension(axes: Axes, left: float, e: float, size: float, system: System) -> None:
     """Dimension the offset, unless it is too small for arrows."""
     if abs(e) < 0.06 * size:
         return
     x = left - 0.045 * size
     _draw_arrow(axes, (x, 0.0), (x, e))
-    text = f"offset {length(e, system)}"
+    text = f"offset {format_length(e, system)}"
     _annotate(axes, text, (x, 0.5 * e), (-3.0, 0.0), BLUE, ha="right", va="center", rotation=90)
 
 

@@ -16,15 +16,15 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust_problem import robust_quantities
 from ..designs.changed_design import Variation
 from ..designs.stored_designs import StoredDesign
-from ..resources.garbage import without_garbage_collection
+from ..resources.garbage_collection import without_garbage_collection
 from .comparison import robustness_figure
 from .datasheet import design_datasheet
 from .design_marks import marked_designs
-from .lever import lever_datasheet
-from .parallel import parallel_coordinates
-from .scatter import scatter_matrix
-from .style import save
-from .swing import swing_figure
+from .lever_figure import lever_datasheet
+from .parallel_coordinates import parallel_coordinates
+from .scatter_matrix import scatter_matrix
+from .style import save_png
+from .swing_figure import swing_figure
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ def front_figures(front: ParetoFront, system: System = "metric") -> list[FrontFi
     return [*figures, *datasheets]
 
 
-def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
+def write_front_figures(front: ParetoFront, folder: Path, system: System = "metric") -> Iterator[Path]:
     """Write the figures of a front that has designs; yield each file as soon as it is written.
 
     Writes those of `front_figures`; coinciding ones are copied. Adds robust.png for a robust problem with at least two
@@ -67,7 +67,7 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
     for item in front_figures(front, system):
         first, *copies = (folder / f"{name}.png" for name in item.names)
         with without_garbage_collection():
-            save(item.draw(), first)
+            save_png(item.draw(), first)
         yield first
         for copy in copies:
             shutil.copyfile(first, copy)
@@ -75,7 +75,7 @@ def draw_front(front: ParetoFront, folder: Path, system: System = "metric") -> I
     if robust_quantities(front.problem) and len(front.objectives) > 1:
         figure = robustness_figure(front)
         if figure is not None:
-            save(figure, folder / "robust.png")
+            save_png(figure, folder / "robust.png")
             yield folder / "robust.png"
 
 

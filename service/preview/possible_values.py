@@ -30,7 +30,7 @@ from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.polish import polish
 from ...optimise.search.sampling import first_samples, generator
 from .partial_job import depends_on_dimensions_only
-from .samples import BATCH, SAMPLES, designs_of, screened_samples
+from .samples import BATCH, SAMPLES, sampled_designs, screened_samples
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
@@ -83,7 +83,7 @@ class Possible:
 def possible_values(problem: Problem) -> Possible:
     """Return the values that the ranges of a problem from `partial_job.geometry_problem` allow."""
     free = replace(problem, constraints=())
-    box, is_uniform = designs_of(free)
+    box, is_uniform = sampled_designs(free)
     turning = _rotates_fully(box)
     uniform = box[turning & is_uniform]
     light, costly = _dimensional_problem(problem)
@@ -100,8 +100,8 @@ def possible_values(problem: Problem) -> Possible:
         time_ratio=_possible_ends(light, "time_ratio"),
         transmission_angle=_possible_ends(light, "transmission_angle"),
         slow_strokes=_slow_strokes(light, sample.designs[feasible] if feasible.any() else box[turning]),
-        feasible=sample.feasible,
-        sampled=sample.sampled,
+        feasible=sample.feasible_fraction,
+        sampled=sample.uniform_sample_count,
         met_by_all=sample.met_by_all,
         hardest=hardest,
         nearest=None
@@ -280,10 +280,10 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
 def example_design(designs: Array, violation: Array, fallback: Array) -> Array | None:
     """Return the most central feasible design, or else the least infeasible, or else the middle of the fallback."""
     if (feasible := violation <= FEASIBLE).any():
-        return _middle_of(designs[feasible])
+        return _most_central_design(designs[feasible])
     if np.isfinite(violation).any():
-        return _middle_of(designs[[int(np.nanargmin(violation))]])
-    return _middle_of(fallback) if len(fallback) else None
+        return _most_central_design(designs[[int(np.nanargmin(violation))]])
+    return _most_central_design(fallback) if len(fallback) else None
 
 
 def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
@@ -291,7 +291,7 @@ def lengths_of(design: Array | None) -> tuple[float, float, float] | None:
     return None if design is None else (float(design[0]), float(design[1]), float(design[2]))
 
 
-def _middle_of(designs: Array) -> Array:
+def _most_central_design(designs: Array) -> Array:
     """Return the design nearest to the centre of some designs, with each number on its own scale."""
     size = np.abs(designs).max(axis=0) + 1e-300
     scaled = designs / size

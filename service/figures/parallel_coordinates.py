@@ -16,7 +16,7 @@ from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ..render.numerals import format_on_scale
 from .design_marks import Axis, dimension_axes, marked_designs, objective_axis
-from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colour_map, heading, new_figure, padded_limits
+from .style import FRAME, INK, MUTED, SMALL, TEXT, add_axes, colour_map, new_figure, padded_limits, write_heading
 
 _DASHES = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (5, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (2.5, 1)))
 _STEP, _HEIGHT, _SIDE = 1.45, 4.1, 0.75  # inches: between axes, along the axes, beside them
@@ -85,7 +85,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         columnspacing=2.0,
     )
     text = f"Pareto front, {counted(len(front), 'design')}; lines coloured by "
-    heading(figure, front.problem.name, text + objectives[0].title.split(",")[0], left=0.2)
+    write_heading(figure, front.problem.name, text + objectives[0].title.split(",")[0], left=0.2)
     return figure
 
 

@@ -20,11 +20,11 @@ from ...objectives.tables.swing_curves import (
 )
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
-from ..render.blocks import dimensions, joined
-from .drawing import scale_bar
-from .painting import paint_shapes, show_rectangle
+from ..render.blocks import dimensions_text, joined
+from .mechanism_drawing import scale_bar
+from .panel_drawing import draw_panel_figure
 from .panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure
-from .panels import draw_panel_figure
+from .shape_painting import paint_shapes, show_rectangle
 from .style import add_axes
 
 _TALLEST = 3.2  # inches, for the drawing
@@ -85,7 +85,7 @@ def swing_panels(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> PanelF
     ]
     return PanelFigure(
         f"Swing driven at the {swing.driver}",
-        dimensions(linkage),
+        dimensions_text(linkage),
         tuple(panels),
         columns=2 if len(panels) > 3 else 1,
         width=5.2,

@@ -14,7 +14,7 @@ from ...model.errors import InputError, NotFound
 from .bookmark_history import HistoryEntry, entries_of, record_changes, record_deletion
 from .database import Database
 from .database_clock import now
-from .job_rows import the_job
+from .job_rows import job_by_number
 from .schema import bookmarks, wishes
 from .serialisation import database_text
 
@@ -80,7 +80,7 @@ class Bookmark:
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:
     """Return the bookmarks of a job, oldest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
-        the_job(connection, job)
+        job_by_number(connection, job)
         history = entries_of(connection, job)
         return [
             replace(bookmark, history=tuple(entry for entry in history if entry.bookmark == bookmark.number))
@@ -103,7 +103,7 @@ def bookmark_design(
     without a name is called "Kept 3" and so on.
     """
     with store.writing() as connection:
-        the_job(connection, job, lock=True)
+        job_by_number(connection, job, lock=True)
         stored = _all_bookmarks(connection, job)
         known = next((bookmark for bookmark in stored if bookmark.is_of(variant, dimensions)), None)
         number = known.number if known else max((bookmark.number for bookmark in stored), default=0) + 1
@@ -121,27 +121,27 @@ def bookmark_design(
 def update_bookmark(store: Database, job: int, number: int, **remarks: Unpack[Remarks]) -> Bookmark:
     """Change a bookmark and return it, without its history; only one can be decided."""
     with store.writing() as connection:
-        the_job(connection, job, lock=True)
+        job_by_number(connection, job, lock=True)
         return _change_bookmark(connection, job, number, dict(remarks))
 
 
 def remove_bookmark(store: Database, job: int, number: int, author: str = "") -> None:
     """Delete a bookmark. Raises `NotFound`."""
     with store.writing() as connection:
-        the_job(connection, job, lock=True)
-        record_deletion(connection, _the_bookmark(connection, job, number), author)
-        connection.execute(delete(bookmarks).where(_is_bookmark(job, number)))
+        job_by_number(connection, job, lock=True)
+        record_deletion(connection, _bookmark_by_number(connection, job, number), author)
+        connection.execute(delete(bookmarks).where(_is_row_of_bookmark(job, number)))
 
 
 def _change_bookmark(connection: Connection, job: int, number: int, remarks: Mapping[str, Any]) -> Bookmark:
-    before = _the_bookmark(connection, job, number)
+    before = _bookmark_by_number(connection, job, number)
     if remarks.get("decided"):
         connection.execute(update(bookmarks).where(bookmarks.c.job == job).values(decided=False))
     values = {name: database_text(value) if isinstance(value, str) else value for name, value in remarks.items()}
     author = values.pop("author", "")
     if values:
-        connection.execute(update(bookmarks).where(_is_bookmark(job, number)).values(values))
-    after = _the_bookmark(connection, job, number)
+        connection.execute(update(bookmarks).where(_is_row_of_bookmark(job, number)).values(values))
+    after = _bookmark_by_number(connection, job, number)
     record_changes(connection, before, after, author)
     return after
 
@@ -151,12 +151,12 @@ def _all_bookmarks(connection: Connection, job: int) -> list[Bookmark]:
     return [_bookmark_from(row) for row in rows]
 
 
-def _is_bookmark(job: int, number: int) -> Any:
+def _is_row_of_bookmark(job: int, number: int) -> Any:
     return and_(bookmarks.c.job == job, bookmarks.c.number == number)
 
 
-def _the_bookmark(connection: Connection, job: int, number: int) -> Bookmark:
-    row = connection.execute(select(bookmarks).where(_is_bookmark(job, number))).first()
+def _bookmark_by_number(connection: Connection, job: int, number: int) -> Bookmark:
+    row = connection.execute(select(bookmarks).where(_is_row_of_bookmark(job, number))).first()
     if row is None:
         raise NotFound(f"job {job} has no bookmark {number}; see the bookmarks of the job")
     return _bookmark_from(row)
@@ -182,7 +182,7 @@ class MadeWish:
 def wishes_of(store: Database, job: int) -> list[MadeWish]:
     """Return the wishes recorded for a job, newest first. Raises `NotFound` for a missing job."""
     with store.reading() as connection:
-        the_job(connection, job)
+        job_by_number(connection, job)
         rows = connection.execute(select(wishes).where(wishes.c.job == job).order_by(wishes.c.number.desc()))
         return [
             MadeWish(
@@ -199,7 +199,7 @@ def note_wish(store: Database, job: int, stated: Wished, design: int | None) -> 
     """Record a wish for the front of a job as the latest, replacing an identical earlier one."""
     text = json.dumps({name: list(wish) for name, wish in sorted(stated.items())})
     with store.writing() as connection:
-        the_job(connection, job, lock=True)
+        job_by_number(connection, job, lock=True)
         of_job = wishes.c.job == job
         last = connection.execute(select(func.max(wishes.c.number)).where(of_job)).scalar() or 0
         same = and_(wishes.c.wishes == text, wishes.c.design.is_(None) if design is None else wishes.c.design == design)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ..designs.choice_options import require_single_choice
+from ..designs.design_selection_options import require_single_choice
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.selection import plain_number
 from ..runs.stored_runs import problem_of
 from ..text.options import Dimensions
-from .ending import NoDesigns
-from .run_choice import run_of
+from .exit_and_interruption import NoDesigns
+from .run_choice import folder_and_result
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
@@ -115,7 +115,7 @@ def design_of_run(
             f"dimensions must not be given with --design, whose design has its own; got --design and {besides[0]}; "
             "leave out one of the two"
         )
-    folder, result = run_of(str(run), place)
+    folder, result = folder_and_result(str(run), place)
     if not result.designs:
         raise NoDesigns(result)
     require_single_choice(design, result, has_other_choice=False)

@@ -12,7 +12,7 @@ from pathlib import Path
 from sqlalchemy import ColumnElement, Connection, FromClause, func, select, text
 
 from ...model.errors import InputError, StoreError
-from ..runs.run_folder import sync
+from ..runs.run_folder import flush_to_disk
 from .database import Database, Unavailable
 from .database_clock import now
 from .job_rows import require_checksum
@@ -155,9 +155,9 @@ def back_up(database: Database, target: Path) -> None:
             verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if verdict != "ok":
             raise StoreError(f"a backup must be whole; that of {database.name} gave: {verdict}; run slidercrank doctor")
-        sync(draft)
+        flush_to_disk(draft)
         draft.rename(target)
-        sync(target.parent)
+        flush_to_disk(target.parent)
     except (sqlite3.Error, OSError) as error:
         reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
         raise StoreError(

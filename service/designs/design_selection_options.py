@@ -46,8 +46,8 @@ def chosen_row(
         raise InputError(f"a design must be chosen in one way; got {' and '.join(ways)}; keep one of them")
     if not ways:
         return None
-    weights = None if topsis is None else _weights(topsis, result.objectives)
-    order = None if lexicographic is None else _order(lexicographic, result.objectives)
+    weights = None if topsis is None else _parse_weights(topsis, result.objectives)
+    order = None if lexicographic is None else _parse_lexicographic_order(lexicographic, result.objectives)
     if not rows:
         return None
     values, sizes = minimised_values(result)[list(rows)], target_scales(result)
@@ -71,13 +71,13 @@ def target_scales(result: Result) -> list[float]:
     return [abs(objective.target or 0.0) for objective in result.objectives]
 
 
-def _weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
+def _parse_weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
     """Return a weight for each objective, zero for omitted ones."""
     weights = dict.fromkeys(range(len(objectives)), 0.0)
     named: set[int] = set()
     for part in _comma_separated_parts(text, _TOPSIS):
         name, equals, value = part.partition("=")
-        column = _column(name, objectives)
+        column = _position_of_objective(name, objectives)
         weight = plain_number(value)
         if not equals or weight is None or not math.isfinite(weight) or weight < 0.0 or column in named:
             raise InputError(
@@ -89,18 +89,18 @@ def _weights(text: str, objectives: Sequence[StoredObjective]) -> list[float]:
     return list(weights.values())
 
 
-def _order(text: str, objectives: Sequence[StoredObjective]) -> list[tuple[int, float, float]]:
+def _parse_lexicographic_order(text: str, objectives: Sequence[StoredObjective]) -> list[tuple[int, float, float]]:
     """Return objectives in order: column, absolute tolerance (display unit) and tolerance relative to the range."""
     order = []
     for part in _comma_separated_parts(text, _LEXICOGRAPHIC):
         name, colon, value = part.partition(":")
-        column = _column(name, objectives)
-        absolute, share = _tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
+        column = _position_of_objective(name, objectives)
+        absolute, share = _parse_tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
         order.append((column, absolute, share))
     return order
 
 
-def _tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
+def _parse_tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
     from ...objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 
     try:
@@ -121,7 +121,7 @@ def _comma_separated_parts(text: str, example: str) -> list[str]:
     return parts
 
 
-def _column(name: str, objectives: Sequence[StoredObjective]) -> int:
+def _position_of_objective(name: str, objectives: Sequence[StoredObjective]) -> int:
     """Return the position of an objective by its name or its column."""
     name = name.strip()
     for column, objective in enumerate(objectives):

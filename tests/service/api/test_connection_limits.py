@@ -11,8 +11,8 @@ import httpx
 import psutil
 import pytest
 
-from slidercrank.service.api import connections
-from slidercrank.service.api.connections import MOST_HEAD
+from slidercrank.service.api import connection_limits
+from slidercrank.service.api.connection_limits import MOST_HEAD
 from slidercrank.service.store import Store
 from tests.service.api.connected import LIVE, answer, connected, sent, status_of
 from tests.service.api.serving import TOKEN, client_of
@@ -119,7 +119,7 @@ def test_all_of_a_large_body_is_read_before_the_next_request(tmp_path: Path, uni
 
 
 def test_a_body_that_comes_in_large_parts_has_its_time_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(connections, "BODY_SECONDS", 0.3)
+    monkeypatch.setattr(connection_limits, "BODY_SECONDS", 0.3)
     head = f"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer {TOKEN}\r\n".encode()
     head += b"Content-Type: application/json\r\nContent-Length: 1000000\r\n\r\n"
     with Store(tmp_path / "store.db") as store, client_of(store, token=TOKEN) as client, connected(client) as there:
@@ -136,8 +136,8 @@ def test_a_body_that_comes_in_large_parts_has_its_time_too(tmp_path: Path, monke
 def test_a_request_that_never_ends_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(connections, "HEAD_SECONDS", 0.3)
-    monkeypatch.setattr(connections, "BODY_SECONDS", 0.5)
+    monkeypatch.setattr(connection_limits, "HEAD_SECONDS", 0.3)
+    monkeypatch.setattr(connection_limits, "BODY_SECONDS", 0.5)
     post = b"POST /api/v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\n1"
     with Store(tmp_path / "store.db") as store, client_of(store) as client:
         with connected(client) as silent, connected(client) as half, connected(client) as slow:
@@ -159,8 +159,8 @@ def test_a_request_that_never_ends_is_given_up(
 def test_half_open_connections_keep_nobody_out(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 20)
-    monkeypatch.setattr(connections, "HEAD_SECONDS", 1e6)  # whoever waits for them is never answered
+    monkeypatch.setattr(connection_limits, "MOST_CONNECTIONS", 20)
+    monkeypatch.setattr(connection_limits, "HEAD_SECONDS", 1e6)  # whoever waits for them is never answered
     with Store(tmp_path / "store.db") as store, client_of(store) as client, contextlib.ExitStack() as stack:
         assert client.get("/health/live").status_code == 200
         for number in range(100):
@@ -176,7 +176,7 @@ def test_half_open_connections_keep_nobody_out(
 def test_where_all_connections_are_being_answered_a_new_one_is_told_so(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 3)
+    monkeypatch.setattr(connection_limits, "MOST_CONNECTIONS", 3)
     stream = b"GET /api/v1/jobs/1/events HTTP/1.1\r\nHost: localhost\r\nAccept: text/event-stream\r\n\r\n"
     with Store(tmp_path / "store.db") as store, client_of(store) as client, contextlib.ExitStack() as stack:
         add(store)

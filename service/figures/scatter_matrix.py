@@ -14,7 +14,18 @@ from ...objectives.count_text import counted
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .design_marks import Axis, Mark, dimension_axes, marked_designs, objective_axis, with_better_arrow
-from .style import INK, SMALL, TEXT, add_axes, colour_map, heading, legend_at, new_figure, padded_limits, style_axes
+from .style import (
+    INK,
+    SMALL,
+    TEXT,
+    add_axes,
+    colour_map,
+    legend_at,
+    new_figure,
+    padded_limits,
+    style_axes,
+    write_heading,
+)
 
 MOST = 6
 """Maximum number of drawn objectives: with more, the panels are too small to read."""
@@ -36,7 +47,9 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     size = _LEFT + count * side + (count - 1) * _GAP + _RIGHT
     figure = new_figure(size, size - _LEFT - _RIGHT + _BOTTOM + _TOP)
     labels = [with_better_arrow(axis.title, axis.better) for axis in axes]
-    for panel, x_column, y_column in triangle(figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP):
+    for panel, x_column, y_column in triangle_of_panels(
+        figure, labels, left=_LEFT, bottom=_BOTTOM, side=side, gap=_GAP
+    ):
         points = _draw_panel(panel, axes[x_column], axes[y_column], axes[0].values, marked)
     # The empty upper right holds legend and colour scale. From five objectives on, two panels one above the other are
     # free.
@@ -48,7 +61,7 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     return figure
 
 
-def triangle(
+def triangle_of_panels(
     figure: Figure, labels: Sequence[str], *, left: float, bottom: float, side: float, gap: float
 ) -> Iterator[tuple[Axes, int, int]]:
     """Yield empty panels, each with the label indices of its x and y axes; label the outer panels once drawn.
@@ -122,4 +135,4 @@ def _draw_heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
     text = f"Pareto front, {counted(len(front), 'design')}"
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"
-    heading(figure, front.problem.name, text, left=0.2)
+    write_heading(figure, front.problem.name, text, left=0.2)

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 import typer
 
 from ...model.errors import InfeasibleError
-from ..runs.result import Result, json_text, unsearched_result
+from ..runs.result import Result, infeasible_result, json_text
 from ..text.screen import print_message, print_output
 
 FAULT, WRONG_INPUT, NOTHING_FEASIBLE, NOT_PROVEN, INTERRUPTED = 1, 2, 3, 4, 130
@@ -37,7 +37,7 @@ def print_infeasible_as_json(command: Callable[..., None]) -> Callable[..., None
             command(**given)
         except InfeasibleError as error:
             if given.get("json") is True:
-                result = error.result if isinstance(error, NoDesigns) else unsearched_result(error)
+                result = error.result if isinstance(error, NoDesigns) else infeasible_result(error)
                 print_output(json_text(result.record()))
             raise
 

@@ -18,12 +18,12 @@ _LARGEST = 300_000_000  # bytes: millions of rows
 _NAME = "a measured file"
 
 
-def measured_text(path: Path) -> str:
+def text_of_measured_file(path: Path) -> str:
     """Return the text of a file. Raises `InputError` for a file that cannot be read, is too large or is not text."""
     return text_of(bytes_of(path, f"{_NAME}, {path},", _LARGEST), _NAME)
 
 
-def read_measured(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
+def parse_measured_curves(text: str, mechanism: Mechanism, linkage: Linkage) -> Measured:
     """Return the samples in the text of a file.
 
     Raises `InputError` if the text is not a table, or has impossible values.

@@ -11,7 +11,7 @@ from .inputs import Input
 
 
 @dataclass(frozen=True, kw_only=True)
-class TypedInput(Input):
+class PlainInput(Input):
     """Input with a plain type instead of a physical kind.
 
     type: a number, `str`, a `list` of texts, or a `dict` of texts by name, typed as "name=text" on the command line.
