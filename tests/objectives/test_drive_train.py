@@ -126,10 +126,9 @@ def test_the_motor_is_that_of_an_independent_model_with_rotor_and_lossy_gear(see
     assert value("motor_power", machine, design) == pytest.approx(made.peak(power=True), rel=1e-8)
     assert value("thermal_use", machine, design) == pytest.approx(rms / 5.0, rel=1e-8)
     theta = np.sort(np.random.default_rng(seed).uniform(0.0, made.period, 200))
-    curves = {
-        curve.field: curve.values
-        for curve in cycle_curves(machine, Linkage(*case.design, branch=machine.branch), theta)
-    }
+    crank, rod, offset = case.design
+    linkage = Linkage(crank, rod, offset, branch=machine.branch)
+    curves = {curve.field: curve.values for curve in cycle_curves(machine, linkage, theta)}
     torque, speed = made.torque_and_speed(theta)
     assert curves["motor_torque_Nm"] == pytest.approx(torque, rel=1e-9, abs=1e-9 * float(np.abs(torque).max()))
     assert curves["motor_speed_rpm"] == pytest.approx(speed, rel=1e-12)
