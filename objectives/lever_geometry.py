@@ -4,7 +4,13 @@ from functools import partial
 
 import numpy as np
 
-from ..model.turning_cylinder.closed_forms import dead_point_margin, extension_ratio, transmission_angle, travel
+from ..model.turning_cylinder.closed_forms import (
+    dead_point_margin,
+    extension_ratio,
+    spare_reach,
+    transmission_angle,
+    travel,
+)
 from .kinds import ANGLE, LENGTH, RATIO
 from .lever_quantity import LeverForm
 from .quantity import Domain, Group
@@ -100,15 +106,15 @@ CYLINDER_LENGTH_MARGIN = _length(
     forms=(
         lambda c, _: c.ends[0] - c.closed_length,
         lambda c, _: c.ends[1] - c.closed_length,
-        lambda c, _: c.closed_length + c.stroke - c.ends[0],
-        lambda c, _: c.closed_length + c.stroke - c.ends[1],
+        lambda c, _: spare_reach(c, c.ends[0]),
+        lambda c, _: spare_reach(c, c.ends[1]),
     ),
     least=True,
-    known=("closed_length",),
+    known=("closed_length or dead_length",),
     place=336,
     sentence="The length by which the motion stays off both ends of the cylinder's stroke; negative if it needs more.",
     advice="Without a requirement it is at least 0.",
-    formula="min(L_min - closed length, closed length + stroke - L_max)",
+    formula="min(L_min - closed length, closed length + stroke - L_max), or L_min - dead length - travel",
     example="5 mm",
     better="high",
     signed=True,

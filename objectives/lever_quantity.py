@@ -31,7 +31,7 @@ _PEAKS = 4
 class LeverQuantity(SwingQuantity):
     """A number of a lever's motion.
 
-    known: numbers of its cylinder or arm that it needs. moved_by: drivers of the motions that have it.
+    known: numbers of its cylinder or arm that it needs, or either of two. moved_by: drivers of motions that have it.
     """
 
     known: tuple[str, ...] = field(default=(), compare=False)
@@ -61,7 +61,7 @@ class LeverQuantity(SwingQuantity):
         if consequence == "undefined" and lever is not None:
             for name in self.known:
                 part = "arm" if name == "ram" else "cylinder"
-                if getattr(getattr(lever, part), name) is None:
+                if all(getattr(getattr(lever, part), either) is None for either in name.split(" or ")):
                     words = name.replace("_", " ")
                     return f"it needs the {words} of the {part}; got none; give [{part}] {name}"
             if self.tolerated:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import InputError
+from .loads.load import require_word
 
+Mounting = Literal["clevis", "trunnion"]
 STEEL = 210e9
 """Modulus of elasticity of steel, Pa."""
 
@@ -20,10 +22,12 @@ STEEL = 210e9
 class Cylinder:
     """A single-stage hydraulic or pneumatic cylinder; None for what is not known.
 
-    closed_length: least length between the pins A and B along the line, m. stroke: m. bore, rod: diameters, m.
-    supply_pressure: Pa above that of the other side. seal_friction: N, against the motion. modulus: modulus of
-    elasticity of the piston rod, Pa. barrel_mass, piston_rod_mass: kg, uniform bars as long as the closed cylinder, or
-    as its least length in the swing. length_tolerance: of its length, m.
+    closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: what the closed
+    cylinder is longer than its stroke, m. mounting: a clevis or an eye at the end of the barrel, or a trunnion along
+    it, beyond which the barrel extends, so that the stroke may exceed the closed length; the cylinder pivots on either.
+    bore, rod: diameters, m. supply_pressure: Pa above that of the other side. seal_friction: N, against the motion.
+    modulus: modulus of elasticity of the piston rod, Pa. barrel_mass, piston_rod_mass: kg, uniform bars as long as the
+    closed cylinder, or as its least length in the swing. length_tolerance: of its length, m.
     """
 
     closed_length: float | None = None
@@ -36,25 +40,18 @@ class Cylinder:
     barrel_mass: float = 0.0
     piston_rod_mass: float = 0.0
     length_tolerance: float = 0.0
+    dead_length: float | None = None
+    mounting: Mounting = "clevis"
 
     def __post_init__(self) -> None:
-        for name in tuple(self.__dataclass_fields__)[:4]:
+        require_word("mounting", self.mounting, Mounting)
+        for name in (*tuple(self.__dataclass_fields__)[:4], "dead_length"):
             require_numbers(self, name, phrase=f"the {name.replace('_', ' ')} of a cylinder", above=0.0, unit="m")
         require_numbers(self, "supply_pressure", "modulus", phrase="the {} of a cylinder", above=0.0, unit="Pa")
         require_numbers(self, "seal_friction", phrase="the friction of a seal", least=0.0, unit="N")
         require_numbers(self, "barrel_mass", "piston_rod_mass", phrase="the {} of a cylinder", least=0.0, unit="kg")
         require_numbers(self, "length_tolerance", phrase="the {} of a cylinder", least=0.0, unit="m")
-        if (self.closed_length is None) != (self.stroke is None):
-            given = "no stroke" if self.stroke is None else "no closed length"
-            raise InputError(
-                f"a cylinder needs both a closed length and a stroke, or neither; got {given}; give both, or neither"
-            )
-        if self.stroke is not None and self.closed_length is not None and self.stroke >= self.closed_length:
-            raise InputError(
-                "the stroke of a single-stage cylinder must be less than its closed length; got a stroke of "
-                f"{1e3 * self.stroke:.6g} mm and a closed length of {1e3 * self.closed_length:.6g} mm; shorten the "
-                "stroke"
-            )
+        self._require_lengths_to_agree()
         if self.bore is not None and self.rod is not None and self.rod >= self.bore:
             raise InputError(
                 f"the bore must exceed the piston rod; got a bore of {1e3 * self.bore:.6g} mm and a piston rod of "
@@ -66,16 +63,53 @@ class Cylinder:
                 "give the bore"
             )
 
+    def _require_lengths_to_agree(self) -> None:
+        """Raise `InputError` for lengths that do not belong to one cylinder, or of which one is missing."""
+        if self.dead_length is not None and self.mounting == "trunnion":
+            raise InputError(
+                "a dead length belongs to a cylinder on a clevis, as a barrel extends beyond its trunnion; got "
+                f"{1e3 * self.dead_length:.6g} mm with a trunnion; give closed_length and stroke"
+            )
+        if self.closed_length is not None and self.dead_length is not None:
+            raise InputError(
+                "the closed length is stroke plus dead length; got both a closed length and a dead length; leave out "
+                "one of the two"
+            )
+        if (self.closed_length is None) != (self.stroke is None) and self.dead_length is None:
+            given = "no stroke" if self.stroke is None else "no closed length"
+            raise InputError(
+                f"a cylinder needs both a closed length and a stroke, or neither; got {given}; give both, or neither"
+            )
+        if self.stroke is None or self.closed_length is None or self.mounting == "trunnion":
+            return
+        if self.stroke >= self.closed_length:
+            raise InputError(
+                "the stroke of a single-stage cylinder must be less than its closed length; got a stroke of "
+                f"{1e3 * self.stroke:.6g} mm and a closed length of {1e3 * self.closed_length:.6g} mm; shorten the "
+                'stroke, or for a barrel that extends beyond its pivot set mounting = "trunnion"'
+            )
+
+    def closed_and_stroke(self, travel: float) -> tuple[float, float] | None:
+        """Return closed length and stroke, m; with a dead length alone, those of a cylinder for a travel, m.
+
+        None if neither is known.
+        """
+        stroke = travel if self.stroke is None else self.stroke
+        if self.dead_length is not None:
+            return stroke + self.dead_length, stroke
+        return None if self.closed_length is None else (self.closed_length, stroke)
+
     @property
     def text(self) -> str:
         """Known data of the cylinder, as text."""
-        lengths = (*tuple(self.__dataclass_fields__)[:4], "length_tolerance")
+        lengths = (*tuple(self.__dataclass_fields__)[:4], "dead_length", "length_tolerance")
         given = [(name, 1e3, "mm") for name in lengths] + [("supply_pressure", 1e-5, "bar")]
         given += [("seal_friction", 1.0, "N"), ("barrel_mass", 1.0, "kg"), ("piston_rod_mass", 1.0, "kg")]
         numbers = ((name, getattr(self, name), factor, unit) for name, factor, unit in given)
-        return ", ".join(
+        texts = [
             f"{name.replace('_', ' ')} {factor * number:.6g} {unit}" for name, number, factor, unit in numbers if number
-        )
+        ]
+        return ", ".join([*texts, *(["on a trunnion"] if self.mounting == "trunnion" else [])])
 
     @property
     def areas(self) -> tuple[float, float] | None:
@@ -84,16 +118,17 @@ class Cylinder:
 
     def require_lengths(self, shortest: float, longest: float, remedy: str) -> None:
         """Raise `InputError` unless the cylinder has all lengths between two, m. remedy: last part of the sentence."""
-        if self.closed_length is None or self.stroke is None:
+        known = self.closed_and_stroke(longest - shortest)
+        if known is None:
             return
-        open_length = self.closed_length + self.stroke
-        if shortest < self.closed_length:
+        closed_length, open_length = known[0], sum(known)
+        if shortest < closed_length:
             raise InputError(
                 "the swing must not need a cylinder shorter than its closed length; got a closed length of "
-                f"{1e3 * self.closed_length:.6g} mm, and the swing needs {1e3 * shortest:.6g} mm, "
-                f"{1e3 * (self.closed_length - shortest):.6g} mm less; {remedy}"
+                f"{1e3 * closed_length:.6g} mm, and the swing needs {1e3 * shortest:.6g} mm, "
+                f"{1e3 * (closed_length - shortest):.6g} mm less; {remedy}"
             )
-        if longest > open_length:
+        if self.stroke is not None and longest > open_length:
             raise InputError(
                 "the swing must not need a cylinder longer than closed length plus stroke; got "
                 f"{1e3 * open_length:.6g} mm, and the swing needs {1e3 * longest:.6g} mm, "
@@ -131,9 +166,10 @@ class Cylinder:
     def buckling_margin(self, length: Array, push: Array) -> Array | None:
         """Return Euler's load over the push at lengths between the pins, m; inf where nothing pushes.
 
-        pi^2 E I / L^2, I = pi d^4 / 64 of the piston rod: both ends pinned, and the whole length as slender as the
-        piston rod, so that a stiffer barrel only adds. None without the piston rod. Source: S. P. Timoshenko and J. M.
-        Gere, Theory of Elastic Stability, chapter 2, fundamental case of buckling of a prismatic bar.
+        pi^2 E I / L^2, I = pi d^4 / 64 of the piston rod: both ends pinned, on a clevis as on a trunnion, with the
+        whole length between pivot and pin as slender as the piston rod, so that a stiffer barrel only adds. None
+        without the piston rod. Source: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 2,
+        fundamental case of buckling of a prismatic bar.
         """
         if self.rod is None:
             return None

@@ -83,6 +83,7 @@ _LEVER = {
     **dict.fromkeys(("cylinder.closed_length", "cylinder.stroke", "cylinder.bore", "cylinder.rod"), "m"),
     **{"cylinder.supply_pressure": "Pa", "cylinder.seal_friction": "N", "cylinder.length_tolerance": "m"},
     **{"cylinder.barrel_mass": "kg", "cylinder.piston_rod_mass": "kg", "cylinder.modulus": "Pa"},
+    **{"cylinder.dead_length": "m"},
     **{"arm.mass": "kg", "arm.centre": "m", "arm.inertia": "kg m^2", "arm.torque": "N m"},
     **{"arm.ram": "m", "arm.ram_mass": "kg", "arm.ram_force": "N"},
 }

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, Mask
-from ..kernel.arithmetic import STEP
+from ..kernel.arithmetic import STEP, magnitude
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design
 from ..machine.lever_cylinder import buckling_number, piston_areas
@@ -74,10 +74,12 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     rod_of_area = 0.0 if machine.lever is not None and machine.lever.cylinder.rod is None else rod
     angles = part("frame_angle"), offset, part("pin_angle"), start, end
     sizes = LeverNumbers._make([crank, frame, *angles, *[0.0] * (len(LeverNumbers._fields) - 7)])
-    length = cylinder.closed_length
-    if np.isnan(np.real(length)).all():
-        first, last = sizes.ends
-        length = np.where(np.real(last - first) > 0.0, first, last)
+    first, last = sizes.ends
+    rises = np.real(last - first) > 0.0
+    closed_length, stroke = cylinder.closed_length, cylinder.stroke
+    if _is_known(cylinder.dead_length):
+        closed_length = cylinder.dead_length + (stroke if _is_known(stroke) else magnitude(last - first))
+    length = closed_length if _is_known(closed_length) else np.where(rises, first, last)
     found = LeverNumbers._make(
         [
             *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
@@ -86,10 +88,15 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
             *of_block("crank_error", "rod_error", "offset_error"),
             *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
             *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
-            *(cylinder.closed_length, cylinder.stroke, *of_block("speed"), *_arm_numbers(part)),
+            *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
         ]
     )
     return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
+
+
+def _is_known(number: Any) -> bool:
+    """Return whether a number is given."""
+    return not bool(np.isnan(np.real(number)).all())
 
 
 def _arm_numbers(part: Callable[[str], Any]) -> tuple[Any, ...]:
@@ -116,18 +123,20 @@ def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
     c = lever_batch(mechanism, designs[rows], swing, gradients=False)[0].plain
     if swing.of_full_turn:
         gap = np.abs(c.crank - c.frame) - np.abs(c.offset)
-        passing[rows] = (gap > _MARGIN * c.frame) & ~_unbuildable(c)
+        passing[rows] = (gap > _MARGIN * c.frame) & ~_unbuildable(mechanism, c)
         return passing
     first, last = (end + c.pin_angle - c.frame_angle for end in (c.start, c.end))
     between = np.floor(first / np.pi) == np.floor(last / np.pi)
     off = np.minimum(*(np.abs(np.sin(angle)) for angle in (first, last))) > _MARGIN
     with np.errstate(invalid="ignore"):
         closing = np.minimum(*c.ends) > 0.0
-    passing[rows] = between & off & closing & ~_unbuildable(c) & (np.abs(last - first) < np.pi)
+    passing[rows] = between & off & closing & ~_unbuildable(mechanism, c) & (np.abs(last - first) < np.pi)
     return passing
 
 
-def _unbuildable(c: LeverNumbers) -> Mask:
+def _unbuildable(mechanism: Mechanism, c: LeverNumbers) -> Mask:
     """Return which levers have an impossible cylinder, as far as it is known."""
+    assert mechanism.lever is not None
+    on_clevis = mechanism.lever.cylinder.mounting == "clevis"
     with np.errstate(invalid="ignore"):  # NaN where it is not
-        return np.asarray((c.annular_area <= 0.0) | (c.stroke >= c.closed_length))
+        return np.asarray((c.annular_area <= 0.0) | (on_clevis & (c.stroke >= c.closed_length)))

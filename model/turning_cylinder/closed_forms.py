@@ -36,6 +36,15 @@ def travel(c: LeverNumbers) -> Any:
     return magnitude(last - first)
 
 
+def spare_reach(c: LeverNumbers, length: Any) -> Any:
+    """Return the length, m, by which a cylinder reaches beyond a length of the motion.
+
+    Of a cylinder whose stroke follows the travel, the length by which it is off the closed one, as it always reaches.
+    """
+    known = ~np.isnan(np.real(c.stroke))
+    return np.where(known, c.closed_length + c.stroke - length, length - c.closed_length)
+
+
 def extension_ratio(c: LeverNumbers) -> Any:
     """Return the greatest length of the cylinder over its least."""
     first, last = c.ends

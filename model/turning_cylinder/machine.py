@@ -66,7 +66,9 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     )
     cylinder = mechanism.lever.cylinder
     ends = sizes.length_range if placed.of_full_turn else (float(sizes.length(e)) for e in (placed.start, placed.end))
-    length = cylinder.closed_length or min(ends)
+    shortest, longest = sorted(ends)
+    known = cylinder.closed_and_stroke(longest - shortest)
+    length = shortest if known is None else known[0]
     machine = LeverMachine(
         sizes=sizes,
         lever=LeverBody(

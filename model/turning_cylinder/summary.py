@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..machine.lever_cylinder import Cylinder
+from ..machine.lever_cylinder import Cylinder, Mounting
 from .forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
 from .lever import DimensionErrors, sizes_for_stroke
 from .peaks import LeverBatch, lever_peaks
@@ -39,6 +39,7 @@ class LeverSummary:
     """
 
     lengths: tuple[float, float]
+    mounting: Mounting
     extension_ratio: float
     hold: tuple[float, float]
     push: LeverPoint
@@ -61,8 +62,11 @@ class LeverSummary:
 
     @property
     def single_stage(self) -> bool:
-        """Whether a single-stage cylinder can have both lengths: its stroke is less than its closed length."""
-        return self.extension_ratio < 2.0
+        """Whether a single-stage cylinder can have both lengths: its stroke is less than its closed length.
+
+        On a trunnion it need not be.
+        """
+        return self.mounting == "trunnion" or self.extension_ratio < 2.0
 
 
 def summarise(
@@ -93,6 +97,7 @@ def summarise(
         cylinder.require_stiffness(buckling.value, buckling.length)
     return LeverSummary(
         lengths=(first, last),
+        mounting=cylinder.mounting,
         extension_ratio=longest / shortest,
         hold=(float(rest.push[0]), float(rest.push[1])),
         push=push,
@@ -118,9 +123,10 @@ def summarise(
 
 
 def _fitting_sizes(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder) -> tuple[float, float] | None:
-    if cylinder.closed_length is None or cylinder.stroke is None:
+    sizes, known = machine.sizes, cylinder.closed_and_stroke(0.0)
+    if known is None or cylinder.stroke is None:
         return None
-    sizes, lengths = machine.sizes, (cylinder.closed_length, cylinder.closed_length + cylinder.stroke)
+    lengths = known[0], sum(known)
     short, long = sorted((swing.start, swing.end), key=sizes.length)
     fitting = sizes_for_stroke(lengths, (sizes.relative_angle(short), sizes.relative_angle(long)), sizes.offset)
     if fitting is None or sizes.crank < sizes.frame:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ...model.errors import JobError
 from ...model.machine.arm import Arm
 from ...model.machine.lever import Lever
-from ...model.machine.lever_cylinder import Cylinder
+from ...model.machine.lever_cylinder import Cylinder, Mounting
 from ...model.swing.swing import CRANK_TURN, Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart
@@ -34,6 +34,14 @@ class CylinderPart(Checked[Cylinder]):
 
     closed_length: PositiveLength | None = optional("least length between its pins; with it the stroke", "650 mm")
     stroke: PositiveLength | None = optional("stroke of the cylinder; with it the closed length", "430 mm")
+    dead_length: PositiveLength | None = optional(
+        "instead of a closed length: what the closed cylinder is longer than its stroke, or than its travel", "210 mm"
+    )
+    mounting: Mounting = optional(
+        "clevis or eye at the end of the barrel, or trunnion, beyond which the barrel extends",
+        "trunnion",
+        default="clevis",
+    )
     bore: PositiveLength | None = optional("bore, for pressures and flow", "40 mm")
     rod: PositiveLength | None = optional("diameter of the piston rod, for the pulling force and buckling", "25 mm")
     supply_pressure: Pressure | None = optional("greatest pressure above that of the other side", "160 bar")

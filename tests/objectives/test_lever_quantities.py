@@ -254,3 +254,18 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
 def test_what_a_lever_does_not_have_is_refused_in_one_sentence(ask: Callable[[], object], part: str) -> None:
     with pytest.raises(InputError, match=part):
         ask()
+
+
+def test_a_dead_length_alone_leaves_what_the_least_length_exceeds_it_and_the_travel() -> None:
+    """Its margin is that of a closed cylinder whose stroke is the travel, with the derivatives of differences."""
+    assert TIPPER.lever is not None
+    machine = replace(TIPPER, lever=replace(TIPPER.lever, cylinder=Cylinder(dead_length=0.22, bore=0.04)))
+    (margin,) = (of for of in swing_quantities(SLOW) if of.name == "cylinder_length_margin")
+    assert margin.undefined_because([machine]) is None
+    design = np.array([[0.35, 0.9, 0.01]])
+    least, travel = (values(machine, SLOW, design)[name] for name in ("least_cylinder_length", "cylinder_travel"))
+    found = margin.evaluate(machine, design, gradients=True)
+    assert found.values == pytest.approx(least - travel - 0.22, rel=1e-12)
+    assert found.gradients is not None
+    expected, _ = derivatives(lambda moved, _: margin.evaluate(machine, moved).values, design, np.full((1, 3), 1e-3))
+    assert found.gradients == pytest.approx(expected, abs=1e-8)

@@ -1,5 +1,6 @@
 """Lever moved by a cylinder that pivots about a fixed point; the crank is the lever."""
 
+from ....model.machine.lever_cylinder import Mounting
 from ....model.swing.swing_types import LeverLaw
 from ....objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, MASS, PRESSURE, TIME
 from ..design_question import DesignQuestion, QuestionCommand
@@ -63,6 +64,19 @@ QUESTION = DesignQuestion(
             example="650 mm",
         ),
         Input("cylinder_stroke", LENGTH, "Stroke", "Stroke of the cylinder.", sign="positive", example="430 mm"),
+        Input(
+            "dead_length",
+            LENGTH,
+            "Dead length",
+            "Instead of a closed length: what the closed cylinder is longer than its stroke, or than its travel.",
+            sign="positive",
+            example="210 mm",
+        ),
+        Input(
+            "mounting",
+            help="Clevis, at the end of the barrel, or trunnion, along it. [default: of the job; clevis without one]",
+            words=Mounting,
+        ),
         Input("bore", LENGTH, "Bore", "Bore of the cylinder; gives pressures.", sign="positive", example="40 mm"),
         Input(
             "piston_rod",

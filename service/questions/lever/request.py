@@ -21,7 +21,7 @@ from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
 _GRAVITY = 9.81  # m/s^2
 _CYLINDER = {
     **{name: name for name in ("closed_length", "bore", "supply_pressure", "seal_friction")},
-    **{name: name for name in ("barrel_mass", "piston_rod_mass", "length_tolerance")},
+    **{name: name for name in ("barrel_mass", "piston_rod_mass", "length_tolerance", "dead_length", "mounting")},
     **{name: name.partition("_")[2] for name in ("cylinder_stroke", "piston_rod")},
 }
 """Inputs, and what they are of a `Cylinder`."""
@@ -72,7 +72,8 @@ def lever_request(
     design = derived_design(mechanism, linkage)
     given = {name: inputs[key] for key, name in _CYLINDER.items() if key in inputs}
     cylinder = replace(_cylinder_of_job(mechanism, swing), **given)
-    closed = cylinder.closed_length or min(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
+    shortest, longest = sorted(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
+    closed, _ = cylinder.closed_and_stroke(longest - shortest) or (shortest, None)
     machine = LeverMachine(
         sizes=sizes,
         lever=_lever(design, labels, inputs),

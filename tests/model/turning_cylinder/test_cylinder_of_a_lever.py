@@ -160,3 +160,30 @@ def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
 def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes: dict[str, float], part: str) -> None:
     with pytest.raises(InputError, match=part):
         summarise(TIPPER, SLOW, Cylinder(**sizes))
+
+
+def test_a_dead_length_adds_to_the_stroke_or_to_the_travel() -> None:
+    lengths = 0.670740, 1.071435
+    known = Cylinder(dead_length=0.2, stroke=0.44)
+    assert known.closed_and_stroke(0.4) == pytest.approx((0.64, 0.44))
+    assert summarise(TIPPER, SLOW, known).fitting_sizes == pytest.approx(
+        summarise(TIPPER, SLOW, Cylinder(closed_length=0.64, stroke=0.44)).fitting_sizes
+    )
+    assert Cylinder(dead_length=0.22).closed_and_stroke(0.4) == pytest.approx((0.62, 0.4))
+    summarise(TIPPER, SLOW, Cylinder(dead_length=lengths[0] - (lengths[1] - lengths[0]) - 1e-5))
+    with pytest.raises(InputError, match=r"got a closed length of 700\.695 mm, and the swing needs 670\.74 mm"):
+        summarise(TIPPER, SLOW, Cylinder(dead_length=0.3))
+
+
+def test_on_a_trunnion_the_stroke_may_exceed_the_closed_length() -> None:
+    cylinder = Cylinder(closed_length=0.35, stroke=0.5, mounting="trunnion", rod=0.022)
+    found = summarise(carrying_80_kg(0.4, 0.6), SLOW, cylinder)
+    assert found.single_stage
+    assert found.buckling_margin is not None
+    assert found.buckling_margin == summarise(carrying_80_kg(0.4, 0.6), SLOW, Cylinder(rod=0.022)).buckling_margin
+    with pytest.raises(InputError, match=r'less than its closed length.* set mounting = "trunnion"'):
+        replace(cylinder, mounting="clevis")
+    with pytest.raises(InputError, match=r"a dead length belongs to a cylinder on a clevis.*; give closed_length and"):
+        Cylinder(dead_length=0.1, mounting="trunnion")
+    with pytest.raises(InputError, match="got both a closed length and a dead length; leave out one"):
+        Cylinder(dead_length=0.1, closed_length=0.5, stroke=0.4)
