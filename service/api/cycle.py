@@ -39,7 +39,7 @@ class BodyModel(BaseModel):
     side_mm: float = Field(examples=[420.0])
 
 
-class LeverModel(BaseModel):
+class LeverOutlinesModel(BaseModel):
     """Lever moved by a cylinder: direction from its pivot to the cylinder's, angle from the lever to its pin.
 
     start_deg, end_deg: lever angles at both ends of the swing. barrel_mm: length of the barrel, schematic.
@@ -66,7 +66,7 @@ class OutlinesModel(BaseModel):
     cylinders: list[BarrelModel]
     actuator: ActuatorModel | None
     body: BodyModel | None
-    lever: LeverModel | None
+    lever: LeverOutlinesModel | None
 
 
 class CycleModel(BaseModel):
@@ -132,7 +132,7 @@ def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
         body=None if body is None else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=drawn.body_side),
         lever=None
         if lever is None
-        else LeverModel(
+        else LeverOutlinesModel(
             frame_angle_deg=lever.frame_angle,
             pin_angle_deg=lever.pin_angle,
             start_deg=lever.start,
