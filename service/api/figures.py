@@ -13,7 +13,8 @@ from pydantic import BaseModel, Field
 from ...model.errors import InputError, NotFound
 from ...objectives.kinds import System
 from ..runs.run_folder import slug
-from ..store.bookmarks_and_wishes import Bookmark, bookmarks_of
+from ..store.bookmark import Bookmark
+from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import LongRoute
 from .front_files import SEALED, file_endpoint_options
 from .models import UnitsParameter

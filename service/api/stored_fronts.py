@@ -27,7 +27,8 @@ from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_t
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
 from ..store import Job, Store
-from ..store.bookmarks_and_wishes import Bookmark, bookmarks_of
+from ..store.bookmark import Bookmark
+from ..store.bookmarks_and_wishes import bookmarks_of
 from .models import PLAIN_DIGITS, JobNumber
 from .settings import StoreDep, state_dependency
 

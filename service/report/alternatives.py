@@ -15,7 +15,7 @@ from ..runs.result import Result
 from .subject import Alternative
 
 if TYPE_CHECKING:
-    from ..store.bookmarks_and_wishes import Bookmark
+    from ..store.bookmark import Bookmark
 
 
 def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Result) -> list[Alternative]:

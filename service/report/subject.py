@@ -22,7 +22,7 @@ from ..render.numerals import format_cell
 from ..runs.result import Cell, Result, Row
 
 if TYPE_CHECKING:
-    from ..store.bookmarks_and_wishes import Bookmark
+    from ..store.bookmark import Bookmark
 
 
 @dataclass(frozen=True, kw_only=True)

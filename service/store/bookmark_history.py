@@ -3,41 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
+from .bookmark import Action, Bookmark, HistoryEntry
 from .database import Database
 from .database_clock import now
 from .job_rows import job_by_number
 from .schema import history
 from .serialisation import database_text
 
-if TYPE_CHECKING:
-    from .bookmarks_and_wishes import Bookmark
-
-Action = Literal["note", "reason", "decided", "withdrawn", "deleted"]
-"""What happened to a bookmark. withdrawn: its decision was taken back, without another one in its place."""
 MOST_ENTRIES = 1000
 """Maximum number of entries kept per job; the oldest are dropped."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class HistoryEntry:
-    """Change to a bookmark. number: number within its job, increasing. bookmark: None once the bookmark is deleted.
-
-    name: name of the design at that time. text: the note or reason, if the action has one. author: name that the author
-    gave, or empty. at: s since 1970.
-    """
-
-    number: int
-    bookmark: int | None
-    name: str
-    action: Action
-    text: str
-    author: str
-    at: float
 
 
 def history_of(store: Database, job: int) -> list[HistoryEntry]:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, TypedDict, Unpack
 
 from sqlalchemy import Connection, and_, delete, func, insert, select, update
 
 from ...model.errors import InputError, NotFound
-from .bookmark_history import HistoryEntry, entries_of, record_changes, record_deletion
+from .bookmark import Bookmark
+from .bookmark_history import entries_of, record_changes, record_deletion
 from .database import Database
 from .database_clock import now
 from .job_rows import job_by_number
@@ -20,7 +20,6 @@ from .serialisation import database_text
 
 MOST_BOOKMARKS = 500
 """Maximum number of bookmarks per job."""
-_SAME = 1e-9  # relative tolerance of a dimension: addresses and forms give it with fewer digits
 MOST_WISHES = 50
 """Maximum number of wishes kept per job; the oldest are dropped."""
 Wished = Mapping[str, tuple[str, float | None]]
@@ -36,45 +35,6 @@ class Remarks(TypedDict, total=False):
     decided: bool
     reason: str
     author: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Bookmark:
-    """Bookmarked design. number: number within its job, from 1. at: time of bookmarking, s since 1970.
-
-    design: number of the front design that it is or is derived from; None for neither. variant: variant of the job's
-    choices. dimensions: crank, rod, offset, m, and each extra variable, SI. decided: whether it was chosen, at most one
-    per job. reason: reason for or against it. history: its notes, reasons and decisions, oldest first.
-    """
-
-    job: int
-    number: int
-    name: str
-    note: str
-    star: bool
-    decided: bool
-    reason: str
-    design: int | None
-    variant: int
-    dimensions: tuple[float, ...]
-    at: float
-    history: tuple[HistoryEntry, ...] = ()
-
-    @property
-    def notes(self) -> list[str]:
-        """Its notes, oldest first, each with its author if known."""
-        notes = (entry for entry in self.history if entry.action == "note" and entry.text)
-        return [f"{entry.author}: {entry.text}" if entry.author else entry.text for entry in notes]
-
-    def is_of(self, variant: int, dimensions: Sequence[float]) -> bool:
-        """Whether it is the bookmark of the design with these dimensions, within rounding."""
-        pairs = zip(self.dimensions, dimensions, strict=True) if variant == self.variant else [(0.0, 1.0)]
-        return all(math.isclose(own, other, rel_tol=_SAME, abs_tol=_SAME**2) for own, other in pairs)
-
-    def decision(self, faults: Sequence[str]) -> str:
-        """Return the decision for this design in words, with its reason and faults; empty if there is none."""
-        reason = f" ({self.reason})" if self.reason else ""
-        return "; ".join((f"Decided: {self.name}{reason}", *faults)) * self.decided
 
 
 def bookmarks_of(store: Database, job: int) -> list[Bookmark]:

@@ -114,7 +114,7 @@ export function linkagePanel(explorer) {
       drawn.node.setAttribute("aria-label", `Linkage of design ${row + 1}`);
       if (swings) {
         clearTimeout(later);
-        later = setTimeout(() => showSwing(row), explorer.linkages.isAsked(row) ? 0 : SOON);
+        later = setTimeout(() => showSwing(row), explorer.linkages.isRequested(row) ? 0 : SOON);
       } else {
         drawn.show(linkage, motionOf(linkage), {
           frame: explorer.linkages.frame(),

@@ -13,7 +13,7 @@ export const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 const TIMES = 72; // of a swing back and forth
 
 /**
- * Return {of(row), frame(), cycle(row), isAsked(row)} of a front whose lengths are here; cycle: the service's answer for a design that
+ * Return {of(row), frame(), cycle(row), isRequested(row)} of a front whose lengths are here; cycle: the service's answer for a design that
  * swings, asked for once, null if it has none.
  * @param {FrontData} data @param {AbortSignal} signal
  */
@@ -57,6 +57,6 @@ export function linkages(data, signal) {
     of: lengthsAt,
     frame: all,
     cycle,
-    isAsked: (/** @type {number} */ row) => cycles.has(row),
+    isRequested: (/** @type {number} */ row) => cycles.has(row),
   };
 }
