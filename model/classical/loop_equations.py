@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
+from ..linkage.linkage_values import Kinematics
 
 _LAST_STEP = 1e-10
 """A step that ends the iteration, in rad and fractions of the rod: the remaining error is half its square times
@@ -27,19 +28,9 @@ tan(phi)."""
 
 
 @dataclass(frozen=True)
-class LoopSolution:
-    """Motion found by iteration; arrays of the broadcast shape, SI and radians.
+class LoopSolution(Kinematics):
+    """Motion found by iteration. iterations: steps taken at each angle."""
 
-    iterations: steps taken at each angle.
-    """
-
-    crank_angle: Array
-    slider_position: Array
-    slider_velocity: Array
-    slider_acceleration: Array
-    rod_angle: Array
-    rod_velocity: Array
-    rod_acceleration: Array
     iterations: IntArray
 
 
@@ -98,6 +89,7 @@ def solve_loop(
         np.arctan2(np.sin(phi), np.cos(phi)),
         first[..., 1],
         second[..., 1],
+        np.arccos(np.abs(np.sin(phi))),
         iterations,
     )
 

@@ -35,21 +35,18 @@ _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acc
 
 
 @dataclass(frozen=True)
-class Cycle:
+class MotionAndForces:
     """Curves of one design, each (n,), SI and radians; forces as components along x and y.
 
-    load: load on the slider, N, positive outward. torque: drive torque, N m, counter-clockwise. pivot: force from the
-    frame on the crank; crank_pin: force from the crank on the rod; slider_pin: force from the rod on the slider; guide:
-    force from the guide on the slider, along +y. crank_load: torque of the loads on the crank, N m, counter-clockwise.
+    load: load on the slider, N, positive outward. pivot: force from the frame on the crank; crank_pin: force from the
+    crank on the rod; slider_pin: force from the rod on the slider; guide: force from the guide on the slider, along +y.
     """
 
     crank_angle: Array
     slider_position: Array
     slider_velocity: Array
     slider_acceleration: Array
-    transmission_angle: Array
     load: Array
-    torque: Array
     pivot_x: Array
     pivot_y: Array
     crank_pin_x: Array
@@ -57,6 +54,17 @@ class Cycle:
     slider_pin_x: Array
     slider_pin_y: Array
     guide: Array
+
+
+@dataclass(frozen=True)
+class Cycle(MotionAndForces):
+    """Curves of one design over crank angles.
+
+    torque: drive torque, N m, counter-clockwise. crank_load: torque of the loads on the crank, N m, counter-clockwise.
+    """
+
+    transmission_angle: Array
+    torque: Array
     position_error: Array
     position_error_rss: Array
     crank_load: Array
@@ -89,17 +97,17 @@ def _fill_cycle_curves(
         out[0, i] = m.x
         out[1, i] = m.x_1 * d.speed
         out[2, i] = m.x_2 * d.speed * d.speed + m.x_1 * d.acceleration
-        out[3, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
-        out[4, i] = load
+        out[3, i] = load
+        out[4, i] = f.pivot_x
+        out[5, i] = f.pivot_y
+        out[6, i] = f.crank_pin_x
+        out[7, i] = f.crank_pin_y
+        out[8, i] = f.slider_pin_x
+        out[9, i] = f.slider_pin_y
+        out[10, i] = f.guide
+        out[11, i] = math.atan2(abs(m.l_cos), abs(m.l_sin))
         way = rotation_sense(d)
-        out[5, i] = torque_without_crank_loads(f.torque, theta, way, segment)
-        out[6, i] = f.pivot_x
-        out[7, i] = f.pivot_y
-        out[8, i] = f.crank_pin_x
-        out[9, i] = f.crank_pin_y
-        out[10, i] = f.slider_pin_x
-        out[11, i] = f.slider_pin_y
-        out[12, i] = f.guide
+        out[12, i] = torque_without_crank_loads(f.torque, theta, way, segment)
         out[13, i] = worst_case(j, d)
         out[14, i] = root_sum_square(j, d)
         out[15, i] = -torque_without_crank_loads(0.0, theta, way, segment)

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.cycle import cycle_at_speeds, derived_design
+from ..cycle.cycle import MotionAndForces, cycle_at_speeds, derived_design
 from ..dynamics.torque import Balance, add_crank_couple, balance_before_pin_force
 from ..kinematics.position import Motion, motion
 from ..linkage.linkage import Linkage
@@ -52,39 +52,27 @@ _ITERATIONS = 50
 _CONVERGED = 1e-14
 
 
-@dataclass(frozen=True)
-class SwingCurves:
-    """Curves over one stroke of a swing, each (n,), SI and radians; forces as components along x and y.
+@dataclass(frozen=True, kw_only=True)
+class SwingCurves(MotionAndForces):
+    """Curves over one stroke of a swing, each (n,), SI and radians.
 
     share: fraction of the time of one stroke. crank_angle continues beyond a turn if the swing does. drive: torque on
     the crank, N m, counter-clockwise, or force on the slider along +x, N. power: power of the drive, W, 0 for a slow
     swing. rate: derivative of the driver position with respect to `share`, rad or m. driven_angle: transmission angle
     at the driven side. It is between the rod and the normal of the slider line if the crank drives, and between rod and
     crank if the slider drives. driven_error: worst case for the position of the driven side, m at the slider or rad at
-    the crank. rod_rate: phi'. The other fields are as in `Cycle`; load excludes the drive.
+    the crank. rod_rate: phi'. The load excludes the drive.
     """
 
     share: Array
-    crank_angle: Array
     crank_speed: Array
     crank_acceleration: Array
-    slider_position: Array
-    slider_velocity: Array
-    slider_acceleration: Array
-    load: Array
     drive: Array
     power: Array
     rate: Array
     driven_angle: Array
     driven_error: Array
     rod_rate: Array
-    pivot_x: Array
-    pivot_y: Array
-    crank_pin_x: Array
-    crank_pin_y: Array
-    slider_pin_x: Array
-    slider_pin_y: Array
-    guide: Array
 
     @property
     def pivot(self) -> Array:

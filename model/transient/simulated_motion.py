@@ -28,24 +28,33 @@ assert set(_SAID) == set(get_args(Verdict))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Transient:
+class MotorRun:
+    """Crank under a motor, arrays (n,) in order of time, SI.
+
+    motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism absorbs; the
+    flywheel and the rotor absorb the rest.
+    """
+
+    time: Array
+    speed: Array
+    acceleration: Array
+    motor_torque: Array
+    torque: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transient(MotorRun):
     """Motion of the crank over time, arrays (n,), SI and radians; points are denser where the crank turns fast.
 
     verdict: reason for the end. turned_back: times at which the crank reversed, s. angle: crank angle including full
-    turns, rad. motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism
-    absorbs; the flywheel and the rotor absorb the rest. power: motor power, W. kinetic, potential: energies of
+    turns, rad. power: motor power, W. kinetic, potential: energies of
     mechanism and drive, and of gravity, J. motor_work, load_work: work since the start by the motor and on the loads,
     springs included, J. friction_work: heat from the joints since the start, J.
     """
 
     verdict: Verdict
     turned_back: tuple[float, ...]
-    time: Array
     angle: Array
-    speed: Array
-    acceleration: Array
-    motor_torque: Array
-    torque: Array
     power: Array
     slider_position: Array
     slider_velocity: Array
@@ -141,11 +150,11 @@ class Recorder:
             np.array(
                 [
                     time,
-                    local + self._equation.period * turn,
                     speed,
                     acceleration,
                     motor,
                     torque,
+                    local + self._equation.period * turn,
                     motor * speed,
                     slider.slider_position,
                     slider.slider_velocity,

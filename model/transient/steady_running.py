@@ -18,28 +18,23 @@ from .constant_torque_motion import cut_at_energy_minima, refine_at_energy_minim
 from .crank_equation import TURN
 from .crankshaft_equation import equation_of
 from .forward_dynamics import drive_of
+from .simulated_motion import MotorRun
 from .steady_cycle import Guess, PeriodicTurn, Profile, Torque
 
 _ROUNDING = 1e-13  # fraction of maximum torque times cycle angle: a smaller change in energy is a rounding error
 
 
 @dataclass(frozen=True, kw_only=True)
-class SteadyRunning:
+class SteadyRunning(MotorRun):
     """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of the speed included.
 
-    crank_angle: from the first breakpoint on, decreasing if the crank turns clockwise. motor_torque: motor torque on
-    the crank, N m, counter-clockwise. torque: part that the mechanism absorbs. mean_speed: 2 pi / period, with its
-    sign. work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory:
+    crank_angle: from the first breakpoint on, decreasing if the crank turns clockwise. mean_speed: 2 pi / period, with
+    its sign. work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory:
     fraction of a small change in w^2 that remains after a turn (below 1: stable; 1: any speed persists, because nothing
     depends on it). turns: turns per cycle.
     """
 
     crank_angle: Array
-    time: Array
-    speed: Array
-    acceleration: Array
-    motor_torque: Array
-    torque: Array
     mean_speed: float
     work: float
     inertia: float

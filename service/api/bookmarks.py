@@ -39,7 +39,15 @@ BookmarkNumber = Annotated[
 ]
 
 
-class NewBookmark(BaseModel, extra="forbid", strict=True):
+class _Remarks(BaseModel, extra="forbid", strict=True):
+    note: _TEXT = Field("", examples=["rod from stock"])
+    star: bool = False
+    decided: bool = False
+    reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
+    author: _AUTHOR = ""
+
+
+class NewBookmark(_Remarks):
     """Design to bookmark: one on the front, one with other dimensions, or dimensions alone.
 
     If the design already has a bookmark, that bookmark takes over the given name, note, star, decision and reason.
@@ -54,14 +62,9 @@ class NewBookmark(BaseModel, extra="forbid", strict=True):
         {}, max_length=200, examples=[{"rod_mm": 330.0}]
     )
     name: _NAME = Field("", examples=["Round numbers"])
-    note: _TEXT = Field("", examples=["rod from stock"])
-    star: bool = False
-    decided: bool = False
-    reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
-    author: _AUTHOR = ""
 
 
-class BookmarkChange(BaseModel, extra="forbid", strict=True):
+class BookmarkChange(_Remarks):
     """Changes to a bookmark; omitted fields stay unchanged.
 
     decided: revokes an earlier decision. reason: why, or why not. author: name of the person, for the history. Earlier
@@ -69,11 +72,6 @@ class BookmarkChange(BaseModel, extra="forbid", strict=True):
     """
 
     name: Annotated[str, Field(min_length=1, max_length=200)] = Field("", examples=["Round numbers"])
-    note: _TEXT = Field("", examples=["rod from stock"])
-    star: bool = Field(False, examples=[True])
-    decided: bool = Field(False, examples=[True])
-    reason: _TEXT = Field("", examples=["the least torque of those with 45 deg"])
-    author: _AUTHOR = ""
 
 
 class BookmarkedDesign(BaseModel):

@@ -28,21 +28,18 @@ from ...optimise.problem.constraint_violation import constraints_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from .partial_job import ranges_of, requirement_names
-from .possible_values import PATIENCE, Ends, example_design, lengths_of, run_within
+from .possible_values import PATIENCE, Ends, Feasibility, example_design, lengths_of, run_within
 from .samples import Screening, sampled_designs, screened_samples
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class PossibleSwing:
+class PossibleSwing(Feasibility):
     """Values that the ranges of a swing job allow. closing: fraction of the box that makes the swing.
 
     travel (m): its range for designs that meet the margin and the other checked requirements, if any do; None if no
-    design makes the swing. feasible: fraction of the `sampled` designs that meet every checked requirement.
-    met_by_all: requirements that every sample meets: exact values.
-    example: crank, rod and offset, m; None if no design makes the swing. example_swing: its swing, between crank
-    angles. unchecked: requirements too slow to check, or that need the rest of the job. example_lever: machine of the
+    design makes the swing. example_swing: swing of the example, between crank angles. example_lever: machine of the
     example if it is a lever; its travel is that of its cylinder.
     """
 
@@ -51,12 +48,6 @@ class PossibleSwing:
     branch: float
     closing: float
     travel: Ends | None
-    feasible: float
-    sampled: int
-    met_by_all: tuple[str, ...]
-    example: tuple[float, float, float] | None
-    example_feasible: bool
-    unchecked: tuple[str, ...]
     example_lever: Mechanism | None = None
 
     def position_at(self, crank_angle: float) -> float:

@@ -51,18 +51,32 @@ _ONE = threading.Lock()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Possible:
+class Feasibility:
+    """Designs that the ranges of a job allow.
+
+    feasible: fraction of the `sampled` ones that meet every checked requirement. met_by_all: requirements that every
+    sample meets: exact values and narrow bands. example: crank, rod and offset, m; None if no design makes the motion.
+    unchecked: requirements too slow to check, or that need the rest of the job.
+    """
+
+    feasible: float
+    sampled: int
+    met_by_all: tuple[str, ...]
+    example: tuple[float, float, float] | None
+    example_feasible: bool
+    unchecked: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Possible(Feasibility):
     """Values that the ranges of a job allow. turning: fraction of the box that rotates fully.
 
     stroke (m), time_ratio, transmission_angle (rad): range bounds, subject to all other requirements on the dimensions;
     None if no sample meets these. They respect the default minimum transmission angle if there is no other requirement
     on it. slow_strokes: slow strokes of the designs that meet every checked requirement, or else of those that rotate
-    fully; "equal" only if no design has a slow stroke. feasible: fraction of the `sampled` designs that meet every
-    checked requirement. met_by_all: requirements that every sample meets: exact values and narrow bands. hardest:
-    requirement that the fewest fully rotating designs meet, and their fraction.
-    nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if none meets all.
-    example: crank, rod and offset, m, near the middle of the feasible designs, else the nearest to it; None if no
-    design rotates fully. unchecked: requirements too slow to check.
+    fully; "equal" only if no design has a slow stroke. hardest: requirement that the fewest fully rotating designs
+    meet, and their fraction. nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if
+    none meets all. The example is near the middle of the feasible designs, else the nearest to it.
     """
 
     turning: float
@@ -70,14 +84,8 @@ class Possible:
     time_ratio: Ends | None
     transmission_angle: Ends | None
     slow_strokes: tuple[str, ...]
-    feasible: float
-    sampled: int
-    met_by_all: tuple[str, ...]
     hardest: tuple[str, float] | None
     nearest: float | None
-    example: tuple[float, float, float] | None
-    example_feasible: bool
-    unchecked: tuple[str, ...]
 
 
 def possible_values(problem: Problem) -> Possible:

@@ -44,6 +44,17 @@ class Record(TypedDict):
     """JSON record that allows no other keys. A string below a key describes it."""
 
 
+class ShakingNumbers(Record):
+    """Shaking by inertia; root mean squares are over time."""
+
+    peak_shaking_force_N: float
+    peak_shaking_force_angle_deg: PeakAngle
+    rms_shaking_force_N: float
+    peak_shaking_moment_Nm: Annotated[float, Note("Moment about the crank pivot.")]
+    peak_shaking_moment_angle_deg: PeakAngle
+    rms_shaking_moment_Nm: float
+
+
 def _title_with_unit(key: str, _: object = None) -> str:
     """Return the title of a key: "peak torque, N m"."""
     numerator, per, denominator = key.partition("_per_")

@@ -21,25 +21,18 @@ from ....objectives.machine_needs import MOTION
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, joined, named_number, number_list, remark_with_value
 from ..peaks import Peak, lengths_row, peak
-from ..record_types import Note, PeakAngle, Record
+from ..record_types import Note, ShakingNumbers
 
 Bare = Annotated[float | None, Note("null without a counterweight")]
 
 
-class Shaking(Record):
+class Shaking(ShakingNumbers):
     """Inertia force and moment on the frame, without gravity and loads; root mean squares are over time."""
 
     counterweight_kg: float
     counterweight_radius_mm: float
-    peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: PeakAngle
-    rms_shaking_force_N: float
     peak_shaking_force_without_counterweight_N: Bare
     rms_shaking_force_without_counterweight_N: Bare
-    peak_shaking_moment_Nm: float
-    """Moment about the crank pivot."""
-    peak_shaking_moment_angle_deg: PeakAngle
-    rms_shaking_moment_Nm: float
     peak_shaking_moment_without_counterweight_Nm: Bare
     rms_shaking_moment_without_counterweight_Nm: Bare
 

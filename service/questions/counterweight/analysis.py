@@ -30,7 +30,7 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import format_number
-from ..record_types import Note, PeakAngle, Record
+from ..record_types import Note, Record, ShakingNumbers
 from . import QUESTION
 
 
@@ -44,17 +44,6 @@ class RodBalance(Record):
     """Moment of inertia about the crank pin."""
     centre_along_mm: Annotated[float | None, Note("null where nothing is added")]
     centre_across_mm: Annotated[float | None, Note("null where nothing is added")]
-
-
-class ShakingNumbers(Record):
-    """Shaking by inertia; moments are about the crank pivot, root mean squares over time."""
-
-    peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: PeakAngle
-    rms_shaking_force_N: float
-    peak_shaking_moment_Nm: float
-    peak_shaking_moment_angle_deg: PeakAngle
-    rms_shaking_moment_Nm: float
 
 
 class BalanceNumbers(Record):

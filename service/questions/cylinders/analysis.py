@@ -18,7 +18,7 @@ from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Table, Text, column, named_number, number_list, remark_with_value, value_from_record
 from ..peaks import peak
-from ..record_types import Note, NullIfLocked, PeakAngle, Record
+from ..record_types import Note, NullIfLocked, PeakAngle, Record, ShakingNumbers
 
 
 class Cylinder(Record):
@@ -33,7 +33,7 @@ class Cylinder(Record):
     peak_guide_force_N: NullIfLocked
 
 
-class Cylinders(Record):
+class Cylinders(ShakingNumbers):
     """Total torque and shaking of all cylinders."""
 
     cylinders: list[Cylinder]
@@ -47,12 +47,6 @@ class Cylinders(Record):
     rms_torque_Nm: NullIfLocked
     torque_fluctuation_Nm: Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")]
     energy_change_J: Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")]
-    peak_shaking_force_N: float
-    peak_shaking_force_angle_deg: PeakAngle
-    rms_shaking_force_N: float
-    peak_shaking_moment_Nm: float
-    peak_shaking_moment_angle_deg: PeakAngle
-    rms_shaking_moment_Nm: float
     peak_rocking_couple_Nm: float
     peak_rocking_couple_angle_deg: PeakAngle
     peak_shaking_force_of_one_N: float
