@@ -86,19 +86,19 @@ def test_a_limit_holds_everywhere_and_in_a_link(open_page: Open, solved: Solved)
     page = open_page(solved.store, view_of(solved))
     field(page, "At least time ratio").fill(str(least))
     field(page, "At least time ratio").press("Enter")
-    expect(page.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
+    expect(page.get_by_text(f"{len(kept)} of {len(rows)} designs listed")).to_be_visible()
     expect_designs(page, kept)
     page.wait_for_url(re.compile(rf"min\.time_ratio={least}"))
     again = open_page(solved.store, hash_of(page))
-    expect(again.get_by_text(f"{len(kept)} of {len(rows)} designs chosen")).to_be_visible()
+    expect(again.get_by_text(f"{len(kept)} of {len(rows)} designs listed")).to_be_visible()
     expect_designs(again, kept)
     again.get_by_role("button", name="Clear all limits").click()
-    expect(again.get_by_text(f"{len(rows)} of {len(rows)} designs chosen")).to_be_visible()
+    expect(again.get_by_text(f"{len(rows)} of {len(rows)} designs listed")).to_be_visible()
 
 
 def test_dragging_along_an_axis_is_the_same_as_its_fields(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved))
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     x, top, bottom = axis(page, 3, 5)
     page.mouse.move(x, top)
     page.mouse.down()
@@ -110,13 +110,13 @@ def test_dragging_along_an_axis_is_the_same_as_its_fields(open_page: Open, solve
     least = float(field(page, "At least time ratio").input_value())
     assert least == pytest.approx(middle, rel=0.01)
     kept = [index + 1 for index, ratio in enumerate(ratios) if ratio >= least]
-    expect(page.get_by_text(f"{len(kept)} of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text(f"{len(kept)} of 8 designs listed")).to_be_visible()
     expect_designs(page, kept)
     page.locator(".axis-head .chooser-list:visible").click(position={"x": 90, "y": 5})  # between its parts
     expect(page.get_by_role("textbox", name="At least time ratio")).to_be_visible()
     page.keyboard.press("Escape")
     page.mouse.dblclick(x, (top + bottom) / 2)
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     expect(field(page, "At least time ratio")).to_have_value("")
 
 
@@ -162,7 +162,7 @@ def test_what_is_no_number_is_marked_and_changes_nothing(open_page: Open, solved
     field(page, "At least time ratio").fill("much")
     field(page, "At least time ratio").press("Enter")
     expect(field(page, "At least time ratio")).to_have_attribute("aria-invalid", "true")
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
 
 
 def test_words_are_ticked(open_page: Open, solved: Solved) -> None:
@@ -173,7 +173,7 @@ def test_words_are_ticked(open_page: Open, solved: Solved) -> None:
     first = sorted(set(words))[0]
     group.get_by_label(first).uncheck()
     kept = [word for word in words if word != first] or words  # none ticked is no limit
-    expect(page.get_by_text(f"{len(kept)} of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text(f"{len(kept)} of 8 designs listed")).to_be_visible()
     expect(page.get_by_role("cell", name=words[0], exact=True).first).to_be_visible()
 
 
@@ -213,7 +213,7 @@ def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
     with Store(tmp_path / "store.db") as store:
         put_in(store, solved.result, tomllib.loads(JOB), designs=rows)
         page = open_page(store, f"#/jobs/1{query}")
-        expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+        expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
         page.get_by_text("Axes", exact=True).click()
         axes = page.get_by_role("group", name="Axes")
         expect(axes).to_be_visible()
@@ -242,7 +242,7 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     expect_designs(page, kept)
     page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
-        page.get_by_role("button", name="5 chosen, in the order of the table, as CSV").click()
+        page.get_by_role("button", name="5 listed, in the order of the table, as CSV").click()
     table = list(csv.DictReader(download.value.path().read_text().splitlines()))
     assert [int(row["number"]) for row in table] == kept
     assert [float(row["rod_mm"]) for row in table] == [solved.result.designs[number - 1]["rod_mm"] for number in kept]
@@ -344,7 +344,7 @@ def test_the_scatter_tells_opens_and_keeps_what_is_in_a_box(open_page: Open, lar
     under, over = (float(page.get_by_label(f"At {side} rod, mm").input_value()) for side in ("least", "most"))
     kept = sum(low <= row["crank_mm"] <= high and under <= row["rod_mm"] <= over for row in rows)  # type: ignore[operator]
     assert 0 < kept < COUNT
-    expect(page.get_by_text(f"{kept:,} of 10,000 designs chosen")).to_be_visible()
+    expect(page.get_by_text(f"{kept:,} of 10,000 designs listed")).to_be_visible()
     before = page.locator(".linkage h2").inner_text()
     page.mouse.move(middle[0] + 40, middle[1] + 30)
     expect(page.locator(".linkage h2")).not_to_have_text(before)
@@ -395,7 +395,7 @@ def test_ten_thousand_designs_are_limited_together_and_right(open_page: Open, la
         if row["peak_torque_Nm"] <= 60 and row["time_ratio"] >= 1.1 and row["peak_power_W"] <= 900  # type: ignore[operator]
     ]
     assert 20 < len(kept) < COUNT
-    expect(page.get_by_text(f"{len(kept):,} of 10,000 designs chosen")).to_be_visible()
+    expect(page.get_by_text(f"{len(kept):,} of 10,000 designs listed")).to_be_visible()
     expect_designs(page, [number for _, number in sorted(kept)[:20]])
     page.get_by_role("button", name="Last page").click()
     expect(page.get_by_text(f"{len(kept)} of {len(kept):,}")).to_be_visible()
@@ -412,14 +412,14 @@ def test_the_explorer_is_accessible(open_page: Open, solved: Solved) -> None:
 def test_an_address_with_nonsense_shows_the_front(open_page: Open, solved: Solved) -> None:
     nonsense = "?x=none&y=&axes=-,what&min.time_ratio=abc&max.no=3&selected=0,99,1.5&page=-7&sort=-x&weights=1"
     page = open_page(solved.store, view_of(solved, nonsense))
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     expect_designs(page, list(range(1, 9)))
 
 
 @pytest.mark.slow
 def test_a_front_is_explored_at_another_size(open_page: Open, solved: Solved) -> None:
     page = open_page(solved.store, view_of(solved), viewport={"width": 390, "height": 800})
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     for width in (390, 820, 1280):  # no menu leaves the screen
         page.set_viewport_size({"width": width, "height": 800})
         for menu in ("Axes", "Columns", "Download"):
@@ -460,13 +460,13 @@ def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[
         up = (float(row["rod_mm"] or 0.0) - y1) / (y3 - y1)
         kept += across >= 0.0 and up >= 0.0 and across + up <= 1.0
     assert kept > 20
-    count = page.get_by_text("of 10,000 designs chosen")
+    count = page.get_by_text("of 10,000 designs listed")
     found = int(count.inner_text().split()[0].replace(",", ""))
     assert found == pytest.approx(kept, abs=3)  # the address has five digits of the corners
     again = open_page(store, hash_of(page))
-    expect(again.get_by_text("of 10,000 designs chosen")).not_to_contain_text("10,000 of")
+    expect(again.get_by_text("of 10,000 designs listed")).not_to_contain_text("10,000 of")
     page.get_by_role("button", name="Clear all limits").click()
-    expect(page.get_by_text("10,000 of 10,000 designs chosen")).to_be_visible()
+    expect(page.get_by_text("10,000 of 10,000 designs listed")).to_be_visible()
 
 
 def test_a_front_whose_loaded_stroke_is_fast_says_so_and_shows_the_slow_stroke(open_page: Open, store: Store) -> None:

@@ -57,7 +57,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     page.wait_for_url("**/#/jobs/1")
     worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
     worker.start()
-    expect(page.get_by_text("12 of 12 designs chosen")).to_be_visible(timeout=2 * PATIENCE)
+    expect(page.get_by_text("12 of 12 designs listed")).to_be_visible(timeout=2 * PATIENCE)
     worker.join()
     assert store.job(1).name == "Press for bushings"
     assert store.tables(1)["variables"]["crank"][1] == "60 mm"
@@ -168,7 +168,7 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
             expect(page.get_by_role("heading", name="Front so far")).to_be_visible(timeout=PATIENCE)
             again = taken(store)
             again.finish(solved.result)
-            expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible(timeout=PATIENCE)
+            expect(page.get_by_text("8 of 8 designs listed")).to_be_visible(timeout=PATIENCE)
             page.go_back()
             expect(page.get_by_role("listitem")).to_contain_text("done")
     assert wrong == []

@@ -40,7 +40,7 @@ def test_a_pusher_comes_from_a_pasted_catalogue_to_round_numbers_that_its_motor_
     worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
     worker.start()
     count = int(SEARCH["designs"])
-    expect(page.get_by_text(f"{count} of {count} designs chosen")).to_be_visible(timeout=120_000)
+    expect(page.get_by_text(f"{count} of {count} designs listed")).to_be_visible(timeout=120_000)
     worker.join()
     designs = store.result(1).designs
     for number, row in enumerate(designs, 1):

@@ -40,7 +40,7 @@ def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(
             f"{count} of 8 designs {'is' if count == 1 else 'are'} at the limit {limit['title']}"
         )
         line.get_by_role("button", name="Show the designs").click()
-        expect(page.locator(".count")).to_have_text(f"{count} of 8 designs chosen")
+        expect(page.locator(".count")).to_have_text(f"{count} of 8 designs listed")
         page.get_by_role("button", name="Clear all limits").click()
     line = page.locator("[data-limit='constraints.transmission_angle.lower']")
     expect(line.get_by_role("textbox")).to_have_value("36")

@@ -159,7 +159,7 @@ def test_a_worker_solves_a_run_that_is_watched(open_page: Open, store: Store) ->
     expect(page.get_by_text("Waiting for a worker.")).to_be_visible()
     worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
     worker.start()
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible(timeout=60_000)
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible(timeout=60_000)
     worker.join()
 
 
@@ -173,7 +173,7 @@ def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, sto
     expect(page.locator(".state")).to_have_text("◼ stopped")
     expect(page.get_by_role("heading", name="Stopped early")).to_be_visible()
     expect(page.get_by_text("a longer search finds better designs. 8 designs.", exact=False)).to_be_visible()
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     expect(page.get_by_role("button", name="Resume run 1")).to_be_visible()
 
 
@@ -291,5 +291,5 @@ def test_a_menu_that_is_opened_before_the_front_came_stays_open(open_page: Open,
     link = page.get_by_role("link", name="Designs as CSV")
     expect(link).to_be_visible()
     held.pop().continue_()
-    expect(page.get_by_text("8 of 8 designs chosen")).to_be_visible()
+    expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
     expect(link).to_be_visible()

@@ -32,7 +32,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     expect(page.get_by_text("Waiting for a worker.")).to_be_visible()
     worker = threading.Thread(target=work, args=(store,), kwargs={"drain": True})
     worker.start()
-    expect(page.get_by_text("12 of 12 designs chosen")).to_be_visible(timeout=120_000)
+    expect(page.get_by_text("12 of 12 designs listed")).to_be_visible(timeout=120_000)
     worker.join()
     rows = store.result(1).designs
     assert all(abs(row["stroke_mm"] - 260.0) < 1e-6 for row in rows)  # type: ignore[operator]
@@ -42,7 +42,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     page.locator(".axis-head summary", has_text="least transmission angle").click()
     page.get_by_role("textbox", name="At least least transmission angle").fill(str(least))
     page.get_by_role("textbox", name="At least least transmission angle").press("Enter")
-    expect(page.get_by_text("6 of 12 designs chosen")).to_be_visible()
+    expect(page.get_by_text("6 of 12 designs listed")).to_be_visible()
     page.wait_for_url(re.compile(r"min\."))
     brushed = page.url
     page.locator("table.designs tbody a").first.click()
@@ -62,7 +62,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     report = taken_away(page, "Report", tmp_path).read_text(encoding="utf-8")
     assert f"design {number}" in report.lower()
     page.goto(brushed)
-    expect(page.get_by_text("6 of 12 designs chosen")).to_be_visible()
+    expect(page.get_by_text("6 of 12 designs listed")).to_be_visible()
     page.get_by_text("Download", exact=True).click()
     with page.expect_download() as download:
         page.get_by_role("link", name="Designs as CSV").click()
@@ -73,7 +73,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     assert page.context.browser is not None
     elsewhere = page.context.browser.new_context().new_page()
     elsewhere.goto(brushed)
-    expect(elsewhere.get_by_text("6 of 12 designs chosen")).to_be_visible()
+    expect(elsewhere.get_by_text("6 of 12 designs listed")).to_be_visible()
     elsewhere.context.close()
 
 

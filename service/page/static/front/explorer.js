@@ -279,7 +279,7 @@ export class Explorer {
     if (what === "all" || what === "chosen") {
       this.limits.apply();
       const { chosen } = this.limits;
-      this.count.textContent = `${grouped(chosen)} of ${counted(this.data.count, "design")} chosen`;
+      this.count.textContent = `${grouped(chosen)} of ${counted(this.data.count, "design")} listed`;
       this.clearing.disabled = this.limits.open;
       this.saving.draw();
       this.scatterPanel.together.draw();

@@ -28,7 +28,7 @@ export function saving(explorer) {
       download(
         linesOf(all, explorer.table.numbers()),
         "text/csv",
-        `${explorer.front.run}-chosen.csv`,
+        `${explorer.front.run}-listed.csv`,
       );
     } finally {
       draw();
@@ -39,7 +39,7 @@ export function saving(explorer) {
     const { open, chosen } = explorer.limits;
     node.textContent = open
       ? "In the order of the table, as CSV"
-      : `${grouped(chosen)} chosen, in the order of the table, as CSV`;
+      : `${grouped(chosen)} listed, in the order of the table, as CSV`;
     node.disabled = chosen === 0;
   }
   return { node, draw };

@@ -15,7 +15,7 @@ const STEPS = { ArrowDown: 1, ArrowUp: -1 };
 export function designTable(explorer) {
   const head = h("thead");
   const body = h("tbody", { onkeydown: keys });
-  const caption = h("caption", { class: "hidden" }, "The chosen designs");
+  const caption = h("caption", { class: "hidden" }, "The listed designs");
   const pages = h("nav", { class: "row pages", "aria-label": "Pages of designs" });
   const place = h(
     "div",
