@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, Any
@@ -11,9 +12,13 @@ from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field
 from starlette.types import Receive, Scope, Send
 
+from ...model.errors import InputError
+from ..designs.changed_design import variation_of
 from ..designs.derived_jobs import SHARE, job_near_lengths, widen_limits
+from ..designs.stored_designs import StoredDesign
 from ..jobs.submission import job_json
 from ..store import Job
+from ..store.remarks import bookmark_design
 from .active_limits import LIMIT_PATH, Side
 from .computing import QuickRoute
 from .job_requests import (
@@ -127,9 +132,19 @@ def submit_with_wider_limits(stored_front: FrontDep, request: Widening, queue: Q
 
 @router.post("/jobs/{number}/nearby", **_COPIED)
 def submit_search_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDep) -> dict[str, Any]:
-    """Queue a copy of a job that searches around given lengths, which may lie outside its ranges."""
+    """Queue a copy of a job that searches around given lengths, which may lie outside its ranges.
+
+    The copy has a bookmark of the design with these lengths, unless the job has extra variables or choices.
+    """
     lengths = (request.crank_mm, request.rod_mm, request.offset_mm)
     tables = job_near_lengths(
         stored_front.problem, queue.store.tables(stored_front.job.id), lengths, share=request.share
     )
-    return queue.submit_copy(stored_front.job, tables)
+    record = queue.submit_copy(stored_front.job, tables)
+    if not (stored_front.problem.choices or stored_front.problem.parts()[0].mechanism.varying):
+        start = StoredDesign(stored_front.problem.part(0), tuple(length / 1e3 for length in lengths), 0)
+        with suppress(InputError):  # it cannot be assembled: the search around it may still find designs
+            variation_of(start, stored_front.result, stored_front.minimised_objectives)
+            name = f"Start, from run {stored_front.job.id}"
+            bookmark_design(queue.store, record["id"], dimensions=start.values, name=name)
+    return record

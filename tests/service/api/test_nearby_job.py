@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import tomllib
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
@@ -14,15 +15,21 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.service.designs.derived_jobs import job_near_lengths
 from slidercrank.service.store import Store
 from slidercrank.service.store.damage_check_and_backup import back_up
+from slidercrank.service.store.remarks import bookmarks_of
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of
 
 
 @pytest.fixture
-def client(solved: Solved, tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
-    path = tmp_path_factory.mktemp("nearby") / "store.db"
-    back_up(solved.store, path)
-    with Store(path) as store, client_of(store) as opened:
+def store(solved: Solved, tmp_path: Path) -> Iterator[Store]:
+    back_up(solved.store, tmp_path / "store.db")
+    with Store(tmp_path / "store.db") as opened:
+        yield opened
+
+
+@pytest.fixture
+def client(store: Store) -> Iterator[httpx.Client]:
+    with client_of(store) as opened:
         yield opened
 
 
@@ -53,11 +60,15 @@ def test_what_the_job_fixes_stays_fixed() -> None:
         job_near_lengths(parse_job(tables), tables, (120.0, 400.0, 60.0))
 
 
-def test_the_copy_is_queued_and_knows_where_it_is_from(client: httpx.Client, solved: Solved) -> None:
+def test_the_copy_is_queued_and_knows_where_it_is_from(store: Store, client: httpx.Client, solved: Solved) -> None:
     lengths = {"crank_mm": 138.0, "rod_mm": 650.0, "offset_mm": 60.0}
     made = client.post(f"{solved.path}/nearby", json=lengths)
     assert made.status_code == 201, made.text
     assert made.json()["origin"] == solved.number
     job = client.get(f"{API}/jobs/{made.json()['id']}/job").json()
     assert job["variables"]["rod"] == ["585 mm", "715 mm"]
+    (start,) = bookmarks_of(store, made.json()["id"])
+    assert (start.name, start.dimensions) == (f"Start, from run {solved.number}", pytest.approx((0.138, 0.65, 0.06)))
+    locked = client.post(f"{solved.path}/nearby", json={**lengths, "rod_mm": 195.0, "share": 0.9})
+    assert bookmarks_of(store, locked.json()["id"]) == []
     assert client.post(f"{solved.path}/nearby", json={**lengths, "share": 1.0}).status_code == 422

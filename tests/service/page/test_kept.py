@@ -154,6 +154,7 @@ def test_ticked_designs_are_kept_and_the_view_bars_nobody(opened: tuple[Page, st
     expect(page.locator(".kept tbody tr")).to_have_count(before + 1)
     require_accessible(page)
     page.get_by_role("button", name="Search near Design 2").press("Enter")
+    page.get_by_role("dialog").get_by_role("button", name="Start the search").press("Enter")
     expect(page).not_to_have_url(re.compile(f"jobs/{solved.number}[?]"))
     near = page.url.split("/jobs/")[1]
     job = httpx.get(f"{address}{API}/jobs/{near}", timeout=60.0).json()

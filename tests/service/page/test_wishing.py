@@ -103,7 +103,7 @@ def test_classes_speak_of_a_design_and_wishes_of_anybody_come_back(
         panel(page).get_by_role("button", name="time ratio improves").first.click()
     assert answered.value.json()["design"] == first["design"]
     expect(panel(page).get_by_label("Value for least transmission angle")).to_have_value("41")
-    panel(page).get_by_role("button", name="Without wishes").click()
+    panel(page).get_by_role("button", name="Clear wishes").click()
     expect(panel(page).get_by_role("link", name="Open the resulting design")).to_have_count(0)
 
 

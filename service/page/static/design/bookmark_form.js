@@ -6,6 +6,7 @@ import { get, patch, post } from "../lib/api.js";
 import { askFirst } from "../lib/dialog.js";
 import { fill, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
+import { withUnit } from "../lib/numbers.js";
 import { capital } from "../lib/words.js";
 
 /** @typedef {Pick<Api.Bookmarks, "designs" | "history">} List */
@@ -228,15 +229,26 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
  * @param {string} job @param {() => Page.Lengths} lengths @param {{ title: string, name?: string, act?: string }} looks
  */
 export function searchButton(job, lengths, { title, name, act }) {
-  const search = async () => go(["jobs", (await post(`jobs/${job}/nearby`, lengths())).id]);
+  const search = () =>
+    askFirst({
+      title: "Search near this design?",
+      content: h(
+        "p",
+        {},
+        `A new run of the same job varies ${Object.entries(lengths())
+          .map(([key, value]) => `${key.replace("_mm", "")} ${withUnit(value, "mm", 4)}`)
+          .join(", ")} by 10 %, the offset by at least 10 % of the crank. Fixed lengths stay.`,
+      ),
+      yes: "Start the search",
+      act: async () => go(["jobs", (await post(`jobs/${job}/nearby`, lengths())).id]),
+    });
   return h(
     "button",
     {
       type: "button",
-      title: "A separate run whose lengths vary by 10 % around these",
       "aria-label": name,
       "data-act": act,
-      onclick: ({ currentTarget }) => attempt(search, sayProblem, currentTarget),
+      onclick: search,
     },
     title,
   );

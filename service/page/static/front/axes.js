@@ -127,7 +127,6 @@ export function axisFields(explorer) {
         placeholder,
         "aria-label": `${label} ${headed(column)}`,
         onchange: take,
-        onkeydown: (event) => event.key === "Escape" && explorer.limit(key, null),
       });
     const least = input("min", low, "At least");
     const most = input("max", high, "At most");

@@ -137,7 +137,7 @@ export function marksPanel(explorer) {
   /** @param {number} row @param {string} name */
   function item(row, name) {
     const of = data.objectives
-      .map(({ column }) => withUnit(data.cell(column, row), data.column(column).unit, 4))
+      .map(({ column, title, unit }) => `${title} ${withUnit(data.cell(column, row), unit, 4)}`)
       .join(" · ");
     return h(
       "li",

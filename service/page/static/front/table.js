@@ -127,11 +127,15 @@ export function designTable(explorer) {
         ),
       ),
       h(
-        "a",
-        { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` },
-        "?",
+        "div",
+        { class: "way" },
+        explorer.data.better(key),
+        h(
+          "a",
+          { class: "what-is", href: helpLink(key), "aria-label": `What is ${column.title}?` },
+          "?",
+        ),
       ),
-      h("div", { class: "way" }, explorer.data.better(key)),
     );
   }
 

@@ -5,7 +5,7 @@ import { get, isAbort, post } from "../lib/api.js";
 import { fill, first, formOf, h, markInvalid, numberField } from "../lib/dom.js";
 import { attempt } from "../lib/notices.js";
 import { parseQuantity } from "../lib/quantity_text.js";
-import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
+import { ends, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
@@ -49,7 +49,7 @@ export function wishingPanel(explorer) {
     wrongDesign,
   );
   const solve = h("button", { class: "primary" }, "Solve");
-  const none = h("button", { type: "button", onclick: () => take(null) }, "Without wishes");
+  const none = h("button", { type: "button", onclick: () => take(null) }, "Clear wishes");
   const wrong = h("p", { class: "error", role: "alert" });
   const answer = h("div", { class: "wish-answer", "aria-live": "polite" });
   const before = h("div", { class: "wish-history" });
@@ -86,7 +86,7 @@ export function wishingPanel(explorer) {
   let earlierWishes = []; // of the run, by anyone
 
   /** @param {Api.Objective} objective */
-  function row({ quantity, title, unit }) {
+  function row({ quantity, title, unit, column }) {
     const id = `wish-${quantity}`;
     const kind = h(
       "select",
@@ -110,6 +110,7 @@ export function wishingPanel(explorer) {
       const wanted = kind.value === "value" || kind.value === "limit";
       for (const node of [value, units]) node.hidden = !wanted;
       units.textContent = unitOf(unit);
+      if (data.has(column)) value.placeholder = ends(data.range(column), unit).join(" to ");
     }
     return {
       quantity,
@@ -329,13 +330,15 @@ export function wishingPanel(explorer) {
         numberCell(one.quantity, one.reached, withUnit(one.reached, one.unit)),
         h(
           "td",
-          {},
+          { class: "number" },
           one.wish === "free"
             ? null
             : h(
                 "span",
                 { class: one.met ? "good" : "at-limit" },
-                one.met ? "✓ met" : `short by ${withUnit(one.short, one.unit, 3)}`,
+                one.met
+                  ? "✓ met"
+                  : `${objective?.sense === "maximise" ? "short" : "over"} by ${withUnit(one.short, one.unit, 3)}`,
               ),
         ),
         h(
@@ -430,5 +433,7 @@ export function wishingPanel(explorer) {
 /** Return by how much a value is from another, with its sign; of rounding alone, that they are equal. @param {number} value @param {number} other @param {string} unit */
 function signed(value, other, unit) {
   const by = value - other;
-  return Math.abs(by) <= SAME * Math.abs(other) ? "=" : `${by > 0 ? "+" : ""}${text(by, unit, 3)}`;
+  return Math.abs(by) <= SAME * Math.abs(other)
+    ? "="
+    : `${by > 0 ? "+" : ""}${withUnit(by, unit, 3)}`;
 }
