@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field
 from starlette.types import Receive, Scope, Send
 
 from ...model.errors import InputError
-from ..designs.changed_design import variation_of
+from ..designs.changed_design import judged_variation
 from ..designs.derived_jobs import SHARE, job_near_lengths, widen_limits
 from ..designs.stored_designs import StoredDesign
 from ..jobs.submission import job_json
@@ -144,7 +144,7 @@ def submit_search_nearby(stored_front: FrontDep, request: Nearby, queue: QueueDe
     if not (stored_front.problem.choices or stored_front.problem.parts()[0].mechanism.varying):
         start = StoredDesign(stored_front.problem.part(0), tuple(length / 1e3 for length in lengths), 0)
         with suppress(InputError):  # it cannot be assembled: the search around it may still find designs
-            variation_of(start, stored_front.result, stored_front.minimised_objectives)
+            judged_variation(start, stored_front.result, stored_front.minimised_objectives)
             name = f"Start, from run {stored_front.job.id}"
             bookmark_design(queue.store, record["id"], dimensions=start.values, name=name)
     return record
