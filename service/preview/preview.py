@@ -215,7 +215,7 @@ def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
     needed = crank.lower + nearest_line
     fixed = all(item.lower == item.upper for item in (crank, rod, offset))
     subject = "this crank does not rotate" if fixed else "no crank within these ranges rotates"
-    rule = f"{subject} fully: the rod must be longer than crank and offset together"
+    rule = f"{subject} fully: the rod must be longer than crank + offset"
     at_least, at_most = ("", "") if fixed else ("at least ", "at most ")
     longer = f" by more than {1e3 * (needed - rod.upper):.6g} mm" if needed > rod.upper else ""
     if needed < rod.upper:
@@ -223,8 +223,7 @@ def _locking_sentence(problem: Problem, tables: Mapping[str, Any]) -> str:
         sentence = f"hardly any {rule.removeprefix('no ')}; allow longer rods"
     else:
         sentence = (
-            f"{rule}, which take {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; "
-            f"lengthen the rod{longer}"
+            f"{rule}, {at_least}{1e3 * needed:.6g} mm; got {at_most}{1e3 * rod.upper:.6g} mm; lengthen the rod{longer}"
         )
     longest = f"{math.ceil(100.0 * _LONGER * 1e3 * needed) / 100.0:.10g} mm"
     stated = tables["variables"]["rod"]

@@ -80,6 +80,8 @@ declare namespace Page {
     centres: Point;
     /** Exact slider positions there, mm; the curves have only points. */
     sliderEnds: Point;
+    /** Crank angles between which it can move, deg; null for a whole turn. */
+    arc?: Point | null;
     /** Of the crank in a cycle; 0 of a swing forth and back. */
     turns: number;
     /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points; null: none is shown. */

@@ -219,13 +219,13 @@ def test_a_crank_that_locks_is_told_how_much_longer_a_rod_it_needs(shared: httpx
     lengths = {"crank": "50 mm", "rod": "80 mm", "offset": "-40 mm"}
     (said,) = preview(shared, {"variables": lengths})["allowed"]["said"]
     assert said == (
-        "this crank does not rotate fully: the rod must be longer than crank and offset together, which take 90 mm; "
+        "this crank does not rotate fully: the rod must be longer than crank + offset, 90 mm; "
         "got 80 mm; lengthen the rod by more than 10 mm"
     )
     assert preview(shared, {"variables": lengths | {"rod": "120 mm"}})["allowed"]["said"] == []
     ranges = {"crank": ["50 mm", "60 mm"], "rod": ["70 mm", "80 mm"], "offset": ["-40 mm", "-35 mm"]}
     (said,) = preview(shared, {"variables": ranges})["allowed"]["said"]
-    assert said.endswith("take at least 85 mm; got at most 80 mm; lengthen the rod by more than 5 mm")
+    assert said.endswith("offset, at least 85 mm; got at most 80 mm; lengthen the rod by more than 5 mm")
 
 
 def test_strokes_of_the_ranges_are_those_of_the_closed_form(shared: httpx.Client) -> None:

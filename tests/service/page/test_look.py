@@ -157,6 +157,40 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     assert list(store.jobs()) == []
 
 
+def test_a_crank_that_locks_stops_at_the_ends_of_its_arc(form: Open, store: Store) -> None:
+    page = form(store, "#/look?crank_mm=60&rod_mm=123.5&offset_mm=70", viewport={"width": 1280, "height": 900})
+    expect(page.get_by_role("alert")).to_contain_text("longer than crank + offset, 130 mm; got 123.5 mm")
+    angle = page.get_by_label("Crank angle")
+    low, high = (math.degrees(math.asin((70 - 123.5) / 60)), 180 - math.degrees(math.asin((70 - 123.5) / 60)))
+    for turned, end in (("265", math.floor(high)), ("280", 360 + math.ceil(low))):
+        angle.fill(turned)
+        expect(page.locator("output.angle")).to_have_text(f"{end}°")
+        expect(page.locator("output.where")).to_have_text(re.compile(r"slider at −?\d"))
+    page.get_by_role("button", name="Play").click()
+    seen = {int(page.locator("output.angle").inner_text()[:-1]) for _ in range(40) if not page.wait_for_timeout(20)}
+    assert len(seen) > 5
+    assert not seen & set(range(244, 297))
+    page.get_by_role("button", name="Pause").click()
+
+
+def test_a_crank_dragged_outwards_stays_in_the_picture(form: Open, store: Store) -> None:
+    page = form(store, "#/look?crank_mm=50&rod_mm=150&offset_mm=40", viewport={"width": 1280, "height": 900})
+    expect(fact(page, "Stroke")).to_be_visible()
+    grip = page.get_by_role("slider", name=re.compile("^Crank pin"))
+    x, y = place_of(grip)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for step in range(1, 9):
+        page.mouse.move(x + 10 * step, y - 8 * step)
+    assert number(page, "Crank") > 75.0
+    circle, picture = (page.locator(f".machines {part}").first.bounding_box() for part in ("circle.path", "svg"))
+    assert circle is not None
+    assert picture is not None
+    assert circle["y"] >= picture["y"]
+    assert circle["y"] + circle["height"] <= picture["y"] + picture["height"]
+    page.mouse.up()
+
+
 CLEARANCE = """range => {
   const label = document.querySelector(".dimension.radius text").getBoundingClientRect();
   const crank = document.querySelector(".machines .link.crank");

@@ -13,7 +13,7 @@ import { around, frameOf } from "../mechanism/frame.js";
  * @import { playback as playbackOf } from "../mechanism/playback.js"
  */
 
-const EVERY = 100; // ms between two readouts while it moves
+const EVERY = 100; // ms between two readouts of forces while it moves
 /** What sets the place in the cycle, and how, by the turns in it. */
 const WORDS = [
   ["Back and forth", "Drag the crank, or use the arrow and page keys to move it back and forth."],
@@ -87,7 +87,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
     h(
       "div",
       { class: "row controls" },
-      h("label", {}, "Speed ", pace),
+      h("label", {}, "Playback ", pace),
       !grips && h("label", {}, forces, " Forces"),
       largest,
     ),
@@ -158,7 +158,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
       machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)),
     );
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
-    machines.forEach(({ name, series, row, curves, centres, sliderEnds, outlines }, n) => {
+    machines.forEach(({ name, series, row, curves, centres, sliderEnds, arc, outlines }, n) => {
       const picture = drawings[n];
       const holder = /** @type {HTMLElement} */ (picture.node.parentElement);
       holder.dataset.series = String(series);
@@ -177,6 +177,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
         direction: turning.direction,
         dead_centres_deg: centres,
         slider_ends_mm: sliderEnds,
+        arc,
         largest_force: greatest,
         turns,
         outlines,
@@ -190,9 +191,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
   /** @param {{ angle: number, playing: boolean }} state */
   function updateControls({ angle: at, playing }) {
     for (const picture of drawings) picture.turn(at, !playing);
-    const now = performance.now();
-    if (!machines.length || (playing && now - since < EVERY)) return;
-    since = now;
+    if (!machines.length) return;
     angle.value = String(at);
     const words = `${Math.round(crankAt(machines[0], at)) % (turns === 2 ? 720 : 360)}°`.replace(
       "-",
@@ -202,6 +201,9 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
     const position = between(machines[0].curves.slider_position_mm, at);
     const slider = `${machines[0].outlines?.lever ? "cylinder" : "slider at"} ${withUnit(position, "mm", 4)}`;
     where.textContent = slider;
+    const now = performance.now();
+    if (playing && now - since < EVERY) return;
+    since = now;
     showSizes(at);
     if (playing) return;
     angle.setAttribute("aria-valuetext", `${words}, ${slider}`);

@@ -5,14 +5,14 @@ import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
 import { attached } from "./attached.js";
-import { fitted, frameOf, placeIn, sliderRange } from "./frame.js";
+import { around, fitted, frameOf, placeIn, sliderRange } from "./frame.js";
 import { cylinder, leverAt, leverScenery } from "./lever.js";
 import { bar, placed, scenery } from "./scenery.js";
 
 /**
  * @import { Frame, View } from "./frame.js"
  * @import { Grips } from "./grips.js"
- * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
+ * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, arc?: Page.Point | null, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
 const EVERY = 100; // ms between values while it moves; faster ones cannot be read
@@ -23,7 +23,7 @@ const EVERY = 100; // ms between values while it moves; faster ones cannot be re
  *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
  *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
  *   ([inner, outer]; without them those of the curve), slider_ends_mm (slider positions there, for the
- *   stroke dimension, which is omitted without them), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
+ *   stroke dimension, which is omitted without them), arc (crank angles between which it locks, deg), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
  *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
  *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js), outlines (of the API: piston,
  *   cylinders, actuator, body on the crank).
@@ -51,6 +51,8 @@ export function drawing(place, { label, grips = null }) {
   let current = null; // {linkage, motion, options}
   /** @type {View | null} */
   let view = null;
+  /** @type {Frame | null} */
+  let shownFrame = null;
   let angle = 0;
   let arrowed = false;
 
@@ -61,8 +63,9 @@ export function drawing(place, { label, grips = null }) {
     const { outlines } = options;
     const machineFrame = frameOf(linkage, motion, outlines);
     const { block, tall } = machineFrame;
-    if (!view || !grips?.isHeld())
-      view = fitted(options.frame ?? machineFrame, width, options.small);
+    // While a grip is held, the scale changes only where the mechanism would leave the picture.
+    shownFrame = shownFrame && grips?.isHeld() ? around([shownFrame, machineFrame]) : machineFrame;
+    view = fitted(options.frame ?? shownFrame, width, options.small);
     for (const one of [still, moving])
       one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
@@ -83,6 +86,7 @@ export function drawing(place, { label, grips = null }) {
             direction: options.direction ?? 1,
             written,
             swings: turns === 0,
+            arc: options.arc,
             outlines,
             hasStrokeAngles: grips !== null,
           }),

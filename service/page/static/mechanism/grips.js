@@ -31,6 +31,8 @@ export function grips({ changed, released }) {
   /** @type {keyof Page.Lengths | null} */
   let held = null;
   let from = /** @type {Page.Point} */ ([0, 0]); // of the grip to the pointer, mm
+  /** @type {View | null} */
+  let taken = null; // in which the grip was taken: a pointer keeps its scale
   const nodes = PARTS.map(({ key, title }) => {
     /** @type {Element} */
     const node = svg(key === "crank_mm" ? "circle" : key === "rod_mm" ? "rect" : "path", {
@@ -44,6 +46,7 @@ export function grips({ changed, released }) {
         event.preventDefault();
         node.setPointerCapture(event.pointerId);
         held = key;
+        taken = drawn.view;
         const [x, y] = pointed(node, event);
         const at = key === "crank_mm" ? drawn.pin : drawn.slider;
         from = [
@@ -72,7 +75,7 @@ export function grips({ changed, released }) {
   const pointed = (node, { clientX, clientY }) =>
     placeIn(
       /** @type {Element} */ (node.parentElement),
-      /** @type {View} */ (drawn?.view),
+      /** @type {View} */ (taken),
       clientX,
       clientY,
     );

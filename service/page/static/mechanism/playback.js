@@ -9,8 +9,8 @@ const TURNS = [16, 8, 4, 2, 1]; // s of a turn, to choose from
 const SHORTEST = 0.2; // s of a turn that a screen can show
 
 /**
- * Return the shared crank angle: {angle, direction, playing, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
- * rpm: cycles a minute, the sign the direction of the crank. cycle: what it is called. told({angle, playing, settled}) is called for every change and every frame; settled:
+ * Return the shared crank angle: {angle, direction, playing, arc, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
+ * rpm: cycles a minute, the sign the direction of the crank. arc: between which angles, deg, it stays, null for a whole turn. cycle: what it is called. told({angle, playing, settled}) is called for every change and every frame; settled:
  * whether nothing moves, so that what takes longer to draw may be drawn.
  * @param {number} rpm @param {AbortSignal} signal @param {string} cycle
  */
@@ -20,10 +20,13 @@ export function playback(rpm, signal, cycle = "one turn") {
   const paces = pacesOf(rpm, cycle);
   let frame = 0;
   let last = 0;
+  let sense = 1; // turned round at the ends of an arc
   const state = {
     angle: 0,
     direction: rpm < 0 ? -1 : 1,
     playing: false,
+    /** @type {Page.Point | null} */
+    arc: null,
     pace: paces.find((pace) => pace.chosen) ?? paces[0],
     paces,
   };
@@ -36,7 +39,9 @@ export function playback(rpm, signal, cycle = "one turn") {
   const step = (now) => {
     const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after the browser was suspended, it continues where it was
     last = now;
-    state.angle = turned(state.angle + (state.direction * 360 * seconds) / state.pace.seconds);
+    const next = state.angle + (sense * state.direction * 360 * seconds) / state.pace.seconds;
+    state.angle = within(next, state.arc);
+    if (Math.abs(signed(next - state.angle)) > 1e-9) sense = -sense;
     tell();
     frame = requestAnimationFrame(step);
   };
@@ -50,7 +55,7 @@ export function playback(rpm, signal, cycle = "one turn") {
   return Object.assign(state, {
     /** @param {number} angle */
     set(angle) {
-      state.angle = turned(angle);
+      state.angle = within(angle, state.arc);
       if (!frame) tell();
     },
     play() {
@@ -71,6 +76,18 @@ export function playback(rpm, signal, cycle = "one turn") {
       listener({ angle: state.angle, playing: state.playing, settled: !state.playing });
     },
   });
+}
+
+/** Return an angle in [-180, 180). @param {number} angle */
+function signed(angle) {
+  return turned(angle + 180) - 180;
+}
+
+/** Return an angle, or the end of an arc that is nearer to it, in [0, 360). @param {number} angle @param {Page.Point | null} arc */
+function within(angle, arc) {
+  if (!arc) return turned(angle);
+  const [middle, half] = [(arc[0] + arc[1]) / 2, (arc[1] - arc[0]) / 2];
+  return turned(middle + Math.min(Math.max(signed(angle - middle), -half), half));
 }
 
 /**

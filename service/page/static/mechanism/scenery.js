@@ -15,10 +15,10 @@ const PITCH = 9; // pixels between the strokes of a hatching
  * Return the parts that stand still, as SVG elements.
  * centres: the two dead centres, each {angle, position} in deg and mm, as the curve has them; ends: exact positions there, for the dimension; view: of frame.js; link: width of the links in pixels; written: whether
  * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API;
- * hasStrokeAngles: whether the crank angles of both strokes are drawn, if it rotates fully.
+ * arc: crank angles between which the crank locks, deg; hasStrokeAngles: whether the crank angles of both strokes are drawn, if it rotates fully.
  * @param {{
  *   linkage: Page.Lengths, centres: Centre[], ends?: Page.Point, view: View, block: number, tall: number, link: number, direction: number, written: boolean,
- *   swings?: boolean, outlines?: Api.Outlines, hasStrokeAngles?: boolean,
+ *   swings?: boolean, outlines?: Api.Outlines, arc?: Page.Point | null, hasStrokeAngles?: boolean,
  * }} options
  */
 export function scenery({
@@ -33,6 +33,7 @@ export function scenery({
   written,
   swings = false,
   outlines,
+  arc = null,
   hasStrokeAngles = false,
 }) {
   const { crank_mm: r, offset_mm: e } = linkage;
@@ -49,15 +50,15 @@ export function scenery({
   return [
     line("centre-line", [reach[0], y(0)], [reach[1], y(0)]),
     e === 0 ? null : line("centre-line", [reach[0], y(e)], [reach[1], y(e)]),
-    swings
-      ? arcOf(view, r, centres)
+    swings || arc
+      ? arcOf(view, r, arc?.map((angle) => ({ angle })) ?? centres)
       : svg("circle", { class: "path", cx: x(0), cy: y(0), r: view.unit * r }),
     line("path", [x(positions[0]), y(e)], [x(positions[1]), y(e)]),
     ...[-1, 1].map((side) => guide(start, end, y(e) - side * 0.54 * tall * view.unit, side)),
     ...centres.map((centre) => ghost(centre, linkage, view, block, tall, link)),
     ...(outlines?.cylinders ?? []).map((cylinder) => walls(view, cylinder, e)),
     outlines?.actuator ? barrel(view, outlines.actuator, e) : null,
-    swings ? null : rotation(view, r, direction),
+    swings || arc ? null : rotation(view, r, direction),
     offset(view, e, reach[0] + 20, written),
     written &&
       ends?.every(Number.isFinite) &&

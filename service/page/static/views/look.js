@@ -60,6 +60,7 @@ export async function show(place, { query, signal }) {
     grips({
       changed(lengths, at) {
         angle.pause();
+        angle.arc = null; // until its lengths are drawn
         if (at !== null) angle.set(at);
         take(lengths);
       },
@@ -141,15 +142,14 @@ export async function show(place, { query, signal }) {
     nothing.hidden = !fault;
     for (const part of [stage, strip]) part.hidden = Boolean(fault);
     for (const part of [curves, facts, next]) part.hidden ||= Boolean(fault) || locks;
+    facts.ariaBusy = String(!example);
     mend.hidden ||= Boolean(fault);
     if (fault) {
       wrong.textContent = fault;
       return false;
     }
-    if (locks) {
-      angle.pause();
-      angle.set(nearest(positions, angle.angle));
-    }
+    angle.arc = locks ? arcAround(positions, nearest(positions, angle.angle)) : null;
+    angle.set(angle.angle);
     /** @type {Page.Machine} */
     const machine = {
       name: "The mechanism",
@@ -161,11 +161,11 @@ export async function show(place, { query, signal }) {
       curveColumns: [],
       exact: example ? marked(example) : {},
       centres: example?.dead_centres_deg ?? ends(positions),
+      arc: angle.arc,
       sliderEnds: example?.slider_ends_mm ?? (locks ? [NaN, NaN] : [inner, outer]),
     };
     angle.direction = rpm < 0 ? -1 : 1;
     machines.show([machine]);
-    machines.fade(locks);
     if (example) {
       curves.hidden = false;
       charts.show([machine], PANELS, abscissaOf("angle", rpm));
@@ -288,6 +288,14 @@ function marked({ extremes }) {
 function ends(positions) {
   const found = extremes(positions);
   return found ? [found.low.angle, found.high.angle] : [0, 180];
+}
+
+/** Return the ends of the arc around a crank angle that a mechanism reaches, whole deg. @param {(number | null)[]} positions @param {number} angle @returns {Page.Point} */
+function arcAround(positions, angle) {
+  let [low, high] = [angle, angle];
+  while (positions[turned(low - 1)] !== null) low -= 1;
+  while (positions[turned(high + 1)] !== null) high += 1;
+  return [low, high];
 }
 
 /** Return the crank angle nearest to another that a mechanism reaches, deg. @param {(number | null)[]} positions @param {number} angle */
