@@ -18,7 +18,7 @@ from ..designs.derived_jobs import SHARE, job_near_lengths, widen_limits
 from ..designs.stored_designs import StoredDesign
 from ..jobs.submission import job_json
 from ..store import Job
-from ..store.remarks import bookmark_design
+from ..store.bookmarks_and_wishes import bookmark_design
 from .active_limits import LIMIT_PATH, Side
 from .computing import QuickRoute
 from .job_requests import (

@@ -14,8 +14,8 @@ from slidercrank.model.errors import InputError
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.designs.derived_jobs import job_near_lengths
 from slidercrank.service.store import Store
+from slidercrank.service.store.bookmarks_and_wishes import bookmarks_of
 from slidercrank.service.store.damage_check_and_backup import back_up
-from slidercrank.service.store.remarks import bookmarks_of
 from tests.service import fronts
 from tests.service.api.fixed_front import API, Solved, client_of
 
