@@ -21,7 +21,7 @@ from ..questions.design_question import BoundQuestion, QuestionCommand
 from ..questions.discovery import DESIGN_QUESTIONS, INPUTS, QUESTION_COMMANDS, TOPIC_OF_INPUT, TOPICS
 from ..questions.measured import MEASURED
 from ..questions.record_types import RecordSchema
-from ..render.formatting import plain_blocks
+from ..render.formatting import PlainBlock, plain_blocks
 from ..runs.result import json_ready
 from .blocks import AnswerBlock, block_models
 from .computing import LongRoute, QuickRoute
@@ -59,26 +59,12 @@ TopicName = Annotated[
 ]
 
 
-class BlockModel(BaseModel):
-    """Sentence, or a table if there are rows.
-
-    heading: whether the sentence is the heading of the next blocks. heads: column headings, empty if there are none.
-    right: whether a column is right-aligned. rows: cell texts.
-    """
-
-    sentence: str = Field(examples=["Motor"])
-    heading: bool = Field(examples=[True])
-    heads: list[str] = Field(examples=[[]])
-    right: list[bool] = Field(examples=[[]])
-    rows: list[list[str]] = Field(examples=[[]])
-
-
 class TopicAnswer(OfDesign):
     """Topic of a design. numbers: its part of `analyse --json`. told: its text. blocks: the text as data."""
 
     name: str = Field(examples=["balance"])
     numbers: Annotated[dict[str, Any], RecordSchema(lambda: [topic.record_type for topic in TOPICS.values()])]
-    told: list[BlockModel]
+    told: list[PlainBlock]
     blocks: list[AnswerBlock]
 
 
@@ -117,7 +103,7 @@ def show_topic(
             number=request.number,
             name=topic,
             numbers=bound_question.numbers_in_units(json_ready(numbers), units),
-            told=[BlockModel(**vars(block)) for block in plain_blocks(blocks, units)],
+            told=plain_blocks(blocks, units),
             blocks=block_models(blocks),
         )
         return (request.cache_key,), to_json(topic_model)

@@ -21,7 +21,7 @@ from ..designs.design_selection_options import chosen_row
 from ..designs.selection import chosen_rows, no_match_message, result_part
 from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import response_with_etag
-from ..runs.result import json_ready
+from ..runs.result import StoredObjective, json_ready
 from .models import PLAIN_DIGITS, JobNumber
 from .problem_documents import json_with_etag_options, problem_responses
 from .settings import StoreDep
@@ -48,17 +48,6 @@ Columns = Annotated[
     str | None, Query(max_length=2000, description="quantities or columns, separated by commas; all if left out")
 ]
 _EXAMPLE: Cells = {"crank_mm": 40.0, "rod_mm": 64.0, "offset_mm": 20.0, "peak_torque_Nm": 1.8, "slow_stroke": "inward"}
-
-
-class ObjectiveModel(BaseModel):
-    """Objective. column: its key in the designs. target: in `unit`, if the sense is "target"."""
-
-    quantity: str = Field(examples=["peak_torque"])
-    sense: str = Field(examples=["minimise"])
-    column: str = Field(examples=["peak_torque_Nm"])
-    title: str = Field(examples=["peak drive torque"])
-    unit: str = Field(examples=["N m"])
-    target: float | None = None
 
 
 class ColumnModel(BaseModel):
@@ -99,7 +88,7 @@ class FrontModel(BaseModel):
     message: str = Field(examples=["100 designs, 52428 evaluated"])
     count: int = Field(description="number of designs", examples=[100])
     columns: list[ColumnModel]
-    objectives: list[ObjectiveModel]
+    objectives: list[StoredObjective]
     hypervolume: float | None = Field(examples=[0.731])
     evaluations: int = Field(examples=[52428])
     seconds: float | None = Field(examples=[1.4])

@@ -60,7 +60,7 @@ declare global {
     type Kept = Schemas["BookmarkedDesign"];
     type Limit = Schemas["LimitModel"];
     type MadeWish = Schemas["WishRecordModel"];
-    type Objective = Schemas["ObjectiveModel"];
+    type Objective = Schemas["StoredObjective"];
     type Preset = Schemas["PresetModel"];
     type Preview = Schemas["PreviewModel"];
     type Progress = Schemas["JobProgress"];
