@@ -53,6 +53,11 @@ def arcsine(z: Any) -> Any:
     return np.arcsin(z)
 
 
+def arctangent(z: Any) -> Any:
+    """Return the angle in [-pi/2, pi/2], rad, whose tangent is z."""
+    return np.arctan(z)
+
+
 def magnitude(z: Any) -> Any:
     """Return z or -z, whichever has a nonnegative real part: |z|, with its derivative away from zero.
 

@@ -22,7 +22,7 @@ from numba.core.typing.context import BaseContext
 from numba.core.untyped_passes import InlineClosureLikes, InlineInlinables
 from numba.extending import overload, register_jitable
 
-from .arithmetic import FORMULAS, arcsine, inverse, magnitude, power, root
+from .arithmetic import FORMULAS, arcsine, arctangent, inverse, magnitude, power, root
 from .machine_code import MachineCode
 
 # Without `nnan` and `ninf`, because NaN must stay NaN. Vectorisation needs contraction and reassociation.
@@ -252,6 +252,20 @@ def _arcsine(z: Any) -> Any:
 
         def compiled(z: Any) -> Any:
             return _asin(z)
+
+    return compiled
+
+
+@overload(arctangent, jit_options=_FORMULA)
+def _arctangent(z: Any) -> Any:
+    if isinstance(z, types.Complex):
+
+        def compiled(z: Any) -> Any:
+            return complex(math.atan(z.real), z.imag / (1.0 + z.real * z.real))
+    else:
+
+        def compiled(z: Any) -> Any:
+            return math.atan(z)
 
     return compiled
 

@@ -101,9 +101,9 @@ def _is_known(number: Any) -> bool:
 
 def _arm_numbers(part: Callable[[str], Any]) -> tuple[Any, ...]:
     """Return the numbers of the arm as `LeverNumbers` has them. part: function of a number's name."""
-    mass, centre, inertia, *rest = (part(name) for name in LEVER if name.startswith("arm."))
+    mass, centre, inertia, torque, ram, *rest = (part(name) for name in LEVER if name.startswith("arm."))
     moment = mass * centre
-    return mass, moment, inertia + moment * centre, *rest
+    return mass, moment, inertia + moment * centre, torque, ram if _is_known(ram) else 0.0, *rest
 
 
 def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:

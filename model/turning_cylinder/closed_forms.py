@@ -92,5 +92,4 @@ def turn_work(c: LeverNumbers) -> Any:
     """Return the work of the crank in a full turn, J: that of the arm's torque, of the ram's force and of friction."""
     swing = arm_swing(c)
     angle = np.where(np.real(c.crank) < np.real(c.frame), 2.0 * swing, swing)
-    ram = np.where(np.isnan(np.real(c.ram)), 0.0, ram_stroke(c))
-    return c.arm_torque * angle + c.ram_force * ram + 2.0 * c.rub * travel(c)
+    return c.arm_torque * angle + c.ram_force * ram_stroke(c) + 2.0 * c.rub * travel(c)

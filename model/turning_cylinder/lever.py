@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import AssemblyError, InputError
-from ..kernel.arithmetic import magnitude
+from ..kernel.arithmetic import analytic, arctangent, inverse, magnitude, root
 
 _TURN = 2.0 * math.pi
 Vectors = NDArray[np.complex128]
@@ -69,7 +69,8 @@ class TurningCylinder:
 
         near: a lever angle on the same side of the dead points, at most half a turn from the results.
         """
-        return lever_angle_at(self, length, near)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return lever_angle_at(self, length, near)
 
     @property
     def length_range(self) -> tuple[float, float]:
@@ -202,6 +203,7 @@ class Motion(NamedTuple):
     turn_2: Any
 
 
+@analytic
 def motion_at(sizes: Any, lever_angle: Any) -> Motion:
     """Return the motion at lever angles, rad; complex for complex steps. sizes: numbers of `TurningCylinder`."""
     r, f, e = sizes.crank, sizes.frame, sizes.offset
@@ -209,31 +211,34 @@ def motion_at(sizes: Any, lever_angle: Any) -> Motion:
     rx, ry = np.cos(pin_direction), np.sin(pin_direction)
     sx, sy = r * rx - f * np.cos(sizes.frame_angle), r * ry - f * np.sin(sizes.frame_angle)
     square = sx * sx + sy * sy
-    length = np.sqrt(square - e * e)
-    lx, ly = (sx * length + sy * e) / square, (sy * length - sx * e) / square
+    length = root(square - e * e)
+    per_square, per_length = inverse(square), inverse(length)
+    lx, ly = (sx * length + sy * e) * per_square, (sy * length - sx * e) * per_square
     along, across = rx * lx + ry * ly, ry * lx - rx * ly
-    turn_1 = r * along / length
+    turn_1 = r * along * per_length
     length_1 = e * turn_1 - r * across
-    turn_2 = (-r * across * (1.0 - turn_1) - turn_1 * length_1) / length
-    length_2 = (r * f * np.cos(pin_direction - sizes.frame_angle) - length_1 * length_1) / length
+    turn_2 = (-r * across * (1.0 - turn_1) - turn_1 * length_1) * per_length
+    length_2 = (r * f * np.cos(pin_direction - sizes.frame_angle) - length_1 * length_1) * per_length
     return Motion((rx, ry), (sx, sy), (lx, ly), length, length_1, length_2, turn_1, turn_2)
 
 
+@analytic
 def lever_angle_at(sizes: Any, length: Any, near: Any) -> Any:
     """Return the lever angles of `TurningCylinder.lever_angle` for many levers; complex for complex steps."""
     shift = sizes.pin_angle - sizes.frame_angle
-    psi = np.real(near + shift)
+    psi = (near + shift).real
     turns = np.floor(psi / _TURN + 0.5)
-    side = np.where(psi - _TURN * turns >= 0.0, 1.0, -1.0)
+    side = 2.0 * (psi >= _TURN * turns) - 1.0
     return side * angle_at_length(sizes.crank, sizes.frame, sizes.offset, length) + (_TURN * turns - shift)
 
 
+@analytic
 def angle_error_at(sizes: Any, psi: Any, length: Any, errors: Any) -> Any:
     """Return the errors of `TurningCylinder.angle_error` at angles psi, rad; complex for complex steps."""
     r, f, cosine = sizes.crank, sizes.frame, np.cos(psi)
     total = length * errors.length + magnitude(sizes.offset) * errors.offset
     total = total + magnitude(r - f * cosine) * errors.crank + magnitude(f - r * cosine) * errors.frame
-    return total / (r * f * magnitude(np.sin(psi)))
+    return total * inverse(r * f * magnitude(np.sin(psi)))
 
 
 def pin_distance(crank: Any, frame: Any, psi: Any) -> Any:
@@ -244,18 +249,23 @@ def pin_distance(crank: Any, frame: Any, psi: Any) -> Any:
 def cylinder_length(crank: Any, frame: Any, offset: Any, psi: Any) -> Any:
     """Return the length L of the cylinder, m, at angles psi, rad; NaN where |offset| exceeds AB."""
     with np.errstate(invalid="ignore"):
-        return np.sqrt(pin_distance(crank, frame, psi) ** 2 - offset * offset)
+        return closing_length(crank, frame, offset, psi)
 
 
+@analytic
+def closing_length(crank: Any, frame: Any, offset: Any, psi: Any) -> Any:
+    """Return the length L of the cylinder, m, at angles psi, rad, at which the linkage closes."""
+    return root(crank * crank + frame * frame - 2.0 * crank * frame * np.cos(psi) - offset * offset)
+
+
+@analytic
 def angle_at_length(crank: Any, frame: Any, offset: Any, length: Any) -> Any:
     """Return psi in [0, pi], rad, at lengths of the cylinder, m; NaN out of reach; complex for complex steps.
 
     The law of cosines in tangent form: tan(psi / 2)^2 = (D^2 - (r - f)^2) / ((r + f)^2 - D^2).
     """
-    square = length * length + offset * offset
-    with np.errstate(invalid="ignore", divide="ignore"):
-        near, far = square - (crank - frame) ** 2, (crank + frame) ** 2 - square
-        return 2.0 * np.arctan(np.sqrt(near / far))
+    square, less, more = length * length + offset * offset, crank - frame, crank + frame
+    return 2.0 * arctangent(root((square - less * less) * inverse(more * more - square)))
 
 
 def sizes_for_stroke(

@@ -7,51 +7,22 @@ there, so both count.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..kernel.arithmetic import STEP, magnitude
+from ..kernel.arithmetic import STEP
 from ..signals.cycle_segments import Segments
 from ..signals.peak_search import find_maxima
-from ..swing.law import corners
+from ..swing.law import NO_TABLE, code_of, corners
 from ..swing.swing_types import LeverLaw
-from .states import LeverNumbers, lever_state, size
-from .turn import PIECES, turn_state
+from .curves import CURVES_OF_SWING, CURVES_OF_TURN, Complexes, fill_curves_of_swing, fill_curves_of_turn
+from .states import LeverNumbers
+from .turn import PIECES
 
-Curve = Callable[[LeverNumbers, Any], Any]
-"""A curve from the numbers of levers and their `LeverState` or, for a full turn, `TurnState`."""
-CURVES: dict[str, Curve] = {
-    "push": lambda c, s: c.rub + s.push,
-    "pull": lambda c, s: c.rub - s.push,
-    "push_pressure": lambda c, s: (c.rub + s.push) / c.full_area,
-    "pull_pressure": lambda c, s: (c.rub - s.push) / c.annular_area,
-    "push_share": lambda c, s: (c.rub + s.push) / (c.full_area * c.supply),
-    "pull_share": lambda c, s: (c.rub - s.push) / (c.annular_area * c.supply),
-    "buckling_share": lambda c, s: (c.rub + s.push) * s.length * s.length / c.buckling,
-    "push_power": lambda c, s: (c.rub + s.push) * magnitude(s.speed),
-    "pull_power": lambda c, s: (c.rub - s.push) * magnitude(s.speed),
-    "speed": lambda c, s: magnitude(s.speed),
-    "pin": lambda c, s: size(s.pin),
-    "pivot": lambda c, s: size(s.pivot),
-    "cylinder_pivot": lambda c, s: size(s.cylinder_pivot),
-    "angle_error": lambda c, s: s.angle_error,
-    "arm_speed_ratio": lambda c, s: magnitude(s.turn_1),
-    "arm_speed": lambda c, s: magnitude(s.turn_1 * c.speed),
-    "arm_rise_ratio": lambda c, s: s.turn_2,
-    "arm_fall_ratio": lambda c, s: -s.turn_2,
-    "arm_rise": lambda c, s: s.turn_2 * c.speed * c.speed,
-    "arm_fall": lambda c, s: -s.turn_2 * c.speed * c.speed,
-    "sliding_speed": lambda c, s: magnitude(s.length_1 * c.speed),
-    "ram_speed": lambda c, s: magnitude(s.ram_1 * c.speed),
-    "torque_up": lambda c, s: s.torque,
-    "torque_down": lambda c, s: -s.torque,
-}
-"""Curves whose greatest value counts, with the friction of the seal: of a swing, both ways together; of a full turn,
-those of the forces in the three pins and from `arm_speed_ratio` on."""
 _PANELS = 1.0
 _PEAKS = 4
 
@@ -85,6 +56,31 @@ class LeverBatch:
         """Breakpoints of the curves, which do not move: fractions of the time, or places of `turn_state`."""
         return np.arange(PIECES + 1.0) if self.of_full_turn else np.array([0.0, *corners(self.law), 1.0])
 
+    @cached_property
+    def tables(self) -> tuple[Complexes, ...]:
+        """Numbers (n, ...) of the levers, then with each step."""
+        return tuple(np.stack(numbers, axis=1, dtype=np.complex128) for numbers in (self.plain, *self.stepped))
+
+    def codes(self, curves: Sequence[str]) -> IntArray:
+        """Return the codes of curves by name."""
+        names = CURVES_OF_TURN if self.of_full_turn else CURVES_OF_SWING
+        return np.array([names.index(name) for name in curves])
+
+    def values(
+        self, table: Complexes, lever: IntArray, curve: IntArray, place: Array, probe: Array, *, slow: bool = False
+    ) -> Complexes:
+        """Return curves (p, k) of levers (p,) by their codes (p,) at places (p, k); probe (p,): in the same piece.
+
+        table: one of `tables`. slow: whether to ignore the law.
+        """
+        places, found = np.ascontiguousarray(place, dtype=np.complex128), np.empty(place.shape, np.complex128)
+        if self.of_full_turn:
+            fill_curves_of_turn(table, lever, curve, places, np.ascontiguousarray(probe), found)
+        else:
+            law = code_of("slow" if slow else self.law)
+            fill_curves_of_swing(table, law, NO_TABLE, lever, curve, places, np.ascontiguousarray(probe), found)
+        return found
+
 
 @dataclass(frozen=True)
 class LeverPeaks:
@@ -101,30 +97,24 @@ class LeverPeaks:
 
 @dataclass(frozen=True)
 class _Rows:
-    """Curves of levers as rows of a search: curve c of lever i is row c n + i."""
+    """Curves of levers as rows of a search: curve c of lever i is row c n + i. curves: codes."""
 
     batch: LeverBatch
-    curves: tuple[Curve, ...]
+    curves: IntArray
     numbers: int
 
-    def values(self, numbers: LeverNumbers, law: LeverLaw, row: IntArray, share: Any, probe: Array) -> Any:
-        """Return the curves (p, k) of rows at places (p, k). numbers: of the batch."""
+    def values(self, table: Complexes, row: IntArray, place: Array, probe: Array, *, slow: bool = False) -> Complexes:
+        """Return the curves (p, k) of rows at places (p, k); see `LeverBatch.values`."""
         curve, lever = np.divmod(row, self.batch.count)
-        c = LeverNumbers(*(number[lever, None] for number in numbers))
-        state: Any = turn_state(c, share, probe) if self.batch.of_full_turn else lever_state(c, law, share, probe)
-        found = self.curves[0](c, state)
-        for place, other in enumerate(self.curves[1:], 1):
-            found = np.where((curve == place)[:, None], other(c, state), found)
-        return found
+        return self.batch.values(table, lever, self.curves[curve], place, probe, slow=slow)
 
     def evaluate(
         self, row: IntArray, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return value, slope and derivatives; see `peak_search.Curve`. Breakpoints do not move."""
-        batch, within = self.batch, probe[:, None]
-        found = self.values(batch.plain, batch.law, row, place + 1j * STEP, within)
-        chosen = batch.stepped[: self.numbers] if gradients else ()
-        slopes = [self.values(stepped, batch.law, row, place, within).imag / STEP for stepped in chosen]
+        plain, *stepped = self.batch.tables[: 1 + self.numbers] if gradients else self.batch.tables[:1]
+        found = self.values(plain, row, place + 1j * STEP, probe)
+        slopes = [self.values(table, row, place, probe).imag / STEP for table in stepped]
         curve = np.stack([found.real, found.imag / STEP, *slopes], axis=-1)
         return curve, np.abs(found.real)
 
@@ -134,12 +124,15 @@ class _Rows:
 
     def at_rest(self) -> LeverPeaks:
         """Return the values (r, 2) with the cylinder at rest at both ends."""
-        row, ends = np.arange(len(self.curves) * self.batch.count), np.array([[0.0, 1.0]])
-        still = [c._replace(rate=0.0 * c.rate) for c in (self.batch.plain, *self.batch.stepped[: self.numbers])]
-        plain, *stepped = (self.values(c, "slow", row, ends, ends) for c in still)
+        row, ends = np.arange(len(self.curves) * self.batch.count), np.array([0.0, 1.0])
+        place, rate = np.tile(ends, (len(row), 1)), LeverNumbers._fields.index("rate")
+        still = [table.copy() for table in self.batch.tables[: 1 + self.numbers]]
+        for table in still:
+            table[:, rate] = 0.0
+        plain, *stepped = (self.values(table, row, place, np.full(len(row), 0.5), slow=True) for table in still)
         slopes = [part.imag / STEP for part in stepped]
         gradients = np.stack(slopes, axis=-1) if slopes else np.zeros((*plain.shape, 0))
-        return LeverPeaks(plain.real, np.broadcast_to(2.0 + ends, plain.shape), gradients)
+        return LeverPeaks(plain.real, 2.0 + place, gradients)
 
 
 def lever_peaks(
@@ -150,7 +143,7 @@ def lever_peaks(
     Those of curve c are columns c k to (c + 1) k. limit: local peaks of each curve, highest first; for a law other than
     slow, two values at rest at the ends follow.
     """
-    rows = _Rows(batch, tuple(CURVES[name] for name in curves), len(batch.stepped) if gradients else 0)
+    rows = _Rows(batch, batch.codes(curves), len(batch.stepped) if gradients else 0)
     count = batch.count * len(curves)
     cuts = batch.cuts
     pieces = len(cuts) - 1

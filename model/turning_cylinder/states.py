@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..kernel.arithmetic import analytic, inverse, root
 from ..swing.law import NO_TABLE, code_of, travel_and_derivatives_at
 from ..swing.swing_types import LeverLaw
-from .lever import Motion, angle_error_at, cylinder_length, lever_angle_at, motion_at
+from .lever import Motion, angle_error_at, closing_length, cylinder_length, lever_angle_at, motion_at
 
 Vector = tuple[Any, Any]
 
@@ -22,7 +23,8 @@ class LeverNumbers(NamedTuple):
     rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
     annular area; NaN if there is no bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN if
     there is none. supply: pressure; NaN if there is none, as closed_length and stroke. speed: of the crank, rad/s, if
-    it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; see `machine.arm`.
+    it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; ram: 0 without one; see
+    `machine.arm`.
     """
 
     crank: Any
@@ -59,7 +61,7 @@ class LeverNumbers(NamedTuple):
     arm_moment: Any = 0.0
     arm_inertia: Any = 0.0
     arm_torque: Any = 0.0
-    ram: Any = np.nan
+    ram: Any = 0.0
     ram_mass: Any = 0.0
     ram_force: Any = 0.0
 
@@ -72,18 +74,10 @@ class LeverNumbers(NamedTuple):
         """Length of the cylinder at start and end, m."""
         return self.length(self.start), self.length(self.end)
 
-    @property
-    def middle(self) -> Any:
-        """Lever angle half-way, rad."""
-        return 0.5 * (self.start + self.end)
 
-    @property
-    def errors(self) -> _Errors:
-        """Tolerances as `angle_error_at` takes them."""
-        return _Errors(self.crank_error, self.frame_error, self.offset_error, self.length_error)
+class Errors(NamedTuple):
+    """Tolerances as `angle_error_at` takes them."""
 
-
-class _Errors(NamedTuple):
     crank: Any
     frame: Any
     offset: Any
@@ -110,25 +104,35 @@ def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> Lever
 
     probe: fractions on the same side of the law's corners.
     """
-    first, last = c.ends
-    travel = last - first
-    s, s_1, s_2, _ = travel_and_derivatives_at(code_of(law), NO_TABLE, share, probe)
-    angle = lever_angle_at(c, first + travel * s, c.middle)
+    return state_in_swing(c, code_of(law), NO_TABLE, share, probe)
+
+
+@analytic
+def state_in_swing(c: LeverNumbers, law: int, table: Any, share: Any, probe: Any) -> LeverState:
+    """Return the state as `lever_state` does. law, table: as for `travel_and_derivatives_at`."""
+    shift = c.pin_angle - c.frame_angle
+    first = closing_length(c.crank, c.frame, c.offset, c.start + shift)
+    travel = closing_length(c.crank, c.frame, c.offset, c.end + shift) - first
+    s, s_1, s_2, _ = travel_and_derivatives_at(law, table, share, probe)
+    angle = lever_angle_at(c, first + travel * s, 0.5 * (c.start + c.end))
     motion = motion_at(c, angle)
     speed, acceleration = travel * s_1 * c.rate, travel * s_2 * c.rate * c.rate
-    turn = speed / motion.length_1
-    rise = (acceleration - motion.length_2 * turn * turn) / motion.length_1
+    per_length_1 = inverse(motion.length_1)
+    turn = speed * per_length_1
+    rise = (acceleration - motion.length_2 * turn * turn) * per_length_1
     push, pin, pivot, cylinder_pivot = _forces(c, angle, motion, turn, rise)
-    error = angle_error_at(c, angle + c.pin_angle - c.frame_angle, motion.length, c.errors)
+    errors = Errors(c.crank_error, c.frame_error, c.offset_error, c.length_error)
+    error = angle_error_at(c, angle + shift, motion.length, errors)
     return LeverState(angle, turn, motion.length, speed, motion.line, push, pin, pivot, cylinder_pivot, error)
 
 
+@analytic
 def _forces(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> tuple[Any, Vector, Vector, Vector]:
     """Return push and the forces on the lever at B and O and on the cylinder at A. turn, rise: of the lever."""
     bodies = bodies_at(c, angle, motion, turn, rise)
     pin = scaled(c.crank, motion.radial)
     force = difference(scaled(bodies.about_a, pin), scaled(bodies.about_o, motion.span))
-    force = scaled(1.0 / cross(motion.span, pin), force)
+    force = scaled(inverse(cross(motion.span, pin)), force)
     on_rod = difference(force, bodies.rod)
     return dot(on_rod, motion.line), force, difference(bodies.carried, force), difference(on_rod, bodies.barrel)
 
@@ -146,6 +150,7 @@ class Bodies(NamedTuple):
     about_a: Any
 
 
+@analytic
 def bodies_at(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> Bodies:
     """Return what the bodies need at a lever angle. turn, rise: speed and acceleration of the lever."""
     gravity = c.gravity_x, c.gravity_y
@@ -187,32 +192,38 @@ def _potential(c: LeverNumbers, angle: Any) -> Any:
     return -(c.gravity_x * moment_x + c.gravity_y * moment_y)
 
 
+@analytic
 def turning(vector: Vector, speed: Any, rate: Any) -> Vector:
     """Return the acceleration of the tip of a vector that turns with a body."""
     square = speed * speed
     return -vector[0] * square - vector[1] * rate, vector[0] * rate - vector[1] * square
 
 
+@analytic
 def scaled(factor: Any, vector: Vector) -> Vector:
     """Return a vector times a number."""
     return factor * vector[0], factor * vector[1]
 
 
+@analytic
 def difference(first: Vector, second: Vector) -> Vector:
     """Return the first vector less the second."""
     return first[0] - second[0], first[1] - second[1]
 
 
+@analytic
 def cross(first: Vector, second: Vector) -> Any:
     """Return the component of the cross product normal to the plane."""
     return first[0] * second[1] - first[1] * second[0]
 
 
+@analytic
 def dot(first: Vector, second: Vector) -> Any:
     """Return the scalar product."""
     return first[0] * second[0] + first[1] * second[1]
 
 
+@analytic
 def size(vector: Vector) -> Any:
     """Return the magnitude of a vector."""
-    return np.sqrt(dot(vector, vector))
+    return root(dot(vector, vector))

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..kernel.arithmetic import analytic, arcsine, inverse
 from .lever import Motion, motion_at
 from .states import LeverNumbers, Vector, bodies_at, cross, difference, dot, scaled, turning
 
@@ -30,7 +31,7 @@ class TurnState(NamedTuple):
     """State over a turn, SI and radians; primes are derivatives by the crank angle.
 
     stretch: d(crank angle) / d(place). line: direction of the line. turn_1, turn_2: gamma' and gamma''. length_1: L'.
-    ram_1: y' of a ram; NaN without one. torque: on the crank, counter-clockwise. pin, pivot: forces on the crank at B
+    ram_1: y' of a ram, 0 without one. torque: on the crank, counter-clockwise. pin, pivot: forces on the crank at B
     and O. cylinder_pivot: on arm and cylinder at A.
     """
 
@@ -48,27 +49,31 @@ class TurnState(NamedTuple):
     cylinder_pivot: Vector
 
 
+@analytic
 def stroke_ends(c: Any) -> tuple[Any, Any]:
     """Return the angles a and b, rad: the fast stroke lasts from psi = -a to psi = b, through 0.
 
     c: `LeverNumbers` or `TurningCylinder`.
     """
     r, f, e = c.crank, c.frame, c.offset
-    swings = np.real(r) < np.real(f)
-    lesser, greater = np.where(swings, r, f), np.where(swings, f, r)
-    side = np.where(swings, e, -e)
-    return np.arccos((lesser - side) / greater), np.arccos((lesser + side) / greater)
+    swings = 1.0 * (r.real < f.real)
+    lesser, per_greater = swings * r + (1.0 - swings) * f, inverse(swings * f + (1.0 - swings) * r)
+    side = (2.0 * swings - 1.0) * e
+    return 0.5 * np.pi - arcsine((lesser - side) * per_greater), 0.5 * np.pi - arcsine((lesser + side) * per_greater)
 
 
+@analytic
 def turn_state(c: LeverNumbers, place: Any, probe: Any) -> TurnState:
     """Return the state at places, whose whole part is the piece of the turn and whose fraction is even in the angle.
 
     probe: places within the same piece. Place 0 and 4 are the start of the fast stroke.
     """
     before, after = stroke_ends(c)
-    piece = np.clip(np.floor(np.real(probe)), 0, PIECES - 1)
-    cuts = -before, 0.0 * before, after, np.pi + 0.0 * before, _TURN - before
-    low, high = (np.choose(piece.astype(int), [cut + 0.0 * place for cut in ends]) for ends in (cuts[:-1], cuts[1:]))
+    piece = np.minimum(np.maximum(np.floor(probe), 0.0), PIECES - 1.0)
+    fast, last = 1.0 * (piece < 2.0), 1.0 * (piece > 2.0)
+    opening, middle = 1.0 * (piece < 1.0), 1.0 * (piece > 1.0) - last
+    low = -opening * before + middle * after + last * np.pi
+    high = (fast - opening) * after + middle * np.pi + last * (_TURN - before)
     psi = low + (place - piece) * (high - low)
     return _state(c, psi + c.frame_angle - c.pin_angle, piece, high - low)
 
@@ -81,50 +86,40 @@ def place_of_angle(c: LeverNumbers, crank_angle: Any) -> Any:
     return np.interp(psi, [float(cut) for cut in cuts], np.arange(PIECES + 1.0))
 
 
+@analytic
 def _state(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
     motion = motion_at(c, angle)
-    way = np.where(np.real(c.speed) < 0.0, -1.0, 1.0)
+    way = 1.0 - 2.0 * (c.speed.real < 0.0)
     bodies = bodies_at(c, angle, motion, c.speed, 0.0 * c.speed)
     arm, ram, moment, ram_1 = _arm(c, motion, piece, way)
-    extends = np.where((piece == 1) | (piece == 2), way, -way)
+    extends = way * (1.0 - 2.0 * (piece < 1.0) - 2.0 * (piece > 2.0))
     along = dot(bodies.rod, motion.line) - c.rub * extends
-    across = (bodies.about_a + moment + c.offset * along) / motion.length
+    across = (bodies.about_a + moment + c.offset * along) * inverse(motion.length)
     x, y = motion.line
     force = along * x - across * y, along * y + across * x
     torque = bodies.about_o - cross(scaled(c.crank, motion.radial), force)
     on_cylinder = difference(difference(force, bodies.rod), bodies.barrel)
-    return TurnState(
-        crank_angle=angle,
-        stretch=stretch,
-        line=motion.line,
-        length=motion.length,
-        turn_1=motion.turn_1,
-        turn_2=motion.turn_2,
-        length_1=motion.length_1,
-        ram_1=ram_1,
-        torque=torque,
-        pin=force,
-        pivot=difference(bodies.carried, force),
-        cylinder_pivot=difference(difference(on_cylinder, arm), ram),
-    )
+    pivot, cylinder_pivot = difference(bodies.carried, force), difference(difference(on_cylinder, arm), ram)
+    place = (angle, stretch, motion.line, motion.length)
+    turn = (motion.turn_1, motion.turn_2, motion.length_1, ram_1)
+    return TurnState(*place, *turn, torque, force, pivot, cylinder_pivot)
 
 
+@analytic
 def _arm(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector, Vector, Any, Any]:
     """Return the weight of the arm less its m a, the force of the ram on the arm, their moment about A, and y'."""
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * c.speed, motion.turn_2 * c.speed * c.speed
     centre = scaled(c.arm_moment, motion.line)
     arm = difference(scaled(c.arm_mass, gravity), turning(centre, line_1, line_2))
-    rotates = np.real(c.frame) < np.real(c.crank)
-    fast = piece < 2
-    against = c.arm_torque * np.where(rotates | ~fast, way, -way)
+    slow = 1.0 * (piece > 1.0)
+    rotates = 1.0 * (c.frame.real < c.crank.real)
+    against = c.arm_torque * way * (2.0 * slow - 1.0 + 2.0 * rotates * (1.0 - slow))
     frame = np.cos(c.frame_angle), np.sin(c.frame_angle)
     normal = -frame[1], frame[0]
     pin = scaled(c.ram, motion.line)
     speed_1 = dot((-pin[1], pin[0]), normal)
     acceleration = dot(turning(pin, line_1, line_2), normal)
-    load = np.where(fast, 0.0, -way * c.ram_force)
-    push = c.ram_mass * (acceleration - dot(gravity, normal)) + load
-    push, lever = np.where(np.isnan(np.real(c.ram)), 0.0, push), np.where(np.isnan(np.real(c.ram)), 0.0, speed_1)
-    moment = cross(centre, gravity) - c.arm_inertia * line_2 - against - push * lever
+    push = c.ram_mass * (acceleration - dot(gravity, normal)) - slow * way * c.ram_force
+    moment = cross(centre, gravity) - c.arm_inertia * line_2 - against - push * speed_1
     return arm, scaled(-push, normal), moment, speed_1 * motion.turn_1

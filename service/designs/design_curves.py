@@ -227,7 +227,7 @@ def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) ->
     ]
     if speed:
         columns.append(("cylinder_speed_m_s", "speed along the arm", "m/s", speed * found.length_1))
-    if speed and not np.isnan(found.ram_1).any():
+    if speed and np.any(found.ram_1):
         columns.append(("ram_speed_m_s", "speed of the ram", "m/s", speed * found.ram_1))
     names = {"pin": "crank pin force", "pivot": "crank pivot force", "cylinder_pivot": "arm pivot force"}
     for name, title in names.items():

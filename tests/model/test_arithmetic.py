@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from slidercrank.model.kernel.arithmetic import STEP, arcsine, inverse, magnitude, root
+from slidercrank.model.kernel.arithmetic import STEP, arcsine, arctangent, inverse, magnitude, root
 from slidercrank.model.kernel.compiler import register_formulas
 
 CASES: list[tuple[str, Callable[[Any], Any], float, float, float]] = [
@@ -20,6 +20,7 @@ CASES: list[tuple[str, Callable[[Any], Any], float, float, float]] = [
     ("arcsine", arcsine, 0.6, math.asin(0.6), 1.25),
     ("arcsine", arcsine, -0.6, -math.asin(0.6), 1.25),
     ("arcsine", arcsine, 0.0, 0.0, 1.0),
+    ("arctangent", arctangent, -2.0, -math.atan(2.0), 0.2),
     ("magnitude", magnitude, 2.5, 2.5, 1.0),
     ("magnitude", magnitude, -2.5, 2.5, -1.0),
 ]
@@ -58,5 +59,5 @@ def test_magnitude_runs_over_arrays() -> None:
 
 
 def test_nan_stays_nan_in_kernels() -> None:
-    for function in (inverse, root, arcsine, magnitude):
+    for function in (inverse, root, arcsine, arctangent, magnitude):
         assert math.isnan(compiled(function)(math.nan))
