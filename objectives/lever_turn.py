@@ -16,9 +16,8 @@ from .lever_quantity import LeverForm, LeverPeak, LeverRms
 from .machine_needs import SPEED as CRANK_SPEED
 from .quantity import Domain, Group
 
-_turn = {"moved_by": ("turning crank",), "picture": "cylinder"}
-_form = partial(LeverForm, group=Group.MOTION, **_turn)
-_peak = partial(LeverPeak, group=Group.MOTION, **_turn)
+_form = partial(LeverForm, group=Group.MOTION, moved_by=("turning crank",), picture="cylinder")
+_peak = partial(LeverPeak, group=Group.MOTION, moved_by=("turning crank",), picture="cylinder")
 _fast = partial(_peak, needs=(CRANK_SPEED,))
 
 ARM_TIME_RATIO = _form(

@@ -101,7 +101,7 @@ def swing_of(mechanism: MechanismPart, motion: MotionPart) -> Swing | None:
         return swing
     if "driver" in motion.model_fields_set:
         raise JobError(
-            f"motion.driver: the cylinder drives the lever; got {motion.driver}; leave it out, and give the tolerance "
-            "of the cylinder as length_tolerance in [cylinder]"
+            f"motion.driver: the cylinder drives the lever; got {'crank' if swing is None else swing.driver}; leave it "
+            "out, and give the tolerance of the cylinder as length_tolerance in [cylinder]"
         )
     return CRANK_TURN if swing is None else replace(swing, driver="cylinder")

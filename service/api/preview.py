@@ -333,7 +333,7 @@ def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float])
     clipped_angles = np.radians(np.clip(angles, low, high))
     places = {angle % 360: possible.position_at(at) for angle, at in zip(angles, clipped_angles, strict=True)}
     curve = [places.get(angle, math.nan) for angle in range(360)]
-    ends = [possible.position_at(end) for end in (swing.start, swing.end)]
+    ends = possible.ends_of(swing)
     crank, rod, offset = (1e3 * length for length in lengths)
     lever = possible.example_lever
     return SwingExample(

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.service.store import Store
-from tests.optimise.problems import LEVER
+from tests.optimise.problems import LEVER, SHAPER
 from tests.service.api.fixed_front import API, client_of
 from tests.service.api.swinging import solved_at_once
 
@@ -74,3 +74,30 @@ def test_designs_of_levers_are_answered_or_refused_in_one_sentence(tmp_path: Pat
             assert swing["travel_mm"][0] <= example["travel_mm"] <= swing["travel_mm"][1]
             assert example["feasible"]
             assert example["outlines"]["lever"]["frame_angle_deg"] == pytest.approx(-60.0)
+
+
+@pytest.mark.slow
+def test_designs_of_a_crank_that_turns_an_arm_are_answered_or_refused_in_one_sentence(tmp_path: Path) -> None:
+    with Store(tmp_path / "store.db") as store:
+        number = solved_at_once(store, SHAPER)
+        with client_of(store) as client:
+            design = f"{API}/jobs/{number}/designs/1"
+            for path in ANSWERED:
+                answer = client.get(design + path)
+                assert answer.status_code == (422 if path.startswith("/lever") else 200), (path, answer.text)
+            for path in REFUSED:
+                answer = client.get(design + path)
+                assert answer.status_code == 422, (path, answer.text)
+                assert "needs a crank with rod and slider" in answer.json()["detail"], path
+            found = client.get(f"{design}/curves", params={"angles": 400}).json()
+            curves, numbers = found["curves"], client.get(design).json()["design"]
+            assert curves["lever_angle_deg"][::100] == pytest.approx([0.0, 90.0, 180.0, 270.0])
+            assert max(map(abs, curves["torque_Nm"])) == pytest.approx(numbers["peak_crank_torque_Nm"], rel=1e-3)
+            assert max(map(abs, curves["ram_speed_m_s"])) == pytest.approx(numbers["peak_ram_speed_m_s"], rel=1e-3)
+            assert found["outlines"]["extent_mm"][0] < found["outlines"]["extent_mm"][2]
+            preview = client.post(f"{API}/preview", json={"job": SHAPER})
+            assert preview.status_code == 200, preview.text
+            swing = preview.json()["swing"]
+            assert (swing["from_deg"], swing["to_deg"]) == pytest.approx((0.0, 360.0))
+            least = min(swing["example"]["crank_mm"], swing["example"]["rod_mm"])
+            assert swing["example"]["travel_mm"] == pytest.approx(2.0 * least, rel=0.1)
