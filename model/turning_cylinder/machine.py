@@ -65,8 +65,8 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
         lever_swing(mechanism, linkage, swing),
     )
     cylinder = mechanism.lever.cylinder
-    ends = sizes.length_range if placed.of_full_turn else (float(sizes.length(e)) for e in (placed.start, placed.end))
-    shortest, longest = sorted(ends)
+    ends = float(sizes.length(placed.start)), float(sizes.length(placed.end))
+    shortest, longest = sorted(sizes.length_range if placed.of_full_turn else ends)
     known = cylinder.closed_and_stroke(longest - shortest)
     length = shortest if known is None else known[0]
     machine = LeverMachine(

@@ -57,6 +57,12 @@ class PossibleSwing(Feasibility):
             return float(lever_sizes(self.example_lever, Linkage(*self.example)).length(crank_angle))
         return float(slider_positions(crank_angle, self.branch, np.array([self.example]))[0])
 
+    def ends_of(self, swing: Swing) -> tuple[float, float]:
+        """Return the positions at both ends of the example's swing, m; of a full turn the least and the greatest."""
+        if self.example_lever is not None and self.example is not None and swing.of_full_turn:
+            return lever_sizes(self.example_lever, Linkage(*self.example)).length_range
+        return self.position_at(swing.start), self.position_at(swing.end)
+
 
 def possible_swing(tables: Mapping[str, Any], full_problem: Problem | None) -> PossibleSwing | None:
     """Return the values that the ranges of a job allow; None for full rotation, and while the job is unreadable.
