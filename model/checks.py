@@ -44,7 +44,7 @@ def require_all_finite(subject: str, values: Iterable[float], suffix: str = "") 
             raise InputError(f"{subject} must be finite{suffix and f' {suffix}'}; got {value}")
 
 
-def require_kinds(
+def require_field_types(
     owner: object, kinds: Mapping[str, type | UnionType], remedy: str, *, item_by_item: bool = False
 ) -> None:
     """Raise an error for fields whose type differs from their annotation.

@@ -30,7 +30,7 @@ class NamingExtra:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         if not isinstance(error, ModuleNotFoundError) or error.name is None:
             return
-        extra = extra_of(error.name)
+        extra = extra_for_package(error.name)
         if extra is not None:
             raise MissingExtra(
                 f'{self._use} the extra "{extra}", which is not installed; install it: pip install '
@@ -53,7 +53,7 @@ def is_installed(package: str) -> bool:
         return False
 
 
-def extra_of(package: str) -> str | None:
+def extra_for_package(package: str) -> str | None:
     """Return the extra that installs a package, from the package's import name; None if there is none."""
     from importlib.metadata import PackageNotFoundError, requires
 

@@ -29,14 +29,14 @@ _TAIL = 3  # Legendre coefficients that show whether a panel is resolved
 
 
 @lru_cache(maxsize=8)
-def gauss(count: int) -> tuple[Array, Array]:
+def gauss_nodes_and_weights(count: int) -> tuple[Array, Array]:
     """Return the Gauss nodes on [0, 1] and their weights, whose sum is 1."""
     nodes, weights = legendre.leggauss(count)
     return 0.5 * (1.0 + nodes), 0.5 * weights
 
 
 @lru_cache(maxsize=8)
-def graded_gauss(panels: int, grades: int) -> tuple[Array, Array]:
+def graded_gauss_nodes_and_weights(panels: int, grades: int) -> tuple[Array, Array]:
     """Return nodes on [0, 1], 20 in each panel and denser towards both ends, with their weights."""
     nodes, weights = legendre.leggauss(20)
     edges, half = np.linspace(0.0, 1.0, panels + 1), 0.5 / panels
@@ -54,7 +54,7 @@ def legendre_fit_matrix(count: int) -> Array:
     return np.asarray((np.arange(count) + 0.5)[:, None] * (weights[:, None] * legendre.legvander(nodes, count - 1)).T)
 
 
-NODES, WEIGHTS = gauss(DEGREE + 1)
+NODES, WEIGHTS = gauss_nodes_and_weights(DEGREE + 1)
 """Nodes of a panel on [0, 1], and their weights."""
 FIT = legendre_fit_matrix(DEGREE + 1)
 """Matrix from values at the nodes to the coefficients of a panel's polynomial."""
@@ -75,7 +75,7 @@ Samples = tuple[Mask, list[NDArray[Any]]]
 """Panels (p,) that are not resolved, and arrays (p, ...) to be collected from resolved panels."""
 
 
-def resolve(
+def resolve_panels(
     sample: Callable[..., Samples],
     low: Array,
     width: Array,

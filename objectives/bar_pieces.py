@@ -13,7 +13,7 @@ from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.memoise import memoise_by_batch
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import PINS, formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers
 from ..model.machine.strength import Strength
 from ..model.signals.peaks import STORED_PEAKS, find_peaks
 from ..model.signals.signals import Signal
@@ -184,7 +184,7 @@ class BarPeak(BarQuantity):
             size = (
                 (np.ones(len(designs)), np.zeros(designs.shape) if gradients else None)
                 if section is None
-                else formula_of_numbers(mechanism, designs, section, gradients=gradients)
+                else evaluate_formula_of_raw_numbers(mechanism, designs, section, gradients=gradients)
             )
             parts.append(
                 part.closed_form_divided_by_pieces(_scaled(size, scale))

@@ -12,7 +12,7 @@ import numpy as np
 from ..model.kinematics.closed_forms import ClosedForm, closed_form_value, evaluate_closed_form
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import require_width
+from ..model.machine.raw_numbers_of_designs import require_design_columns
 from .bounds_over_ranges import QuantityBounds
 from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
 
@@ -75,7 +75,7 @@ def _closed_form_value(form: ClosedForm, number: Number) -> Any:
 def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
     """Return values (n,) and gradients (n, 3 + k); a closed form depends on the three dimensions alone."""
     designs = np.asarray(designs, dtype=np.float64)
-    require_width(mechanism, designs)
+    require_design_columns(mechanism, designs)
     values, slopes = evaluate_closed_form(form, designs[:, :3], gradients=gradients)
     if slopes is None or not mechanism.varying:
         return values, slopes

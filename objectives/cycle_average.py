@@ -9,7 +9,7 @@ from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import raw_number_at_slot
-from ..model.signals.averages import average
+from ..model.signals.averages import signal_averages
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .quantity import Array, Quantity, Values, fact
@@ -37,7 +37,7 @@ class CycleAverage(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        averages = average(mechanism, self.signal, dimensions, gradients=gradients)
+        averages = signal_averages(mechanism, self.signal, dimensions, gradients=gradients)
         values, slopes = (
             (averages.mean, averages.mean_gradients)
             if self.statistic == "mean"

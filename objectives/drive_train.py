@@ -11,7 +11,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import DRIVE, formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import DRIVE, evaluate_formula_of_raw_numbers
 from ..model.signals.motor_curves import MotorCurve, motor_averages, motor_peaks
 from ..model.signals.peaks import STORED_PEAKS
 from ..model.signals.shaft_statistics import greatest_speed_ratio
@@ -40,7 +40,7 @@ class MotorQuantity(Quantity):
 
     def scale(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool) -> tuple[Array, Array | None]:
         """Return the factor (n,) that converts the load to the quantity, and its derivatives (n, 3 + k)."""
-        return formula_of_numbers(mechanism, dimensions, self.factor, gradients=gradients)
+        return evaluate_formula_of_raw_numbers(mechanism, dimensions, self.factor, gradients=gradients)
 
     def factor(self, number: Number) -> float:
         """Return the factor that converts the load to the quantity: real, complex, or an enclosure."""

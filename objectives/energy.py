@@ -8,10 +8,10 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
 from ..model.machine.two_turn_machine import cycle_turns
 from ..model.machine.work_absorption import with_loads_alone
-from ..model.signals.averages import average_torque
+from ..model.signals.averages import torque_averages
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
 from .average_torque import MEAN_TORQUE
 from .kinds import ENERGY, RATIO
@@ -43,7 +43,9 @@ def _friction_heat(mechanism: Mechanism, designs: Array, work: TurnWork) -> tupl
     heat = np.zeros(len(designs))
     slopes = None if work.gradients is None else np.zeros(designs.shape)
     for place, formula in _COEFFICIENTS.items():
-        factor, factor_slopes = formula_of_numbers(mechanism, designs, formula, gradients=slopes is not None)
+        factor, factor_slopes = evaluate_formula_of_raw_numbers(
+            mechanism, designs, formula, gradients=slopes is not None
+        )
         mean = np.where(np.isinf(work.mean[:, place]), 0.0, work.mean[:, place])
         heat += _TURN * factor * mean
         if slopes is not None and factor_slopes is not None and work.gradients is not None:
@@ -59,7 +61,7 @@ def _useful_work(mechanism: Mechanism, designs: Array, work: TurnWork) -> tuple[
     if not any(load.on_crank for load in mechanism.loads):
         return _TURN * work.mean[:, LOAD], None if work.gradients is None else _TURN * work.gradients[:, LOAD]
     alone, factor = with_loads_alone(mechanism), _TURN * mechanism.direction
-    averages = average_torque(alone, designs, gradients=work.gradients is not None)
+    averages = torque_averages(alone, designs, gradients=work.gradients is not None)
     return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 
 
@@ -68,7 +70,7 @@ def _drive_work(mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[
 
     NaN where friction locks the linkage.
     """
-    averages = average_torque(mechanism, designs, gradients=gradients)
+    averages = torque_averages(mechanism, designs, gradients=gradients)
     factor = _TURN * cycle_turns(mechanism) * mechanism.direction
     return factor * averages.mean, None if averages.mean_gradients is None else factor * averages.mean_gradients
 

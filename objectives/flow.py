@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.cycle.gas_cycle import cylinders, gas_cycle_number
+from ..model.cycle.gas_cycle import cylinder_loads, gas_cycle_number
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
 from ..model.machine.cylinder_machines import cylinder_count
@@ -22,7 +22,7 @@ from ..model.machine.loads.stroke_force import StrokeForce
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.memoise import memoise_by_machine
 from ..model.machine.raw_machine_vector import LOAD_SLOTS, Raw
-from ..model.machine.raw_numbers_of_designs import formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
 from ..model.machine.varying_numbers import Varying
 from ..model.signals.peaks import find_peaks
 from ..model.signals.shaft_statistics import mean_speed_ratio
@@ -45,7 +45,9 @@ class Flow(Quantity):
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         factor = mechanism.direction * mean_speed_ratio(mechanism) / (2.0 * math.pi)
-        rate = formula_of_numbers(mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients)
+        rate = evaluate_formula_of_raw_numbers(
+            mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients
+        )
         volume = gas_cycle_number(mechanism, dimensions, lambda gas: gas.delivered, gradients=gradients)
         return Values(*volume).times(Values(*rate))
 
@@ -73,7 +75,9 @@ class FlowRipple(Quantity):
 
     def _peak_to_trough_pieces(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
         n, pumps = len(designs), list(pumps_of(mechanism))
-        areas = [formula_of_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps]
+        areas = [
+            evaluate_formula_of_raw_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps
+        ]
         machine, count = _machine_with_flow_as_torque(mechanism), cylinder_count(mechanism)
         flow_designs = np.column_stack([designs[:, :3], *(area for area, _ in areas), np.zeros(n)])
         peaks = find_peaks(machine, Signal.TORQUE, flow_designs, limit=peak_count, gradients=True)
@@ -86,7 +90,7 @@ class FlowRipple(Quantity):
         assert peaks.gradients is not None
         assert troughs.gradients is not None
         slopes = (peaks.gradients[:, :, None] + troughs.gradients[:, None]).reshape(*shape, -1) @ chain
-        mean, mean_slopes = formula_of_numbers(
+        mean, mean_slopes = evaluate_formula_of_raw_numbers(
             mechanism, designs, lambda number: _mean_delivery(number, pumps, count), gradients=True
         )
         assert mean_slopes is not None
@@ -100,7 +104,9 @@ class FlowRipple(Quantity):
 def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
     """Return the liquid pumps among a machine's loads, by index."""
     return {
-        k: load for k, load in cylinders(mechanism) if isinstance(load, Compressor) and load.compression_exponent == 0.0
+        k: load
+        for k, load in cylinder_loads(mechanism)
+        if isinstance(load, Compressor) and load.compression_exponent == 0.0
     }
 
 

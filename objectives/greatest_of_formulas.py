@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.raw_numbers_of_designs import formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
 from .quantity import Array, Pieces, Quantity, Values, undefined
 
 
@@ -41,7 +41,7 @@ class GreatestOfFormulas(Quantity):
         designs = np.asarray(dimensions, dtype=np.float64)
         with np.errstate(invalid="ignore"):
             evaluations = [
-                formula_of_numbers(mechanism, designs, formula, gradients=gradients)
+                evaluate_formula_of_raw_numbers(mechanism, designs, formula, gradients=gradients)
                 for formula in self.formulas(mechanism)
             ]
         values = np.stack([value for value, _ in evaluations], axis=1)

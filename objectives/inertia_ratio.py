@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.raw_numbers_of_designs import DRIVE, formula_of_numbers
-from ..model.signals.averages import average
+from ..model.machine.raw_numbers_of_designs import DRIVE, evaluate_formula_of_raw_numbers
+from ..model.signals.averages import signal_averages
 from ..model.signals.peaks import find_peaks
 from ..model.signals.signals import Signal
 from .kinds import RATIO
@@ -40,7 +40,7 @@ class InertiaRatio(Quantity):
         if self.lacks(mechanism, "undefined"):
             return undefined(dimensions, gradients)
         if self.mean:
-            averages = average(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients)
+            averages = signal_averages(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients)
             return self._ratio(mechanism, dimensions, averages.mean, averages.mean_gradients)
         peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients, limit=1)
         slopes = None if peaks.gradients is None else peaks.gradients[:, 0]
@@ -62,7 +62,7 @@ class InertiaRatio(Quantity):
 
     def _ratio(self, mechanism: Mechanism, designs: Array, inertia: Array, slopes: Array | None) -> Values:
         scale, flywheel = (
-            Values(*formula_of_numbers(mechanism, designs, formula, gradients=slopes is not None))
+            Values(*evaluate_formula_of_raw_numbers(mechanism, designs, formula, gradients=slopes is not None))
             for formula in (_per_rotor_inertia, _flywheel_inertia_ratio)
         )
         linkage = Values(inertia, slopes).times(scale)

@@ -126,7 +126,7 @@ class LeverPeak(LeverQuantity):
 
         in_chunks(len(rows), work, size=_CHUNK)
         if gradients:
-            slopes[rows, :width] = numbers.chain(by_number)
+            slopes[rows, :width] = numbers.chain_to_designs(by_number)
         return Pieces(values, slopes, labels, least=self.inverse)
 
 
@@ -162,12 +162,12 @@ class LeverForm(LeverQuantity):
         values[rows] = self._of(batch.plain).real
         if gradients:
             by_number = [self._of(stepped).imag / STEP for stepped in batch.stepped]
-            slopes[rows] = numbers.chain(np.stack(by_number, axis=-1))
+            slopes[rows] = numbers.chain_to_designs(np.stack(by_number, axis=-1))
         labels = np.broadcast_to(np.arange(float(count)), values.shape)
         return Pieces(values, slopes, labels, least=self.least)
 
     def _of(self, numbers: LeverNumbers) -> Any:
-        top = self._required_swing.fastest
+        top = self._required_swing.greatest_travel_rate
         return np.stack([form(numbers, top) + 0j * numbers.crank for form in self.forms], axis=1)
 
 

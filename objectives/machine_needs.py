@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
-from ..model.cycle.gas_cycle import compressors, cylinders
+from ..model.cycle.gas_cycle import compressors, cylinder_loads
 from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
@@ -15,7 +15,7 @@ from ..model.machine.two_turn_machine import cycle_turns
 from ..model.machine.work_absorption import (
     carries_linkage_forces,
     carries_pivot_force,
-    crank_weighs,
+    crank_has_mass,
     has_friction_under_load,
     has_rod_or_slider_mass,
     loads_may_do_work_over_a_turn,
@@ -80,7 +80,7 @@ MOTION = _defining(
 """A crank that turns or is about to turn."""
 MASSES = Need(
     lambda machine: (
-        crank_weighs(machine.with_largest_variables) or has_rod_or_slider_mass(machine.with_largest_variables)
+        crank_has_mass(machine.with_largest_variables) or has_rod_or_slider_mass(machine.with_largest_variables)
     ),
     _MASSES,
 )
@@ -128,7 +128,7 @@ LOSSES = (
 )
 """Friction, and joints that carry a force; otherwise the efficiency is 1."""
 CYLINDER = _defining(
-    lambda machine: bool(cylinders(machine)),
+    lambda machine: bool(cylinder_loads(machine)),
     "it needs a cylinder; got none; add for example "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )

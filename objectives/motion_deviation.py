@@ -11,8 +11,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit
-from ..model.kinematics.target_pieces import deviation_pieces
+from ..model.kinematics.target_motion import Fit, Measure, TargetMotion, fit_target_motion
+from ..model.kinematics.target_pieces import least_deviation_pieces
 from ..model.machine.loads.load import require_word
 from ..model.machine.mechanism import Mechanism
 from .kinds import ANGLE, LENGTH
@@ -42,19 +42,21 @@ class MotionDeviation(Quantity):
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3) or more columns; see `Quantity`."""
         if not gradients:
-            return Values(fit(self._required_target, mechanism.sign, self.measure, dimensions[:, :3]).values, None)
+            return Values(
+                fit_target_motion(self._required_target, mechanism.sign, self.measure, dimensions[:, :3]).values, None
+            )
         pieces = self.pieces(mechanism, dimensions)
         return Values(pieces.values[:, 0], pieces.gradients[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the maximum of smooth pieces; see `Quantity`."""
-        fitted = deviation_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
+        fitted = least_deviation_pieces(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         further = dimensions.shape[1] - 3  # extra variables do not move the slider
         return Pieces(fitted.values, np.pad(fitted.gradients, ((0, 0), (0, 0), (0, further))), fitted.labels)
 
     def settings(self, mechanism: Mechanism, dimensions: Array) -> dict[str, Array]:
         """Return the best-fit phase (deg) and shift (mm), each if free, for designs (n, 3), by column."""
-        best_fit: Fit = fit(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
+        best_fit: Fit = fit_target_motion(self._required_target, mechanism.sign, self.measure, dimensions[:, :3])
         columns = {}
         suffix = "_rms" if self.measure == "rms" else ""
         if self._required_target.phase == "free":

@@ -13,7 +13,7 @@ import numpy as np
 from ..model.machine.cylinder_machines import single_cylinder
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import PINS, formula_of_numbers
+from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers
 from ..model.machine.two_turn_machine import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
 from .bar_pieces import LINKS, NEAR, BarPeak, BarPieces, BarQuantity, SectionLoad, material_and_pins
@@ -107,7 +107,7 @@ class PinRubbing(BarQuantity):
         factor = self.factor(mechanism)
         return [
             mean.times(
-                formula_of_numbers(
+                evaluate_formula_of_raw_numbers(
                     mechanism, designs, _factor_over_twice_length(factor, LINKS[name].depth), gradients=gradients
                 )
             )

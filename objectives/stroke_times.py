@@ -13,7 +13,7 @@ from ..model.kernel.arithmetic import STEP
 from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from ..model.machine.raw_numbers_of_designs import formula_of_numbers, require_width
+from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers, require_design_columns
 from .kinds import RATIO, TIME
 from .machine_needs import ONE_TIMING, REPEATS, SPEED
 from .quantity import Array, Formula, Group, Pieces, Quantity, Values, undefined
@@ -34,7 +34,7 @@ def evaluate_stroke_times(
 
     designs: (n, 3 + k)."""
     designs = np.asarray(designs, dtype=np.float64)
-    require_width(mechanism, designs)
+    require_design_columns(mechanism, designs)
     lengths = designs[:, :3].T
     with np.errstate(invalid="ignore"):  # NaN for a linkage that does not rotate fully
         values = np.asarray(formula(scaled_stroke_times(mechanism, *lengths, cylinder=cylinder)))
@@ -63,7 +63,9 @@ class StrokeTime(Quantity):
         if self.undefined_because([mechanism]):
             return undefined(dimensions, gradients)
         angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._stroke_crank_angle, gradients))
-        per_speed = formula_of_numbers(mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients)
+        per_speed = evaluate_formula_of_raw_numbers(
+            mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients
+        )
         return angles.times(Values(*per_speed))
 
     def _stroke_crank_angle(self, times: ScaledStrokeTimes) -> Any:

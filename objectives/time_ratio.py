@@ -45,7 +45,7 @@ class TimeRatio(ClosedFormQuantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         if self.closed_form_holds(mechanism):
             return super().evaluate(mechanism, dimensions, gradients=gradients)
-        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, gradients)
+        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.outward_to_inward_ratio, gradients)
         if slopes is not None:
             slopes = np.where((ratio >= 1.0 / ratio)[:, None], slopes, _derivatives_of_inverse(ratio, slopes))
         return Values(np.maximum(ratio, 1.0 / ratio), slopes)
@@ -54,7 +54,7 @@ class TimeRatio(ClosedFormQuantity):
         """Return the quantity as the maximum of its two ratios; see `Quantity`."""
         if self.closed_form_holds(mechanism):
             return super().pieces(mechanism, dimensions)
-        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.ratio, True)
+        ratio, slopes = evaluate_stroke_times(mechanism, dimensions, lambda of: of.outward_to_inward_ratio, True)
         assert slopes is not None
         values = np.stack([ratio, 1.0 / ratio], axis=1)
         labels = np.broadcast_to(np.arange(2.0), values.shape)

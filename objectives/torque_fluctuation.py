@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.machine.mechanism import Mechanism
-from ..model.signals.averages import average_torque
+from ..model.signals.averages import torque_averages
 from .kinds import TORQUE
 from .machine_needs import DRIVEN
 from .quantity import Array, Group, Quantity, Values
@@ -21,7 +21,7 @@ class TorqueFluctuation(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        averages = average_torque(mechanism, dimensions, gradients=gradients)
+        averages = torque_averages(mechanism, dimensions, gradients=gradients)
         locks = np.isinf(averages.rms_over_angle)
         mean, rms = np.where(locks, 0.0, averages.mean), np.where(locks, 1.0, averages.rms_over_angle)
         difference = rms - np.abs(mean)

@@ -16,7 +16,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from .lumped import lumped, rotating_and_reciprocating
+from .lumped import mechanism_with_lumped_rod, rotating_and_reciprocating_mass
 from .series import drive_torque_equation_48, series_acceleration, series_torque
 
 ACCELERATION = ("series",)
@@ -50,10 +50,10 @@ def compare_approximations(mechanism: Mechanism, linkage: Linkage, crank_angle: 
     inert = _with_inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed
-    rotating, reciprocating = rotating_and_reciprocating(inert, linkage)
+    rotating, reciprocating = rotating_and_reciprocating_mass(inert, linkage)
     torques = (
-        cycle(lumped(inert, linkage), linkage, theta).torque,
-        cycle(lumped(inert, linkage, crank_pin_share=0.5), linkage, theta).torque,
+        cycle(mechanism_with_lumped_rod(inert, linkage), linkage, theta).torque,
+        cycle(mechanism_with_lumped_rod(inert, linkage, crank_pin_share=0.5), linkage, theta).torque,
         series_torque(linkage, theta, speed=speed, reciprocating_mass=reciprocating),
         drive_torque_equation_48(linkage, theta, speed=speed, rotating_mass=rotating, reciprocating_mass=reciprocating),
     )

@@ -52,7 +52,9 @@ def rod_mass_share_at_crank_pin(mechanism: Mechanism, linkage: Linkage) -> float
     return share
 
 
-def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None) -> Mechanism:
+def mechanism_with_lumped_rod(
+    mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
+) -> Mechanism:
     """Return one linkage's mechanism with a massless rod, its mass being lumped at the crank pin and the slider.
 
     crank_pin_share: fraction of the rod's mass lumped at the crank pin; b / l if None. The distance of the mass centre
@@ -80,7 +82,7 @@ def lumped(mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | N
     )
 
 
-def rotating_and_reciprocating(
+def rotating_and_reciprocating_mass(
     mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
 ) -> tuple[float, float]:
     """Return the rotating mass at the crank pin, crank included, and the reciprocating mass, kg.

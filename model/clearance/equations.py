@@ -30,7 +30,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.segments import Segment, add_formula_loads, find_pieces, load_on_slider
+from ..dynamics.segments import Segment, add_formula_loads, find_load_pieces, load_on_slider
 from ..kernel.arithmetic import analytic
 from ..kernel.kernel import Flags, Row, Table, kernel
 from ..kinematics.position import Motion
@@ -119,16 +119,16 @@ def configuration_of(time: float, gap: complex, gap_t: complex, s: System) -> Pl
 
 
 @analytic
-def contact_force(gap: complex, gap_t: complex, rod_t: float, rate: float, s: System) -> Contact:
+def contact_force(gap: complex, gap_t: complex, rod_t: float, damping_rate: float, s: System) -> Contact:
     """Return the contact. rate: h / d'_0, s/m; negative while the journal is in free flight."""
     distance = abs(gap)
     depth = distance - s.clearance
-    if rate < 0.0 or depth <= 0.0:
+    if damping_rate < 0.0 or depth <= 0.0:
         return Contact(0.0j, 0.0, 0.0, 0.0, 0.0, depth, 0.0, 0.0)
     normal = gap / distance
     depth_t = normal.real * gap_t.real + normal.imag * gap_t.imag
     spring = s.stiffness * depth * math.sqrt(depth)
-    press = max(0.0, spring * (1.0 + rate * depth_t))
+    press = max(0.0, spring * (1.0 + damping_rate * depth_t))
     # Both bodies touch at one point on the bearing's radius, so that no spurious moment arises.
     arm = s.bearing_radius - distance
     slide = normal.real * gap_t.imag - normal.imag * gap_t.real
@@ -183,7 +183,7 @@ def load_along_x(
     """
     d = design_at(block, 0)
     theta = s.start + s.speed * time
-    find_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
+    find_load_pieces(d, block, 0, theta, d.branch * p.x, loads, piece, shift)
     # The block was derived for unit speed, so velocity per crank angle is the velocity.
     m = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, p.x, p.x_t, 0.0)
     force = load_on_slider(m, d, theta, Segment(block, loads, outward, piece, shift))

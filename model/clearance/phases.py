@@ -40,7 +40,7 @@ class Trace:
     impact_times: list[float] = field(default_factory=list)
     impact_speeds: list[float] = field(default_factory=list)
 
-    def add(self, times: Array, states: Array, rate: float, outward: bool) -> None:
+    def add_phase(self, times: Array, states: Array, rate: float, outward: bool) -> None:
         """Append the samples of one phase."""
         self.times.append(times)
         self.states.append(states)
@@ -68,7 +68,7 @@ class Integrator:
     rate: float = FLIGHT
     trace: Trace = field(default_factory=Trace)
 
-    def advance(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
+    def integrate_until(self, end: float, *, outward: bool, cancelled: Callable[[], bool] | None = None) -> bool:
         """Integrate up to a time; return whether it was reached: False if cancelled before.
 
         outward: whether it is the outward stroke, which determines the loads. Raises `SlidercrankError` if the
@@ -111,7 +111,7 @@ class Integrator:
             interpolate = solver.dense_output()
             times = np.linspace(solver.t_old, solver.t, BETWEEN + 1)
             states = interpolate(times)
-            depth = self._depth(states[:, 1:])
+            depth = self._penetration(states[:, 1:])
             if not depth.max() < self.system.bearing_radius:
                 raise SlidercrankError(
                     "the contact must hold the journal in its bearing; got a penetration beyond the bearing radius "
@@ -124,13 +124,13 @@ class Integrator:
                 count = crossed[0] + 1
                 times = np.append(times[:count], self.time)
                 states = np.column_stack([states[:, :count], self.state])
-                self.trace.add(times, states, rate, outward)
+                self.trace.add_phase(times, states, rate, outward)
                 return True
             self.time, self.state = float(solver.t), states[:, -1]
-            self.trace.add(times, states, rate, outward)
+            self.trace.add_phase(times, states, rate, outward)
         return True
 
-    def _depth(self, states: Array) -> Array:
+    def _penetration(self, states: Array) -> Array:
         depth: Array = np.hypot(states[0], states[1]) - self.system.clearance
         return depth
 
@@ -139,7 +139,7 @@ class Integrator:
         from scipy.optimize import brentq
 
         def excess_depth(time: float) -> float:
-            return sign * float(self._depth(interpolate(time)))
+            return sign * float(self._penetration(interpolate(time)))
 
         time = (
             float(brentq(excess_depth, before, after, xtol=1e-300, rtol=1e-15))

@@ -78,7 +78,7 @@ class ClearanceRun:
     impact_speeds: Array
 
     @property
-    def period(self) -> float:
+    def turn_time(self) -> float:
         """Time for one crank turn, s."""
         return 2.0 * math.pi / abs(self.mechanism.speed)
 
@@ -132,7 +132,9 @@ def simulate(
     while turns_made < cycles:
         ends = [(turns_made + share) * period for share in (*dead_centres, 1.0)]
         reached = all(
-            integrator.advance(end, outward=_moves_outward(linkage, mechanism.speed, before, end), cancelled=cancelled)
+            integrator.integrate_until(
+                end, outward=_moves_outward(linkage, mechanism.speed, before, end), cancelled=cancelled
+            )
             for before, end in zip([turns_made * period, *ends], ends, strict=False)
         )
         if not reached:
@@ -217,5 +219,5 @@ def _collect_run(
 def _trace_at_start(integrator: Integrator) -> Trace:
     """Return only the start, for a run cancelled immediately."""
     trace = Trace()
-    trace.add(np.zeros(1), integrator.state.reshape(-1, 1), FLIGHT, False)
+    trace.add_phase(np.zeros(1), integrator.state.reshape(-1, 1), FLIGHT, False)
     return trace

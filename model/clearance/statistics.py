@@ -81,7 +81,7 @@ def summarise(run: ClearanceRun) -> ClearanceSummary:
         raise InputError(
             f"statistics need a complete turn after the first {run.discard}; got {run.cycles} turns; let it run longer"
         )
-    marks = run.period * np.arange(run.discard, run.cycles + 1)
+    marks = run.turn_time * np.arange(run.discard, run.cycles + 1)
     # Samples of one turn: from the last sample at its beginning to the first at its end.
     first = np.searchsorted(run.times, marks[:-1] * (1.0 + 1e-12), side="right") - 1
     last = np.searchsorted(run.times, marks[1:] * (1.0 - 1e-12), side="left")
@@ -114,7 +114,7 @@ def summarise(run: ClearanceRun) -> ClearanceSummary:
         ),
         velocity_deviation=Estimate.from_turns(greatest(run.slider_velocity - run.ideal_velocity)),
         impacts=Estimate.from_turns(np.histogram(run.impact_times, marks)[0].astype(np.float64)),
-        contact_share=Estimate.from_turns(gain_per_turn(touching) / run.period),
+        contact_share=Estimate.from_turns(gain_per_turn(touching) / run.turn_time),
         peak_contact_force=Estimate.from_turns(greatest(run.contact_force)),
         penetration=Estimate.from_turns(np.array([run.penetration[span].max() for span in spans])),
         fastest_impact=float(run.impact_speeds[counted].max()) if counted.any() else None,

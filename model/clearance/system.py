@@ -88,10 +88,10 @@ def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Cleara
         )
     require_no_crank_load(mechanism, "a simulation of clearance")
     for load in mechanism.loads:
-        if load.inertial:
+        if load.is_moving_mass:
             raise InputError(
-                f"a simulation of clearance only takes forces on the slider; got {load.size}; add that mass to the "
-                "slider's, or leave that load out"
+                f"a simulation of clearance only takes forces on the slider; got {load.magnitude_text}; "
+                "add that mass to the slider's, or leave that load out"
             )
     rod_margin = float(linkage.rod - linkage.crank - abs(linkage.offset))
     if clearance.radius >= 0.5 * rod_margin:

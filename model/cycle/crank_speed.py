@@ -15,8 +15,8 @@ def crank_speed_and_acceleration(mechanism: Mechanism, crank_angle: Array) -> tu
     profile, speed = mechanism.speed_profile, mechanism.speed
     if profile is None:
         return np.full(crank_angle.shape, speed), np.full(crank_angle.shape, mechanism.acceleration)
-    ratio = profile.ratio(crank_angle)
-    return speed * ratio, speed**2 * ratio * profile.slope(crank_angle)
+    ratio = profile.speed_ratio(crank_angle)
+    return speed * ratio, speed**2 * ratio * profile.speed_ratio_slope(crank_angle)
 
 
 def turn_time(mechanism: Mechanism) -> float:
@@ -31,8 +31,10 @@ def acceleration_slope_by_angle(mechanism: Mechanism, crank_angle: Array) -> Arr
     profile = mechanism.speed_profile
     if profile is None:
         return np.zeros(crank_angle.shape)
-    slope = profile.slope(crank_angle)
-    return np.asarray(mechanism.speed**2 * (slope**2 + profile.ratio(crank_angle) * profile.curvature(crank_angle)))
+    slope = profile.speed_ratio_slope(crank_angle)
+    return np.asarray(
+        mechanism.speed**2 * (slope**2 + profile.speed_ratio(crank_angle) * profile.speed_ratio_curvature(crank_angle))
+    )
 
 
 def speed_knots(mechanism: Mechanism) -> Array:

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import needs_friction_kernel, sides_of
-from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
+from ..dynamics.friction_signs import friction_signs_in_segment, needs_friction_kernel
+from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
@@ -23,12 +23,12 @@ from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.raw_machine_vector import Loads, load_structure, raw_vector
-from ..machine.two_turn_machine import TURN, cycle_turns, half_at, machines_of_both_turns, require_one_turn
+from ..machine.two_turn_machine import TURN, cycle_turns, half_of_cycle_at, machines_of_both_turns, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
 from .crank_speed import crank_speed_and_acceleration
-from .self_locking import require_driving
+from .self_locking import require_no_locking
 
 _COLUMNS = 16
 _SPEED, _ACCELERATION = Design._fields.index("speed"), Design._fields.index("acceleration")
@@ -87,11 +87,11 @@ def _fill_cycle_curves(
         block[_SPEED, 0], block[_ACCELERATION, 0] = speeds[i], accelerations[i]
         d = design_at(block, 0)
         sine, cosine = math.sin(theta), math.cos(theta)
-        _, outward = enter_segment(d, block, 0, theta, loads, watch, piece, shift)
+        _, outward = find_segment_pieces(d, block, 0, theta, loads, watch, piece, shift)
         segment = Segment(block, loads, outward, piece, shift)
         m = design_motion(sine, cosine, d)
         load = load_on_slider(m, d, theta, segment)
-        sides = sides_of(theta, d, segment, rubbing)
+        sides = friction_signs_in_segment(theta, d, segment, rubbing)
         f = joint_forces_with_optional_friction(sine, cosine, m, d, load, sides)
         j = influences(sine, cosine, m, d.l)
         out[0, i] = m.x
@@ -160,7 +160,7 @@ def _cycle_of_two_turns(
     mechanism: Mechanism, linkage: Linkage, angles: Array, speeds: Array, accelerations: Array
 ) -> Cycle:
     """Return the curves over a cycle of two turns, each angle from the machine of its own turn."""
-    turn = half_at(mechanism, *linkage.dead_centre_angles, angles)
+    turn = half_of_cycle_at(mechanism, *linkage.dead_centre_angles, angles)
     parts = [
         cycle_at_speeds(half, linkage, angles, speeds, accelerations) for half in machines_of_both_turns(mechanism)
     ]
@@ -208,7 +208,7 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
         return np.unique(np.concatenate([angles, angles + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset
-    require_driving(mechanism.friction, linkage)
+    require_no_locking(mechanism.friction, linkage)
     watch = cycle_window(mechanism, Signal.TORQUE)
     cuts = breakpoints_of(derived_blocks(raw, loads)[0], loads, watch, rubbing=needs_friction_kernel(mechanism))
     return cuts.angle[0, : cuts.many[0]]

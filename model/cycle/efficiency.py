@@ -26,8 +26,8 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import TURN, cycle_turns
-from ..signals.averages import average
-from ..signals.panel_polynomials import panels_of
+from ..signals.averages import signal_averages
+from ..signals.panel_polynomials import resolve_curves
 from ..signals.signals import Signal
 from .cycle import breakpoints, cycle
 
@@ -95,9 +95,13 @@ def cycle_energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
                 turn * curves.torque,
                 turn * work,
                 friction.guide * np.abs(curves.guide * motion.slider_velocity),
-                friction.crank_pivot.circle * np.hypot(curves.pivot_x, curves.pivot_y),
-                friction.crank_pin.circle * np.hypot(curves.crank_pin_x, curves.crank_pin_y) * (1.0 - swing),
-                friction.slider_pin.circle * np.hypot(curves.slider_pin_x, curves.slider_pin_y) * np.abs(swing),
+                friction.crank_pivot.friction_circle_radius * np.hypot(curves.pivot_x, curves.pivot_y),
+                friction.crank_pin.friction_circle_radius
+                * np.hypot(curves.crank_pin_x, curves.crank_pin_y)
+                * (1.0 - swing),
+                friction.slider_pin.friction_circle_radius
+                * np.hypot(curves.slider_pin_x, curves.slider_pin_y)
+                * np.abs(swing),
                 np.abs(work),
             ]
         )
@@ -107,8 +111,8 @@ def cycle_energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
     edges = [crowded_from_crank_angle(float(angle), kappa) for angle in (*cuts, cuts[0] + turns * TURN)]
     ends = np.concatenate([edges[:1], *(np.linspace(a, b, 1 + _PIECES)[1:] for a, b in pairwise(edges))])
     sizes = np.abs(energy_rates(np.linspace(edges[0], edges[-1], _SAMPLES))).max(axis=1)
-    panels = panels_of(energy_rates, ends, np.where(sizes > 0.0, sizes, 1.0))
+    panels = resolve_curves(energy_rates, ends, np.where(sizes > 0.0, sizes, 1.0))
     drive_work, useful, guide, pivot, crank_pin, slider_pin, throughput = map(panels.integral, range(len(sizes)))
-    inertia = average(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
+    inertia = signal_averages(mechanism, Signal.REFLECTED_INERTIA, dimensions).mean[0]
     stored = turn * turns * TURN * mechanism.acceleration * float(inertia)
     return Energies(drive_work, useful, stored, guide, pivot, crank_pin, slider_pin, throughput)

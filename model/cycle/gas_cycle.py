@@ -28,7 +28,7 @@ from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
@@ -51,12 +51,12 @@ class GasCycle(NamedTuple):
     delivers: Any
     delivered: Any
 
-    def times(self, count: int) -> GasCycle:
+    def multiplied_by(self, count: int) -> GasCycle:
         """Return the combined sums of several machines."""
         return GasCycle(*(count * sum_of for sum_of in self))._replace(delivers=self.delivers)
 
 
-def cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
+def cylinder_loads(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
     """Return the cylinders among a machine's loads, each with its index first."""
     return tuple((k, load) for k, load in enumerate(mechanism.loads) if isinstance(load, Cylinder))
 
@@ -68,7 +68,7 @@ def compressors(mechanism: Mechanism) -> tuple[Compressor, ...]:
 
 def compressor_may_deliver_nothing(mechanism: Mechanism) -> bool:
     """Return whether the delivery of a compressor depends on the design; otherwise it has been checked beforehand."""
-    gas = {k: load for k, load in cylinders(mechanism.with_largest_variables) if isinstance(load, Compressor)}
+    gas = {k: load for k, load in cylinder_loads(mechanism.with_largest_variables) if isinstance(load, Compressor)}
     varied = {path.split(".")[1] for item in mechanism.varying for path in item.paths if path.startswith("loads.")}
     return any(str(k) in varied or load.clearance_volume > 0.0 for k, load in gas.items() if load.compression_exponent)
 
@@ -84,20 +84,20 @@ def gas_cycle_number(
     count = cylinder_count(mechanism)
     if count > 1:
         single = replace(mechanism, arrangement=None)
-        return gas_cycle_number(single, designs, lambda gas: number(gas.times(count)), gradients=gradients)
+        return gas_cycle_number(single, designs, lambda gas: number(gas.multiplied_by(count)), gradients=gradients)
     if cycle_turns(mechanism) > 1:
         sums, rates = _gas_cycle_of_two_turns(mechanism, designs, gradients=gradients)
         return np.asarray(number(sums), dtype=np.float64), None if rates is None else _derivatives_by_design(
             number, sums, rates
         )
     raw, loads = raw_inputs_with_all_features(mechanism)
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=gradients)
     blocks, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
     values = np.asarray(number(_sum_gas_cycles(mechanism, blocks[:, :, 0])), dtype=np.float64)
     if not gradients:
         return values, None
     slopes = number(_sum_gas_cycles(mechanism, steps[:, :, 0])).imag / STEP
-    return values, numbers.chain(slopes.reshape(len(designs), len(numbers.columns)))
+    return values, numbers.chain_to_designs(slopes.reshape(len(designs), len(numbers.columns)))
 
 
 def _gas_cycle_of_two_turns(
@@ -108,13 +108,13 @@ def _gas_cycle_of_two_turns(
     sums, slopes = [], []
     for half in machines_of_both_turns(mechanism):
         raw, loads = raw_inputs_with_all_features(half)
-        numbers = raw_numbers_of_designs(half, designs, limit=len(raw), gradients=gradients)
+        numbers = raw_machine_numbers(half, designs, slot_count=len(raw), gradients=gradients)
         blocks, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
         sums.append(_sum_gas_cycles(half, blocks[:, :, 0], four))
         if gradients:
             shape = len(designs), len(numbers.columns)
             parts = _sum_gas_cycles(half, steps[:, :, 0], four)
-            slopes.append(GasCycle(*(numbers.chain(part.imag.reshape(shape) / STEP) for part in parts)))
+            slopes.append(GasCycle(*(numbers.chain_to_designs(part.imag.reshape(shape) / STEP) for part in parts)))
     return _sum_of_turns(*sums), _sum_of_turns(*slopes) if gradients else None
 
 
@@ -135,7 +135,7 @@ def _sum_gas_cycles(mechanism: Mechanism, blocks: Any, four: Sequence[bool] = ()
     """
     swept = clearance = work = cycles = intake = pumped = delivered = 0.0 * blocks[:, 0]
     stroke = blocks[:, _OUTER] - blocks[:, _INNER]
-    for k, load in cylinders(mechanism):
+    for k, load in cylinder_loads(mechanism):
         q = DESIGN + LOAD_ROWS * k + AREA
         area, h, low, high, compression, expansion = (blocks[:, q + i] for i in range(6))
         if load.compression_exponent == 0.0:

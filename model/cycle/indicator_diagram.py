@@ -17,7 +17,7 @@ from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import half_at, shift_into_half
+from ..machine.two_turn_machine import half_of_cycle_at, shift_angles_into_half
 
 _BEFORE = 5e-10  # shift to an earlier crank angle, rad: less than the width at which figures mark jumps
 
@@ -31,7 +31,7 @@ class Indicator:
     pressure: Array
 
 
-def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
+def indicator_diagram(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
     """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
     linkage = single_rotating_linkage(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -42,8 +42,8 @@ def indicator(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angl
     away = sign * linkage.sign * before > 0.0
     pressure = _pressure_at(load, z, stroke, away)
     if load.cycle_turns > 1:
-        turn = half_at(mechanism, *linkage.dead_centre_angles, theta - _BEFORE * mechanism.direction)
-        parts = [load.on_turn(number) for number in (1, 2)]
+        turn = half_of_cycle_at(mechanism, *linkage.dead_centre_angles, theta - _BEFORE * mechanism.direction)
+        parts = [load.load_on_turn(number) for number in (1, 2)]
         first, second = (_pressure_at(part, z, stroke, away) for part in parts if isinstance(part, Cylinder))
         pressure = np.where(turn == 0, first, second)
     return Indicator(theta, load.clearance * load.area * stroke + load.clearance_volume + load.area * z, pressure)
@@ -70,7 +70,8 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
         compression_end_position(stroke, h, ratio, load.compression_exponent),
     )
     ends = [
-        _angle_at(mechanism, linkage, load, float(z), away=away) for z, away in zip(events, (True, False), strict=True)
+        _crank_angle_at_piston_distance(mechanism, linkage, load, float(z), away=away)
+        for z, away in zip(events, (True, False), strict=True)
     ]
     return ends[0], ends[1]
 
@@ -83,15 +84,17 @@ def burning_end_angle(mechanism: Mechanism, linkage: Linkage, load: Cylinder) ->
     if not isinstance(load, LimitedPressure):
         return None
     linkage = single_rotating_linkage(mechanism, linkage)
-    angle = _angle_at(
+    angle = _crank_angle_at_piston_distance(
         mechanism, linkage, load, load.burning_share * _stroke_and_piston_top(linkage, load)[0], away=True
     )
     if angle is None or load.cycle_turns == 1:
         return angle
-    return float(shift_into_half(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
+    return float(shift_angles_into_half(mechanism, *linkage.dead_centre_angles, np.array(angle), 0))
 
 
-def _angle_at(mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool) -> float | None:
+def _crank_angle_at_piston_distance(
+    mechanism: Mechanism, linkage: Linkage, load: Cylinder, z: float, *, away: bool
+) -> float | None:
     """Return the crank angle at which the piston is z from its top position, rad in [0, 2 pi).
 
     away: whether the piston moves away from its top position. None if z is out of reach.

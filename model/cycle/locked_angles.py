@@ -56,11 +56,11 @@ def locking_verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     inner_angles = np.concatenate([np.linspace(a, b, 66)[1:-1] for a, b in joined]) if joined else np.empty(0)
     if not len(inner_angles):
         return Verdict(margin, joined, None)
-    states = states_at(mechanism, linkage, inner_angles)
+    states = locking_states(mechanism, linkage, inner_angles)
     return Verdict(margin, joined, float(np.mean(states == "locks")))
 
 
-def states_at(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
+def locking_states(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
     """Return whether one linkage "drives", "locks" or "may jam" under its loads at each crank angle (n,), rad."""
     linkage = single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
@@ -94,7 +94,9 @@ def _driving_margin(friction: Friction, linkage: Linkage, theta: Any, probe: Any
     arguments = (linkage.crank, linkage.rod, linkage.offset, linkage.sign)
     m, signs = (motion(np.sin(angle), np.cos(angle), *arguments) for angle in (theta, probe))
     q = np.sqrt(1.0 + friction.guide**2)
-    pins = q * (friction.slider_pin.circle * np.sign(signs.rod_1) - friction.crank_pin.circle)
+    pins = q * (
+        friction.slider_pin.friction_circle_radius * np.sign(signs.rod_1) - friction.crank_pin.friction_circle_radius
+    )
     return np.abs(m.l_cos) - np.abs(pins - friction.guide * m.l_sin * np.sign(signs.x_1))
 
 

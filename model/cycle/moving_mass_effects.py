@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..dynamics.inertia import reflected_inertia, shaking
+from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
@@ -63,6 +63,6 @@ def shaking_curves(
     d = d if acceleration is None else d._replace(acceleration=acceleration)
     sine, cosine = np.sin(theta), np.cos(theta)
     m = design_motion(sine, cosine, d)
-    x, y, moment = (np.broadcast_to(part, theta.shape) for part in shaking(sine, cosine, m, d))
+    x, y, moment = (np.broadcast_to(part, theta.shape) for part in shaking_force_and_moment(sine, cosine, m, d))
     inertia = np.broadcast_to(reflected_inertia(sine, cosine, m, d), theta.shape)
     return ShakingCurves(theta, x, y, moment, inertia)

@@ -23,7 +23,7 @@ from ..machine.mechanism import Mechanism
 from ..machine.speed_profile import time_per_angle
 from ..machine.two_turn_machine import TURN, cycle_turns
 from ..signals.first_of_equal_maxima import angle_in_cycle
-from ..signals.panel_polynomials import Extreme, Panels, panels_of, peak_of
+from ..signals.panel_polynomials import Extreme, Panels, larger_extreme, resolve_curves
 from .crank_speed import crank_speed_and_acceleration, speed_knots
 from .cycle import breakpoints, cycle
 from .moving_mass_effects import shaking_curves
@@ -115,16 +115,16 @@ def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinde
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))
     ends = np.unique(np.concatenate([cuts, pieces]))
     sizes = _magnitudes_without_cancelling(mechanism, linkage)
-    panels = panels_of(
+    panels = resolve_curves(
         lambda theta: _curve_rows(mechanism, multi_cylinder_curves(mechanism, linkage, theta)), ends, sizes
     )
     least, greatest = (_zero_if_cancelled(extreme, sizes[_TORQUE], period) for extreme in panels.extremes(_TORQUE))
-    moment = peak_of(panels.extremes(_MOMENT), period)
+    moment = larger_extreme(panels.extremes(_MOMENT), period)
     mean, time = panels.mean(_TORQUE), None if mechanism.speed_profile is None else _TIME
     return MultiCylinderCycle(
         least=least,
         greatest=greatest,
-        peak=peak_of((least, greatest), period),
+        peak=larger_extreme((least, greatest), period),
         mean=0.0 if abs(mean) <= _NOTHING * sizes[_TORQUE] else mean,
         rms=math.sqrt(panels.mean_square(_TORQUE, time=time)),
         fluctuation=math.sqrt(panels.mean_square(_TORQUE, subtract=mean)),

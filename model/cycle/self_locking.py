@@ -34,7 +34,7 @@ from ..linkage.linkage import Linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Raw
-from ..machine.raw_numbers_of_designs import raw_number_at_slot, require_width
+from ..machine.raw_numbers_of_designs import raw_number_at_slot, require_design_columns
 
 
 def locking_margin(friction: Friction, designs: Array, *, gradients: bool = False) -> tuple[Array, Array | None]:
@@ -57,7 +57,7 @@ def locking_reason(friction: Friction, linkage: Linkage) -> str:
     )
 
 
-def require_driving(friction: Friction, linkage: Linkage) -> None:
+def require_no_locking(friction: Friction, linkage: Linkage) -> None:
     """Raise `InputError` where friction locks one linkage, or may jam it, at some crank angle."""
     reason = locking_reason(friction, linkage)
     if reason:
@@ -69,9 +69,12 @@ def locking_margin_with_variables(
 ) -> tuple[Array, Array | None]:
     """Return the self-locking margin, like `locking_margin`, for designs (n, 3 + k) of a machine with variables."""
     designs = np.asarray(designs, dtype=np.float64)
-    require_width(mechanism, designs)
+    require_design_columns(mechanism, designs)
     friction = mechanism.friction
-    guide, circles = friction.guide, friction.crank_pin.circle + friction.slider_pin.circle
+    guide, circles = (
+        friction.guide,
+        friction.crank_pin.friction_circle_radius + friction.slider_pin.friction_circle_radius,
+    )
     if not mechanism.varying:
         return _margin_with_friction_slopes(designs, guide, circles, gradients)[:2]
     slots = (

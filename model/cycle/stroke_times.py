@@ -32,7 +32,7 @@ class ScaledStrokeTimes(NamedTuple):
     inward: Any
 
     @property
-    def ratio(self) -> Any:
+    def outward_to_inward_ratio(self) -> Any:
         """Duration of the outward stroke divided by that of the inward stroke."""
         return self.outward / self.inward
 
@@ -78,7 +78,7 @@ def _elapsed_time(profile: Profile, crank_angle: Any) -> Any:
     angle = np.asarray(np.real(crank_angle), dtype=np.float64)
     elapsed = profile.elapsed_time.up_to(angle)
     if np.iscomplexobj(crank_angle):
-        return elapsed + 1j * np.imag(crank_angle) / profile.ratio(angle)
+        return elapsed + 1j * np.imag(crank_angle) / profile.speed_ratio(angle)
     return elapsed
 
 
@@ -90,7 +90,7 @@ def time_ratio(mechanism: Mechanism, linkage: Linkage) -> Array:
     if mechanism.speed_profile is None:
         return linkage.time_ratio
     linkage.require_full_rotation()
-    ratio = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset).ratio
+    ratio = scaled_stroke_times(mechanism, linkage.crank, linkage.rod, linkage.offset).outward_to_inward_ratio
     return np.asarray(np.maximum(ratio, 1.0 / ratio))[()]
 
 

@@ -10,9 +10,9 @@ from ..arrays import Array
 from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
 from ..machine.design import design_at
 from ..machine.raw_machine_vector import Loads
-from .friction_signs import add_contact_cuts
+from .friction_signs import add_guide_force_change_cuts
 from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
-from .torque_with_friction import always_drives
+from .torque_with_friction import least_determinacy_margin
 
 
 class Breakpoints(NamedTuple):
@@ -37,12 +37,12 @@ def _fill_breakpoints(blocks: Cube, loads: Loads, watch: CycleWindow, breakpoint
         block = blocks[n]
         d = design_at(block, 0)
         breakpoints.many[n] = 0
-        if rubbing and not always_drives(d) > 0.0:
+        if rubbing and not least_determinacy_margin(d) > 0.0:
             continue
         cuts = Cuts(breakpoints.angle[n], breakpoints.code[n], breakpoints.number[n], breakpoints.load[n])
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if rubbing:
-            count = add_contact_cuts(d, block, loads, watch, cuts, count, piece, shift)
+            count = add_guide_force_change_cuts(d, block, loads, watch, cuts, count, piece, shift)
         breakpoints.many[n] = count
 
 

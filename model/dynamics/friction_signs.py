@@ -17,11 +17,11 @@ from .segments import (
     CycleWindow,
     Segment,
     add_cut,
-    angle_within,
+    angle_identifying_segment,
     crank_angle_from_crowded,
     crowded_from_crank_angle,
     crowding_parameter,
-    enter_segment,
+    find_segment_pieces,
     frictionless_cut_imaginary_shift,
     load_on_slider,
 )
@@ -56,7 +56,7 @@ def _rotation_signs(probe: Any, d: Any) -> Any:
 
 
 @analytic
-def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
+def friction_signs_in_segment(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
     """Return the `Sides` for the segment around the crank angle `probe`."""
     if not rubbing:
         return Sides(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -67,7 +67,7 @@ def sides_of(probe: Any, d: Any, segment: Segment, rubbing: Any) -> Any:
 
 
 @analytic
-def add_contact_cuts(
+def add_guide_force_change_cuts(
     d: Any, block: Any, loads: Any, watch: CycleWindow, cuts: Cuts, count: int, piece: Any, shift: Any
 ) -> int:
     """Add cuts at which the guide force changes sides to the first `count` cuts; return their new number.
@@ -84,8 +84,8 @@ def add_contact_cuts(
         b = cuts.angle[ahead + s + 1] if s + 1 < count else first + _TURN
         if b - a < 1e-12:
             continue
-        probe = angle_within(a, b)
-        _, outward = enter_segment(d, block, 0, probe, loads, watch, piece, shift)
+        probe = angle_identifying_segment(a, b)
+        _, outward = find_segment_pieces(d, block, 0, probe, loads, watch, piece, shift)
         segment = Segment(block, loads, outward, piece, shift)
         _, swing, grip = _rotation_signs(probe, d)
         low, high = crowded_from_crank_angle(a, kappa), crowded_from_crank_angle(b, kappa)

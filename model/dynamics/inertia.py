@@ -32,7 +32,7 @@ def reflected_inertia(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
 
 
 @analytic
-def shaking(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
+def shaking_force_and_moment(sine: Any, cosine: Any, m: Motion, d: Design) -> Any:
     """Return shaking force along x and y, N, and shaking moment about the crank pivot, N m.
 
     Counter-clockwise moments are positive. Force -[m a]: from the crank C_tt, from the rod m_rod a_A + S_tt, from the

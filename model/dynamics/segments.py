@@ -61,7 +61,8 @@ class Segment(NamedTuple):
     """State that determines the loads within one segment of a design's cycle.
 
     block: derived numbers (rows, 1), real or with an imaginary step. outward: the slider's stroke. piece, shift: the
-    piece of every table and cylinder, and the turns by which an angle table is shifted, filled by `enter_segment`.
+    piece of every table and cylinder, and the turns by which an angle table is shifted, filled by
+    `find_segment_pieces`.
     """
 
     block: Any
@@ -199,7 +200,7 @@ def frictionless_cut_imaginary_shift(d: Any, block: Any, j: int, theta: float, c
 
 
 @analytic
-def angle_within(a: float, b: float) -> float:
+def angle_identifying_segment(a: float, b: float) -> float:
     """Return a crank angle in (a, b) that identifies the segment's stroke and table pieces.
 
     The midpoint is unsuitable: without offset it is a dead centre. Rounding then decides on which side of the stroke's
@@ -209,7 +210,9 @@ def angle_within(a: float, b: float) -> float:
 
 
 @analytic
-def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any) -> None:
+def find_load_pieces(
+    d: Design, block: Any, j: int, theta: float, x: float, loads: Loads, piece: Any, shift: Any
+) -> None:
     """Fix the piece of every table and cylinder at a crank angle and a slider distance x from the pivot."""
     for k in range(loads.kind.shape[0]):
         first, last = loads.start[k], loads.start[k + 1]
@@ -243,7 +246,7 @@ def find_pieces(d: Design, block: Any, j: int, theta: float, x: float, loads: Lo
 
 
 @analytic
-def enter_segment(
+def find_segment_pieces(
     d: Design, block: Any, j: int, probe: float, loads: Loads, watch: CycleWindow, piece: Any, shift: Any
 ) -> tuple[bool, bool]:
     """Fix the table pieces for the segment that contains the crank angle `probe`; return (counts, outward).
@@ -258,7 +261,7 @@ def enter_segment(
     # Only at ends that are cuts: elsewhere a dead centre in mid-segment may leave the range 0 to 1 by a rounding error.
     if (watch.start > 0.0 and fraction < watch.start) or (watch.end < 1.0 and fraction > watch.end):
         counts = False
-    find_pieces(d, block, j, probe, x, loads, piece, shift)
+    find_load_pieces(d, block, j, probe, x, loads, piece, shift)
     return counts, outward
 
 

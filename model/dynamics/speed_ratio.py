@@ -36,9 +36,9 @@ def speed_ratio_of(mechanism: Mechanism) -> SpeedRatio:
     if profile is None:
         return SpeedRatio(empty, empty, empty, np.zeros((4, 0)))
     if isinstance(profile, Harmonics):
-        pairs = np.array(profile.pairs).reshape(-1, 2)
+        pairs = np.array(profile.coefficient_pairs).reshape(-1, 2)
         return SpeedRatio(np.ascontiguousarray(pairs[:, 0]), np.ascontiguousarray(pairs[:, 1]), empty, np.zeros((4, 0)))
-    return SpeedRatio(empty, empty, *profile.pieces)
+    return SpeedRatio(empty, empty, *profile.spline_pieces)
 
 
 @analytic

@@ -99,7 +99,7 @@ def forces_from_slider_pin_force(sine: Any, cosine: Any, d: Design, b: Balance, 
 
 
 @analytic
-def forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
+def forces_without_friction(sine: Any, cosine: Any, m: Motion, d: Design, load: Any) -> Forces:
     """Return drive torque and reactions without friction for a load on the slider (N, outward)."""
     b = balance_before_pin_force(sine, cosine, m, d, load)
     by = m.tangent * b.pull - b.moment * m.per_l_cos

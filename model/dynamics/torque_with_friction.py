@@ -33,7 +33,7 @@ from typing import Any, NamedTuple
 from ..kernel.arithmetic import analytic, inverse, root
 from ..kinematics.position import Motion
 from ..machine.design import Design
-from .torque import Forces, balance_before_pin_force, forces, forces_from_slider_pin_force
+from .torque import Forces, balance_before_pin_force, forces_from_slider_pin_force, forces_without_friction
 
 _ITERATIONS = 100
 _CONVERGED = 1e-15
@@ -62,7 +62,7 @@ def determinacy_margin(l_cos: Any, l_sin: Any, d: Design) -> Any:
 
 
 @analytic
-def always_drives(d: Design) -> Any:
+def least_determinacy_margin(d: Design) -> Any:
     """Return the minimum of `determinacy_margin` over the cycle, at sin(theta) = -sgn(e)."""
     pin_distance = d.r + abs(d.e)
     return determinacy_margin(root(d.l * d.l - pin_distance * pin_distance), pin_distance, d)
@@ -93,7 +93,7 @@ def _rod_moment_residual(
 
 
 @analytic
-def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: Sides) -> Forces:
+def forces_with_friction(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: Sides) -> Forces:
     """Return drive torque and reactions with friction; all NaN where they are not determined."""
     b = balance_before_pin_force(sine, cosine, m, d, load)
     weight = d.slider_mass * d.gravity_y
@@ -140,7 +140,7 @@ def rubbing_forces(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, s: S
 def joint_forces_with_optional_friction(sine: Any, cosine: Any, m: Motion, d: Design, load: Any, sides: Any) -> Forces:
     """Return drive torque and reactions, with friction unless `sides` are 0, or None if friction is not compiled."""
     if sides is None:
-        return forces(sine, cosine, m, d, load)
+        return forces_without_friction(sine, cosine, m, d, load)
     if sides.turn == 0.0:
-        return forces(sine, cosine, m, d, load)
-    return rubbing_forces(sine, cosine, m, d, load, sides)
+        return forces_without_friction(sine, cosine, m, d, load)
+    return forces_with_friction(sine, cosine, m, d, load, sides)

@@ -39,7 +39,7 @@ def require_full_rotation(designs: ArrayLike) -> Array:
 
 
 @lru_cache(maxsize=1)
-def threads() -> ThreadPoolExecutor:
+def kernel_thread_pool() -> ThreadPoolExecutor:
     """Return the thread pool shared by kernels, which release the interpreter lock."""
     return ThreadPoolExecutor(max_workers=os.cpu_count() or 1, thread_name_prefix="slidercrank")
 
@@ -50,9 +50,9 @@ _handing_out = Lock()  # held while chunks are handed to the pool, and while thi
 def _end_threads() -> None:
     """End the pool once its chunks are done: a fork would copy the pool but none of its threads."""
     _handing_out.acquire()
-    if threads.cache_info().currsize:
-        threads().shutdown()
-        threads.cache_clear()
+    if kernel_thread_pool.cache_info().currsize:
+        kernel_thread_pool().shutdown()
+        kernel_thread_pool.cache_clear()
 
 
 if hasattr(os, "register_at_fork"):
@@ -80,7 +80,8 @@ def in_chunks(count: int, work: Callable[[int, int], Any], *, size: int = 512, k
     with _handing_out:
         # Each chunk has its own context, which knows the callbacks that may end the wait for a kernel.
         submitted = [
-            threads().submit(copy_context().run, in_parts, begin, min(begin + size, count)) for begin in bounds
+            kernel_thread_pool().submit(copy_context().run, in_parts, begin, min(begin + size, count))
+            for begin in bounds
         ]
     try:
         for chunk in submitted:

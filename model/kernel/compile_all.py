@@ -25,9 +25,9 @@ from .disk_cache import (
     awaited_files,
     build_lock_file,
     compile_in_processes,
-    keep,
-    locked,
+    hold_lock,
     read_from_any_folder,
+    store_machine_code,
 )
 from .kernel import KERNELS, Kernel
 from .kernel_digest import code_lengths
@@ -36,27 +36,27 @@ _MOSTLY = 0.7
 """Fraction of formulas shared with another kernel above which a kernel is cheap to compile after that one."""
 
 
-class _Task(NamedTuple):
+class _CompilationTask(NamedTuple):
     source: KernelSource
     file: Path
     codes: dict[int, int]
     seldom: bool
 
-    def size(self) -> int:
+    def code_length(self) -> int:
         return sum(self.codes.values())
 
     def is_cheap_after(self, compiled: Iterable[int]) -> bool:
-        return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.size()
+        return sum(self.codes.get(formula, 0) for formula in compiled) >= _MOSTLY * self.code_length()
 
-    def is_left_to(self, larger: _Task) -> bool:
+    def is_left_to(self, larger: _CompilationTask) -> bool:
         """Whether the process that compiles the larger set also compiles this one."""
-        return self.size() < larger.size() and self.is_cheap_after(larger.codes)
+        return self.code_length() < larger.code_length() and self.is_cheap_after(larger.codes)
 
-    def urgency(self, tasks: list[_Task]) -> tuple[bool, int]:
+    def rank(self, tasks: list[_CompilationTask]) -> tuple[bool, int]:
         """Return a rank, lowest first: long tasks with their followers, then small tasks."""
-        if 2 * self.size() < max(task.size() for task in tasks):
-            return True, self.size()
-        return False, -sum(task.size() for task in tasks if task is self or task.is_left_to(self))
+        if 2 * self.code_length() < max(task.code_length() for task in tasks):
+            return True, self.code_length()
+        return False, -sum(task.code_length() for task in tasks if task is self or task.is_left_to(self))
 
 
 def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) -> None:
@@ -67,7 +67,7 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
     `build_lock_file` records the progress. Ends if nothing can be stored.
     """
     names = awaited_files(folder)
-    tasks_found = _tasks(folder, packages, modules)
+    tasks_found = _tasks_of_packages(folder, packages, modules)
     everything = [task for task in tasks_found if not task.seldom or task.file.name in names]
     tasks, awaited = [*everything], {task.file.name for task in everything}
     compiled: set[int] = set()
@@ -76,7 +76,9 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
         names = awaited_files(folder)
         listed = {task.file.name for task in everything}
         if not complete and (not tasks or not listed.issuperset(names)):
-            tasks_found = _tasks(folder, packages, [name for package in packages.split() for name in _modules(package)])
+            tasks_found = _tasks_of_packages(
+                folder, packages, [name for package in packages.split() for name in _module_names(package)]
+            )
             new = [task for task in tasks_found if task.file.name not in listed]
             tasks, everything, complete = [*tasks, *new], [*everything, *new], True
         if not tasks:
@@ -88,18 +90,18 @@ def compile_missing(folder: Path, packages: str, modules: Iterable[str] = ()) ->
                 task.seldom,
                 not task.is_cheap_after(compiled),
                 any(task.is_left_to(larger) for larger in everything),
-                task.urgency(everything),
+                task.rank(everything),
             ),
         )
         tasks.remove(task)
-        with locked(task.file.with_suffix(".lock")) as lock:
+        with hold_lock(task.file.with_suffix(".lock")) as lock:
             if lock is not None and read_from_any_folder(task.file.name, folder) is None:
                 reported = [job for job in everything if job.file.name in awaited.union(names)]
                 if task in reported:  # nobody waits for kernels that are compiled ahead
                     number, name = sum(job.file.exists() for job in reported), task.source.name.rpartition(".")[2]
                     with contextlib.suppress(OSError):
                         build_lock_file(folder, packages).write_text(f"{number} of {len(reported)} done, now {name}")
-                if not keep(task.file, task.source.compile()):
+                if not store_machine_code(task.file, task.source.compile()):
                     return
                 compiled.update(task.codes)
 
@@ -111,23 +113,23 @@ def end_with_parent(parent: int) -> None:
     os._exit(1)  # stored files are complete
 
 
-def _modules(package: str) -> list[str]:
+def _module_names(package: str) -> list[str]:
     """Return the names of a package and of all its submodules."""
     parts = getattr(import_module(package), "__path__", [])
     return [package, *(module.name for module in pkgutil.walk_packages(parts, f"{package}."))]
 
 
-def _tasks(folder: Path, packages: str, modules: Iterable[str]) -> list[_Task]:
+def _tasks_of_packages(folder: Path, packages: str, modules: Iterable[str]) -> list[_CompilationTask]:
     """Return the kernels in packages that the modules contain, or import."""
     for name in modules:
         import_module(name)
     prefixes = tuple(packages.split())
-    return [_task(kernel, folder) for kernel in KERNELS if kernel.function.__module__.startswith(prefixes)]
+    return [_task_of_kernel(kernel, folder) for kernel in KERNELS if kernel.function.__module__.startswith(prefixes)]
 
 
-def _task(kernel: Kernel, folder: Path) -> _Task:
-    source = kernel.source()
-    return _Task(source, source.file(folder), code_lengths(source.function), kernel.seldom)
+def _task_of_kernel(kernel: Kernel, folder: Path) -> _CompilationTask:
+    source = kernel.compilation_source()
+    return _CompilationTask(source, source.machine_code_file(folder), code_lengths(source.function), kernel.seldom)
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ _OPTIONS: Any = {
 _NEEDLESS = (InlineClosureLikes, InlineInlinables, InlineOverloads, NopythonRewrites, IRLegalization)
 
 
-class _FormulaCompiler(CompilerBase):
+class _FormulaCompilerWithFewerPasses(CompilerBase):
     """Numba's compiler for formulas, without its passes for closures and array expressions."""
 
     def define_pipelines(self) -> list[PassManager]:
@@ -47,7 +47,7 @@ class _FormulaCompiler(CompilerBase):
 
 
 # Formulas neither create nor return arrays: reference counting would be half of their code.
-_FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompiler}
+_FORMULA: Any = _OPTIONS | {"forceinline": True, "_nrt": False, "pipeline_class": _FormulaCompilerWithFewerPasses}
 _KERNEL: Any = _OPTIONS | {"nogil": True}
 
 _TRIED = "0.68."  # tested numba version: `_compiled_for_linking` and `_memoised_resolution` use its internals
@@ -122,7 +122,7 @@ def _compiled_for_linking(kernel: str) -> Iterator[None]:
         libraries.finalize, engine.set_env = finalize_original, set_env
 
 
-class _ArrayReturnRejector(event.Listener):
+class _ArrayReturnListener(event.Listener):
     """Rejects formulas that return arrays: without reference counting these would be freed too soon."""
 
     def on_start(self, event: Any) -> None:
@@ -146,14 +146,14 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     with (
         _memoised_resolution(),
         _compiled_for_linking(function.__qualname__),
-        event.install_listener("numba:run_pass", _ArrayReturnRejector()),
+        event.install_listener("numba:run_pass", _ArrayReturnListener()),
     ):
         dispatcher.compile(signature)
     compiled = dispatcher.overloads[signature]
     symbol = compiled.fndesc.llvm_func_name
     _, _, (code, _) = compiled.library.serialize_using_object_code()
     arguments = tuple(str(argument.type) for argument in compiled.library.get_function(symbol).arguments)
-    functions = compiled.library.get_function(symbol).module.functions
+    functions = compiled.library.get_function(symbol).module_name.functions
     calls = tuple(
         function_declared.name
         for function_declared in functions
@@ -169,7 +169,7 @@ compile_kernel.__code__ = compile_kernel.__code__.replace(co_stacksize=1 << 17)
 
 
 @overload(inverse, jit_options=_FORMULA)
-def _inverse(z: Any) -> Any:
+def _inverse_for_types(z: Any) -> Any:
     if isinstance(z, types.Complex):
 
         def compiled(z: Any) -> Any:
@@ -184,7 +184,7 @@ def _inverse(z: Any) -> Any:
 
 
 @overload(root, jit_options=_FORMULA)
-def _root(z: Any) -> Any:
+def _root_for_types(z: Any) -> Any:
     if isinstance(z, types.Complex):
 
         def compiled(z: Any) -> Any:
@@ -199,7 +199,7 @@ def _root(z: Any) -> Any:
 
 
 @overload(power, jit_options=_FORMULA)
-def _power(base: Any, exponent: Any) -> Any:
+def _power_for_types(base: Any, exponent: Any) -> Any:
     if isinstance(base, types.Complex) or isinstance(exponent, types.Complex):
 
         def compiled(base: Any, exponent: Any) -> Any:
@@ -243,7 +243,7 @@ def _asin(x: float) -> float:
 
 
 @overload(arcsine, jit_options=_FORMULA)
-def _arcsine(z: Any) -> Any:
+def _arcsine_for_types(z: Any) -> Any:
     if isinstance(z, types.Complex):
 
         def compiled(z: Any) -> Any:
@@ -271,7 +271,7 @@ def _arctangent(z: Any) -> Any:
 
 
 @overload(magnitude, jit_options=_FORMULA)
-def _magnitude(z: Any) -> Any:
+def _magnitude_for_types(z: Any) -> Any:
     if isinstance(z, types.Complex):
 
         def compiled(z: Any) -> Any:

@@ -47,11 +47,11 @@ class KernelSource(NamedTuple):
     examples: tuple[Any, ...]
 
     @property
-    def module(self) -> str:
+    def module_name(self) -> str:
         """Name of the module that defines the function."""
         return self.function.__module__
 
-    def file(self, folder: Path) -> Path:
+    def machine_code_file(self, folder: Path) -> Path:
         """Return the file for its machine code."""
         return folder / f"{self.name}.{kernel_digest(self.function, self.examples)}"
 
@@ -62,31 +62,31 @@ class KernelSource(NamedTuple):
         return compile_kernel(self.function, self.examples)
 
 
-def machine_code(source: KernelSource, modules: Iterable[str] = ()) -> MachineCode:
+def load_or_compile(source: KernelSource, modules: Iterable[str] = ()) -> MachineCode:
     """Return the machine code of a kernel, compiled and stored if necessary.
 
     Other processes also compile the missing kernels in its package while this process lives. They do the same for
     sister packages that contain some of `modules`, the modules of other kernels, last ones first. In both cases,
     kernels in these modules come before the rest.
     """
-    folder, name = kernel_folder(), source.file(Path()).name
+    folder, name = kernel_folder(), source.machine_code_file(Path()).name
     code = read_from_any_folder(name, folder)
     if code is not None:
         return code
     log_refused_folders()
     if folder is None:
         return source.compile()
-    package, root = _package_of(source.module), source.module.partition(".")[0] + "."
+    package, root = _package_of(source.module_name), source.module_name.partition(".")[0] + "."
     related = [module for module in reversed(list(modules)) if module.startswith(root)]
     packages = dict.fromkeys([*map(_package_of, related), package])
     if folder not in _refusing:
-        compile_in_processes(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module]))
-        code = read(folder / name)
+        compile_in_processes(folder, " ".join(packages), folder / name, dict.fromkeys([*related, source.module_name]))
+        code = read_machine_code(folder / name)
     if code is None:  # no process could be started, or nothing could be stored
         if folder in _refusing:
             _log.warning(f"slidercrank is compiling its formulas: {source.name.rpartition('.')[2]}")
         code = source.compile()
-        if not keep(folder / name, code):
+        if not store_machine_code(folder / name, code):
             _refusing.add(folder)
     return code
 
@@ -97,11 +97,11 @@ def _package_of(module: str) -> str:
 
 def read_from_any_folder(name: str, folder: Path | None) -> MachineCode | None:
     """Return the machine code stored under a name, in this folder or in a read-only one."""
-    codes = (read(place / name) for place in (folder, *read_only_folders()) if place is not None)
+    codes = (read_machine_code(place / name) for place in (folder, *read_only_folders()) if place is not None)
     return next((code for code in codes if code is not None), None)
 
 
-def read(file: Path) -> MachineCode | None:
+def read_machine_code(file: Path) -> MachineCode | None:
     """Return the stored machine code; None if there is no complete file."""
     try:
         head, code = file.read_bytes().split(b"\n", 1)
@@ -117,7 +117,7 @@ _refusing: set[Path] = set()
 """Folders in which storing has failed; each process then compiles only the kernels that it needs."""
 
 
-def keep(file: Path, code: MachineCode) -> bool:
+def store_machine_code(file: Path, code: MachineCode) -> bool:
     """Store machine code, keep a few earlier versions, and return whether it was stored.
 
     Logs a message if the disk is full.
@@ -163,11 +163,11 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
     workers = _ahead.pop(packages, None)
     if workers:
         _report_compilation()
-    while (file is None or read(file) is None) and time.monotonic() < start_time + _PATIENCE:
+    while (file is None or read_machine_code(file) is None) and time.monotonic() < start_time + _PATIENCE:
         if workers is not None and all(worker.poll() is not None for worker in workers):
             return
         if workers is None:
-            with locked(build_lock_file(folder, packages)) as lock:
+            with hold_lock(build_lock_file(folder, packages)) as lock:
                 if lock is not None:
                     _report_compilation()
                     workers = _start_compilers(folder, packages, modules, lock)
@@ -176,7 +176,9 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
             last_report = time.monotonic()
             with contextlib.suppress(OSError):
                 if far := build_lock_file(folder, packages).read_text():
-                    report_progress(f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far")
+                    report_compilation_progress(
+                        f"slidercrank is compiling its formulas: {far}; {before + _waits[-1]:.0f} s so far"
+                    )
         time.sleep(_TICK)
         poll_interruption()
 
@@ -189,7 +191,7 @@ def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"
     if folder is not None and not any(any(place.glob(begins)) for place in (folder, *read_only_folders())):
-        with locked(build_lock_file(folder, packages)) as lock:
+        with hold_lock(build_lock_file(folder, packages)) as lock:
             if lock is not None:
                 _ahead[packages] = _start_compilers(folder, packages, modules, lock)
 
@@ -199,7 +201,7 @@ def _report_compilation() -> None:
     _log.warning("slidercrank is compiling its formulas (only once after installation)")
 
 
-def report_progress(text: str) -> None:
+def report_compilation_progress(text: str) -> None:
     """Report the progress of compilation: in a notebook on one line that is updated, elsewhere in the log."""
     if "ipykernel" in sys.modules:
         sys.stderr.write(f"\r{text:<{_LINE}}")
@@ -257,7 +259,7 @@ def _end_compilers(started: list[subprocess.Popen[bytes]], owner: int) -> None:
 
 
 @contextlib.contextmanager
-def locked(file: Path) -> Iterator[int | None]:
+def hold_lock(file: Path) -> Iterator[int | None]:
     """Lock a file and yield its descriptor; None if another process holds the lock, -1 if locks are unavailable."""
     try:
         import fcntl

@@ -13,8 +13,8 @@ from typing import Annotated, Any, TypeVar, cast, get_args, get_origin, get_type
 import numpy as np
 from numpy.typing import NDArray
 
-from .disk_cache import KernelSource, machine_code
-from .machine_code import Leaf, load
+from .disk_cache import KernelSource, load_or_compile
+from .machine_code import Leaf, load_entry_point
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -49,15 +49,15 @@ def kernel(function: Function) -> Function:
     Its arguments are contiguous arrays (`Row` to `Flags`), numbers, and named or plain tuples of them, as annotated. It
     returns a number or nothing.
     """
-    return _register(function, seldom=False)
+    return _register_kernel(function, seldom=False)
 
 
 def rarely_used_kernel(function: Function) -> Function:
     """Compile a function like `kernel`, but after all others: few jobs need it, and its compilation is slow."""
-    return _register(function, seldom=True)
+    return _register_kernel(function, seldom=True)
 
 
-def _register(function: Function, *, seldom: bool) -> Function:
+def _register_kernel(function: Function, *, seldom: bool) -> Function:
     compiled = Kernel(function, seldom=seldom)
     KERNELS.append(compiled)
     return cast(Function, compiled)
@@ -77,7 +77,7 @@ class Kernel:
         """Run it. Raises `TypeError` for an argument of another type, `MemoryError` if there is not enough memory."""
         if _AS_PYTHON:
             return self.function(*values)
-        run, pack, kind = self._loaded or self._load()
+        run, pack, kind = self._loaded or self._load_machine_code()
         flat: list[Any] = []
         for parameter, value in zip(self._flat, values, strict=True):
             flat += parameter(value)
@@ -86,69 +86,69 @@ class Kernel:
             raise MemoryError(f"not enough memory for {self.function.__qualname__}")
         return result.value
 
-    def source(self) -> KernelSource:
+    def compilation_source(self) -> KernelSource:
         """Return the kernel as a compilation task."""
-        examples = tuple(_example_value(hint) for name, hint in self._hints().items() if name != "return")
+        examples = tuple(_example_value(hint) for name, hint in self._type_hints().items() if name != "return")
         return KernelSource(f"{self.function.__module__}.{self.function.__name__}", self.function, examples)
 
-    def _hints(self) -> dict[str, Any]:
+    def _type_hints(self) -> dict[str, Any]:
         return get_type_hints(self.function, include_extras=True)
 
-    def _load(self) -> tuple[Callable[[bytes, int], int], Callable[..., bytes], Any]:
+    def _load_machine_code(self) -> tuple[Callable[[bytes, int], int], Callable[..., bytes], Any]:
         """Return the machine code, the function that packs its arguments, and the type of its result."""
         with _loading:
             if self._loaded is None:
-                source, hints = self.source(), self._hints()
+                source, hints = self.compilation_source(), self._type_hints()
                 leaves = [leaf for example in source.examples for leaf in _machine_types(example)]
                 packed = Struct("".join("d" if leaf.type == "double" else "q" for leaf in leaves)).pack
-                code = machine_code(source, [kernel.function.__module__ for kernel in KERNELS])
+                code = load_or_compile(source, [kernel.function.__module__ for kernel in KERNELS])
                 result = _RESULTS[hints.pop("return")]
                 self._flat = [_flattener(name, hint) for name, hint in hints.items()]
-                self._loaded = load(code, leaves), packed, result
+                self._loaded = load_entry_point(code, leaves), packed, result
         return self._loaded
 
 
-def _tuple_types(kind: Any) -> list[Any] | None:
+def _tuple_member_types(annotation: Any) -> list[Any] | None:
     """Return the types of a tuple's members, None for other types."""
-    if get_origin(kind) is tuple:
-        return list(get_args(kind))
-    if isinstance(kind, type) and issubclass(kind, tuple):
-        return list(get_type_hints(kind, include_extras=True).values())
+    if get_origin(annotation) is tuple:
+        return list(get_args(annotation))
+    if isinstance(annotation, type) and issubclass(annotation, tuple):
+        return list(get_type_hints(annotation, include_extras=True).values())
     return None
 
 
-def _example_value(kind: Any) -> Any:
+def _example_value(annotation: Any) -> Any:
     """Return a value of a type."""
-    members = _tuple_types(kind)
+    members = _tuple_member_types(annotation)
     if members is not None:
         values = [_example_value(member) for member in members]
-        return tuple(values) if get_origin(kind) is tuple else kind(*values)
-    if get_origin(kind) is Annotated:
-        array, dimensions = get_args(kind)
-        return np.zeros((1,) * dimensions, _item_type(array))
-    return kind()
+        return tuple(values) if get_origin(annotation) is tuple else annotation(*values)
+    if get_origin(annotation) is Annotated:
+        array, dimensions = get_args(annotation)
+        return np.zeros((1,) * dimensions, _item_type_of_annotation(array))
+    return annotation()
 
 
-def _item_type(array: Any) -> np.dtype[Any]:
+def _item_type_of_annotation(annotation: Any) -> np.dtype[Any]:
     """Return the item type of an `NDArray[...]`."""
-    dtype: np.dtype[Any] = np.dtype(get_args(get_args(array)[1])[0])
+    dtype: np.dtype[Any] = np.dtype(get_args(get_args(annotation)[1])[0])
     return dtype
 
 
 def _flattener(name: str, kind: Any) -> Callable[[Any], Flat]:
     """Return the function that converts a value to machine arguments."""
-    members = _tuple_types(kind)
+    members = _tuple_member_types(kind)
     if members is not None:
-        return _flat_tuple([_flattener(name, member) for member in members])
+        return _tuple_flattener([_flattener(name, member) for member in members])
     if get_origin(kind) is Annotated:
         array, dimensions = get_args(kind)
-        return _flat_array(name, _item_type(array), dimensions)
+        return _array_flattener(name, _item_type_of_annotation(array), dimensions)
     if kind is complex:
         return lambda value: (value.real, value.imag)
     return lambda value: (kind(value),)
 
 
-def _flat_tuple(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
+def _tuple_flattener(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
     last: tuple[Any, Flat] = (None, ())  # the same tuple often comes many times in succession
 
     def flat(value: Any) -> Flat:
@@ -162,7 +162,7 @@ def _flat_tuple(members: list[Callable[[Any], Flat]]) -> Callable[[Any], Flat]:
     return flat
 
 
-def _flat_array(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[Any], Flat]:
+def _array_flattener(name: str, item: np.dtype[Any], dimensions: int) -> Callable[[Any], Flat]:
     def flat(value: Any) -> Flat:
         if value.dtype != item or value.ndim != dimensions or not value.flags.c_contiguous:
             raise TypeError(

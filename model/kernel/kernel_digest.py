@@ -75,7 +75,7 @@ def _code_and_callees(function: Any) -> tuple[bytes, list[Any]]:
     """Return a function's own code and constants, and the functions that it calls."""
     calls: list[Any] = []
     text = [function.__qualname__, _fingerprint(function.__defaults__)]
-    codes = list(_codes(function.__code__))
+    codes = list(_nested_codes(function.__code__))
     for code in codes:
         text += [code.co_code.hex(), repr((code.co_varnames, code.co_names, code.co_freevars))]
         text += [_fingerprint(constant) for constant in code.co_consts if not isinstance(constant, CodeType)]
@@ -90,11 +90,11 @@ def _code_and_callees(function: Any) -> tuple[bytes, list[Any]]:
     return "\n".join(text).encode(), calls
 
 
-def _codes(code: CodeType) -> Iterator[CodeType]:
+def _nested_codes(code: CodeType) -> Iterator[CodeType]:
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
-            yield from _codes(constant)
+            yield from _nested_codes(constant)
 
 
 def _fingerprint(value: Any) -> str:

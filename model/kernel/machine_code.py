@@ -41,7 +41,7 @@ class Leaf(NamedTuple):
     item: int = 0
 
 
-def load(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
+def load_entry_point(code: MachineCode, leaves: list[Leaf]) -> Callable[[bytes, int], int]:
     """Return the entry point: called with arguments and a result address, it returns 0, or nonzero if memory runs out.
 
     It releases the interpreter lock.

@@ -150,7 +150,7 @@ def _newton_step(phase: Any, case: _Case) -> float:
 
 
 @analytic
-def _golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
+def _phase_by_golden_section(low: Any, high: Any, rms: Any, case: _Case) -> float:
     """Return the phase with the minimum deviation between two phases, by golden-section search."""
     p, q = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_p = at_q = 0.0
@@ -205,7 +205,7 @@ def _bound_deviation(phase: Any, half: Any, bend: Any, case: _Case) -> Any:
 
 
 @analytic
-def _branch_and_bound(case: _Case, cells: Any) -> float:
+def _phase_of_least_maximum(case: _Case, cells: Any) -> float:
     """Return the phase that minimises the maximum deviation.
 
     The curvature of a deviation is bounded by the slider's maximum acceleration over a turn. Cells of the phase whose
@@ -233,11 +233,11 @@ def _branch_and_bound(case: _Case, cells: Any) -> float:
         for j in range(open_cells):
             cells[0, 2 * j], cells[0, 2 * j + 1] = cells[2, j] - half, cells[2, j] + half
         count = 2 * open_cells
-    return _golden_section(at_best - 4.0 * half, at_best + 4.0 * half, False, case)
+    return _phase_by_golden_section(at_best - 4.0 * half, at_best + 4.0 * half, False, case)
 
 
 @analytic
-def _least_square(case: _Case, grid: Any) -> float:
+def _phase_of_least_rms(case: _Case, grid: Any) -> float:
     """Return the phase with the minimum root mean square deviation, searched from the best intervals of the grid."""
     for j in range(_PHASES):
         grid[j], _ = _deviation_and_best_shift(_TURN * j / _PHASES, True, case)
@@ -254,7 +254,7 @@ def _least_square(case: _Case, grid: Any) -> float:
             break
         j, last = best, grid[best]
         low, high = _TURN * (j - 1) / _PHASES, _TURN * (j + 1) / _PHASES
-        phase = _golden_section(low, high, True, case)
+        phase = _phase_by_golden_section(low, high, True, case)
         for turn in range(_NEWTON + 1):
             value, _ = _deviation_and_best_shift(phase, True, case)
             step = _newton_step(phase, case)
@@ -267,7 +267,7 @@ def _least_square(case: _Case, grid: Any) -> float:
 
 
 @rarely_used_kernel
-def _fit(
+def _fill_fits(
     designs: Table, b: float, angles: Row, positions: Row, rms: bool, turns: bool, shifts: bool, out: Table
 ) -> None:
     d, slope, bend = np.empty(positions.shape[0]), np.empty(positions.shape[0]), np.empty(positions.shape[0])
@@ -277,14 +277,14 @@ def _fit(
         case = _Case(r, l, e, b, sines, cosines, positions, shifts, d, slope, bend)
         phase = 0.0
         if turns and rms:
-            phase = _least_square(case, grid)
+            phase = _phase_of_least_rms(case, grid)
         elif turns:
-            phase = _branch_and_bound(case, cells)
+            phase = _phase_of_least_maximum(case, cells)
         out[row, 0], out[row, 2] = _deviation_and_best_shift(phase, rms, case)
         out[row, 1] = phase
 
 
-def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
+def fit_target_motion(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> Fit:
     """Return the minimum deviation for designs (n, 3): crank, rod, offset, m, each rotating fully; branch +1 or -1."""
     designs = require_full_rotation(designs)
     angles, positions = np.array(target.crank_angles), np.array(target.positions)
@@ -292,7 +292,7 @@ def fit(target: TargetMotion, branch: float, measure: Measure, designs: Array) -
     out = np.empty((len(designs), 3))
     in_chunks(
         len(designs),
-        lambda begin, end: _fit(
+        lambda begin, end: _fill_fits(
             designs[begin:end], branch, angles, positions, measure == "rms", free[0], free[1], out[begin:end]
         ),
     )

@@ -22,7 +22,7 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import require_full_rotation
 from .position import motion
-from .target_motion import Measure, TargetMotion, fit
+from .target_motion import Measure, TargetMotion, fit_target_motion
 
 _PEAKS = 6  # local peaks over the points, of either sign, that make pieces
 _OTHER_POINTS = 3  # the highest among the other points
@@ -57,13 +57,13 @@ def _slider_position_slopes(target: TargetMotion, branch: float, phase: Array, d
     return slopes
 
 
-def deviation_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
+def least_deviation_pieces(target: TargetMotion, branch: float, measure: Measure, designs: Array) -> FitPieces:
     """Return the minimum deviation for designs (n, 3) as the maximum of smooth pieces.
 
     The root mean square has one piece; its gradient is zero where it is only a rounding error.
     """
     designs = require_full_rotation(designs)
-    fitted = fit(target, branch, measure, designs)
+    fitted = fit_target_motion(target, branch, measure, designs)
     if measure == "rms":
         d = branch * _motion_at_points(target, branch, fitted.phase, designs).x - np.array(target.positions)
         d = d + fitted.shift[:, None]

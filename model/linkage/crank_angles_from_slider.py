@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import AssemblyError, InputError
 from ..kinematics.position import motion
-from .inverse_kinematics import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, finite
+from .inverse_kinematics import ROUNDING, Dimensions, Solution, crank_angle_at, crank_motion, require_finite
 
 _DIGITS = 9  # decimals of a position in messages, m: nanometres
 _LOCKED = 1e-7
@@ -56,7 +56,7 @@ def crank_solutions(
 
     Where the rod is nearly normal to the slider line, rounding of the angle moves the slider by about 1e-8 cranks.
     """
-    crank, rod, offset = _real_lengths(linkage)
+    crank, rod, offset = _require_real_lengths(linkage)
     slider_motion = _SliderMotion(
         _require_number("slider position", position),
         None if velocity is None else _require_number("slider velocity", velocity),
@@ -70,7 +70,7 @@ def crank_solutions(
     distance, rounding = math.hypot(slider_motion.position, offset), ROUNDING * (crank + rod)
     to_outer, to_inner = crank + rod - distance, distance - abs(rod - crank)
     if min(to_outer, to_inner) < -rounding:
-        raise _unreachable_position(linkage, slider_motion.position)
+        raise _unreachable_position_error(linkage, slider_motion.position)
     if distance <= rounding:
         raise AssemblyError(
             "the slider pin must not lie on the crank pivot, which leaves the crank angle undetermined; got "
@@ -79,12 +79,12 @@ def crank_solutions(
         )
     if min(to_outer, to_inner) <= rounding:
         angle = math.atan2(offset, slider_motion.position) + (math.pi if to_inner < to_outer and rod > crank else 0.0)
-        return (_at_dead_centre(linkage, angle, slider_motion),)
+        return (_solution_at_dead_centre(linkage, angle, slider_motion),)
     solutions = [
         solution for stroke in get_args(Solution) for solution in _crank_solutions(linkage, stroke, slider_motion)
     ]
     if not solutions:
-        raise _unreachable_position(linkage, slider_motion.position)
+        raise _unreachable_position_error(linkage, slider_motion.position)
     return tuple(solutions)
 
 
@@ -94,7 +94,7 @@ def slider_ranges(linkage: Dimensions) -> tuple[tuple[float, float], ...]:
     There is one range, or two if the crank moves within two separate arcs, rod + |offset| < crank. They end at a dead
     centre or, exclusive, where the rod is normal to the slider line: there the linkage locks.
     """
-    crank, rod, offset = _real_lengths(linkage)
+    crank, rod, offset = _require_real_lengths(linkage)
     sines = ((offset - rod) / crank, (offset + rod) / crank)
     normal = [crank * math.sqrt((1.0 - sine) * (1.0 + sine)) for sine in sines if abs(sine) < 1.0]
     right, left = list(normal), [-x for x in normal]  # by the side of the pivot on which the crank pin lies
@@ -136,11 +136,11 @@ def _crank_solutions(linkage: Dimensions, stroke: Solution, target: _SliderMotio
     return [CrankSolution(angle, speed, None if target.acceleration is None else acceleration, stroke)]
 
 
-def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) -> CrankSolution:
+def _solution_at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) -> CrankSolution:
     """Return the solution at a dead centre. Raises `InputError` for a slider motion that is impossible there."""
-    crank, rod, offset = _real_lengths(linkage)
+    crank, rod, offset = _require_real_lengths(linkage)
     if linkage.sign * (target.position - crank * math.cos(angle)) <= 0.0:
-        raise _unreachable_position(linkage, target.position)
+        raise _unreachable_position_error(linkage, target.position)
     m = motion(math.sin(angle), math.cos(angle), crank, rod, offset, linkage.sign)
     place = f"at the dead centre, position {1e3 * target.position:.9g} mm"
     remedy = "or a position farther away"
@@ -160,8 +160,8 @@ def _at_dead_centre(linkage: Dimensions, angle: float, target: _SliderMotion) ->
     return CrankSolution(angle_in_turn, None, None, None)
 
 
-def _unreachable_position(linkage: Dimensions, position: float) -> AssemblyError:
-    crank, rod, offset = _real_lengths(linkage)
+def _unreachable_position_error(linkage: Dimensions, position: float) -> AssemblyError:
+    crank, rod, offset = _require_real_lengths(linkage)
     # Rounded inward, and away from ends where the linkage locks: an end entered as reported is within reach.
     inward = 0.0 if rod > crank + abs(offset) else _LOCKED * rod
     up, down = Context(_DIGITS, ROUND_CEILING), Context(_DIGITS, ROUND_FLOOR)
@@ -177,7 +177,7 @@ def _unreachable_position(linkage: Dimensions, position: float) -> AssemblyError
     )
 
 
-def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
+def _require_real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     """Return crank, rod and offset, m. Raises `InputError` for an array of linkages and for complex dimensions."""
     sizes = (linkage.crank, linkage.rod, linkage.offset)
     shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))
@@ -191,7 +191,7 @@ def _real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
 
 
 def _require_number(name: str, value: ArrayLike) -> float:
-    array = finite(name, value)
+    array = require_finite(name, value)
     if array.ndim:
         raise InputError(f"{name} must be one number; got an array of shape {array.shape}; loop over it")
     return float(array)

@@ -37,7 +37,7 @@ class Variations:
     varied: tuple[Variation, ...]
 
 
-def vary(
+def motion_variations(
     linkage: Linkage,
     changes: Sequence[tuple[Dimension, float]],
     crank_angle: ArrayLike,

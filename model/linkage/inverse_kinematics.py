@@ -25,7 +25,7 @@ from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Branch
-from .linkage_values import first_marked, numbers
+from .linkage_values import finite_numbers, first_marked_value
 
 Solution = Literal["outward", "inward"]
 
@@ -118,7 +118,7 @@ def crank_motion(
     Raises `InputError` at a dead centre, where x' = 0 and any crank speed leaves the slider at rest, and
     `AssemblyError` as `crank_angle_at` does.
     """
-    v, a = (finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
+    v, a = (require_finite(name, value) for name, value in (("velocity", velocity), ("acceleration", acceleration)))
     x, dimensions, d = _reachable_positions(linkage, slider_position)
     r, l, _ = dimensions
     margin = np.minimum(r + l - d, d - np.abs(l - r))
@@ -143,7 +143,7 @@ def _reachable_positions(
 ) -> tuple[Array, tuple[Array, Array, Array], Array]:
     """Return position, dimensions and distance of the slider pin from the crank pivot, in one shape."""
     x, r, l, e = np.broadcast_arrays(
-        finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
+        require_finite("slider position", slider_position), linkage.crank, linkage.rod, linkage.offset
     )
     d = np.hypot(x, e)
     excess = np.maximum(d - (r + l), np.abs(l - r) - d)
@@ -158,7 +158,7 @@ def _reachable_positions(
     return x, (r, l, e), d
 
 
-def finite(name: str, value: ArrayLike) -> Array:
+def require_finite(name: str, value: ArrayLike) -> Array:
     """Return real, finite numbers. Raises `InputError` with the argument's name."""
     if np.iscomplexobj(value):
         raise InputError(f"{name} must be real; got {value!r}; leave out the imaginary part")
@@ -191,16 +191,21 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
     stroke.
     """
     arguments = (("stroke", stroke), ("rod", rod), ("offset", offset))
-    s, l, e = np.broadcast_arrays(*(numbers(value, name) for name, value in arguments))
+    s, l, e = np.broadcast_arrays(*(finite_numbers(value, name) for name, value in arguments))
     with np.errstate(invalid="ignore", divide="ignore"):
         r: Array = geometry.crank_from_stroke(s, l, e)
         real, rod_, off, crank = s.real, l.real, e.real, r.real
         wrong = ~((real > 0.0) & (crank > 0.0) & (rod_ > crank + np.abs(off)) & (4.0 * rod_ * crank >= real * real))
     if np.any(wrong):
-        remedy = "lengthen the rod or reduce the offset" if first_marked(real, wrong) > 0.0 else "give a stroke above 0"
+        remedy = (
+            "lengthen the rod or reduce the offset"
+            if first_marked_value(real, wrong) > 0.0
+            else "give a stroke above 0"
+        )
         raise AssemblyError(
             "no crank gives this stroke with full rotation; "
-            f"got stroke {1e3 * first_marked(s.real, wrong):g} mm, rod {1e3 * first_marked(l.real, wrong):g} mm, "
-            f"offset {1e3 * first_marked(e.real, wrong):g} mm; {remedy}"
+            f"got stroke {1e3 * first_marked_value(s.real, wrong):g} mm, "
+            f"rod {1e3 * first_marked_value(l.real, wrong):g} mm, "
+            f"offset {1e3 * first_marked_value(e.real, wrong):g} mm; {remedy}"
         )
     return r

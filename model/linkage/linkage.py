@@ -23,10 +23,10 @@ from .linkage_picture import Pose, figure, svg
 from .linkage_values import (
     Kinematics,
     PointMotion,
-    dimensions,
+    dimension_arrays,
+    dimensions_text,
     direction_angle,
-    in_mm,
-    numbers,
+    finite_numbers,
     wrap_into_turn,
 )
 
@@ -67,7 +67,7 @@ class Linkage:
 
         A linkage by itself has no scale: for pure geometry, lengths in any unit will do.
         """
-        values = dimensions(crank, rod, offset)
+        values = dimension_arrays(crank, rod, offset)
         if branch not in ("open", "crossed"):
             raise InputError(f"branch must be 'open' or 'crossed'; got {branch!r}")
         for name, value in zip(DIMENSIONS, values, strict=True):
@@ -104,7 +104,7 @@ class Linkage:
             crank, rod, offset = np.broadcast_arrays(self.crank.real, self.rod.real, self.offset.real)
             raise AssemblyError(
                 "rod must exceed crank + |offset| for full rotation; "
-                f"got {in_mm(crank, rod, offset, fails)}; lengthen the rod or reduce the offset"
+                f"got {dimensions_text(crank, rod, offset, fails)}; lengthen the rod or reduce the offset"
             )
 
     @property
@@ -169,7 +169,7 @@ class Linkage:
 
         All arguments broadcast with the dimensions. Raises `AssemblyError` where the linkage cannot be assembled.
         """
-        theta, speed, acceleration = (numbers(value) for value in (crank_angle, speed, acceleration))
+        theta, speed, acceleration = (finite_numbers(value) for value in (crank_angle, speed, acceleration))
         if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(acceleration))):
             raise InputError("crank speed and acceleration must be finite")
         m = self._motion(theta)
@@ -218,7 +218,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a point on the crank, `along` it from the pivot and `across` to its left, m."""
-        theta = numbers(crank_angle)
+        theta = finite_numbers(crank_angle)
         sine, cosine = np.sin(theta), np.cos(theta)
         arm = np.stack([along * cosine - across * sine, along * sine + across * cosine], axis=-1)
         normal = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
@@ -234,7 +234,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a rod point, `along` from the crank pin and `across` to the left, m."""
-        theta = numbers(crank_angle)
+        theta = finite_numbers(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
         unit = np.stack(np.broadcast_arrays(m.l_cos / self.rod, m.l_sin / self.rod), axis=-1)
@@ -251,7 +251,7 @@ class Linkage:
 
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
         """Return first-order influences of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
-        theta = numbers(crank_angle)
+        theta = finite_numbers(crank_angle)
         per_dimension: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
         return per_dimension
 
@@ -273,13 +273,13 @@ class Linkage:
     @property
     def label(self) -> str:
         """Dimensions of one linkage in words, mm."""
-        self._require_one("a label")
+        self._require_single_linkage("a label")
         sizes = (f"{name} {1e3 * float(getattr(self, name).real):.6g} mm" for name in DIMENSIONS)
         return ", ".join(sizes) + ("" if self.branch == "open" else ", crossed")
 
     def _pose(self, crank_angle: float) -> Pose:
-        self._require_one("a picture")
-        theta = numbers(crank_angle, "a crank angle")
+        self._require_single_linkage("a picture")
+        theta = finite_numbers(crank_angle, "a crank angle")
         if theta.ndim:
             raise InputError(
                 f"a picture can only show one crank angle; got an array of shape {theta.shape}; choose one"
@@ -293,7 +293,7 @@ class Linkage:
             stroke=(float(ends[0].real), float(ends[1].real)),
         )
 
-    def _require_one(self, subject: str) -> None:
+    def _require_single_linkage(self, subject: str) -> None:
         if np.ndim(self.rotates_fully):
             raise InputError(
                 f"{subject} can only show one linkage; got an array of shape {np.shape(self.rotates_fully)}; choose one"
@@ -317,7 +317,7 @@ class Linkage:
             worst = np.unravel_index(np.argmax(np.broadcast_to(excess, angle.shape)), angle.shape)
             raise AssemblyError(
                 "rod must exceed |offset - crank sin(crank angle)|; "
-                f"got {in_mm(crank, rod, offset, np.broadcast_to(excess >= 0.0, angle.shape))} "
+                f"got {dimensions_text(crank, rod, offset, np.broadcast_to(excess >= 0.0, angle.shape))} "
                 f"at {np.degrees(angle[worst]):.3f} deg; lengthen the rod or stay within the reachable angles"
             )
         return motion(np.sin(theta), np.cos(theta), self.crank, self.rod, self.offset, self.sign)

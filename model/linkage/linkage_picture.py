@@ -21,7 +21,7 @@ class Pose:
     slider: tuple[float, float]
     stroke: tuple[float, float]
 
-    def box(self, crank: float) -> tuple[float, float, float, float]:
+    def drawing_bounds(self, crank: float) -> tuple[float, float, float, float]:
         """Return left, right, bottom and top of the whole drawing."""
         xs = [x for x in (self.slider[0], *self.stroke) if math.isfinite(x)]
         return min(-crank, *xs), max(crank, *xs), min(-crank, self.slider[1]), max(crank, self.slider[1])
@@ -29,7 +29,7 @@ class Pose:
 
 def svg(pose: Pose, crank: float, label: str) -> str:
     """Return a linkage as a self-contained SVG element. label: text read aloud in place of the picture."""
-    left, right, bottom, top = pose.box(crank)
+    left, right, bottom, top = pose.drawing_bounds(crank)
     scale = min((_WIDTH - 2.0 * _MARGIN) / (right - left), (_HEIGHT - 2.0 * _MARGIN) / (top - bottom))
     x0 = 0.5 * (_WIDTH - scale * (left + right))
     y0 = 0.5 * (_HEIGHT + scale * (bottom + top))

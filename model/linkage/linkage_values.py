@@ -42,7 +42,7 @@ class PointMotion:
     acceleration: Array
 
 
-def numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
+def finite_numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
     """Return real or complex numbers, typed as real, which all are except complex steps. Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
     try:
@@ -52,14 +52,14 @@ def numbers(value: ArrayLike, argument: str = "a crank angle, speed or accelerat
     return array
 
 
-def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
+def dimension_arrays(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Array, Array, Array]:
     """Return crank, rod and offset, m, as arrays that broadcast; an offset below rounding becomes zero.
 
     Raises `InputError` for other values, `AssemblyError` if no crank angle is possible.
     """
     values = []
     for name, length in zip(DIMENSIONS, (crank, rod, offset), strict=True):
-        value = numbers(length, name)
+        value = finite_numbers(length, name)
         if not np.all(np.isfinite(value)):
             raise InputError(f"{name} must be finite; got {length!r}")
         values.append(value)
@@ -70,12 +70,12 @@ def dimensions(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tuple[Arr
         raise InputError(f"crank, rod and offset must broadcast to one shape; got {shapes}") from None
     for name, size in zip(("crank", "rod"), real, strict=False):
         if np.any(size <= 0.0):
-            raise InputError(f"{name} must be above zero; got {first_marked(size, size <= 0.0):g} m")
+            raise InputError(f"{name} must be above zero; got {first_marked_value(size, size <= 0.0):g} m")
     cannot_close = np.abs(real[2]) >= real[0] + real[1]
     if np.any(cannot_close):
         raise AssemblyError(
             "|offset| must be less than crank + rod, or the linkage cannot close; got "
-            f"{in_mm(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
+            f"{dimensions_text(real[0], real[1], real[2], cannot_close)}; shorten the offset or lengthen a link"
         )
     rounding = is_in_line(real[1], real[2]) & (real[2] != 0.0)
     if np.any(rounding):
@@ -91,7 +91,7 @@ def implausible_length_text(lengths: Iterable[Array], longest: Iterable[float] =
     for name, size, limit in zip(DIMENSIONS, lengths, longest, strict=True):
         is_too_long = np.isfinite(size) & (np.abs(size) > limit)
         if np.any(is_too_long):
-            return reading_in_both_units(name, first_marked(size, is_too_long), "m", "mm", 1e3)
+            return reading_in_both_units(name, first_marked_value(size, is_too_long), "m", "mm", 1e3)
     return None
 
 
@@ -113,15 +113,15 @@ def wrap_into_turn(angle: Array) -> Array:
     return wrapped
 
 
-def first_marked(values: Array, marked: Mask) -> float:
+def first_marked_value(values: Array, marked: Mask) -> float:
     """Return the first marked value."""
     return float(np.asarray(values)[marked].flat[0])
 
 
-def in_mm(crank: Array, rod: Array, offset: Array, marked: Mask) -> str:
+def dimensions_text(crank: Array, rod: Array, offset: Array, marked: Mask) -> str:
     """Return the first marked linkage in words, mm."""
     crank, rod, offset = (np.broadcast_to(value, marked.shape) for value in (crank, rod, offset))
     return (
-        f"rod {1e3 * first_marked(rod, marked):g} mm, crank {1e3 * first_marked(crank, marked):g} mm, "
-        f"offset {1e3 * first_marked(offset, marked):g} mm"
+        f"rod {1e3 * first_marked_value(rod, marked):g} mm, crank {1e3 * first_marked_value(crank, marked):g} mm, "
+        f"offset {1e3 * first_marked_value(offset, marked):g} mm"
     )

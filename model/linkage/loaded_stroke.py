@@ -31,17 +31,17 @@ def loaded_stroke(mechanism: Mechanism, dimensions: Array) -> NDArray[np.str_]:
     """
     dimensions = np.atleast_2d(np.asarray(dimensions, dtype=np.float64))
     if mechanism.varying:
-        parts = [_stroke_work(mechanism.with_values(row[3:].tolist()), row[None, :3]) for row in dimensions]
+        parts = [_work_against_strokes(mechanism.with_values(row[3:].tolist()), row[None, :3]) for row in dimensions]
         outward, inward = np.concatenate([np.zeros((2, 0)), *parts], axis=1)
     else:
-        outward, inward = _stroke_work(mechanism, dimensions)
+        outward, inward = _work_against_strokes(mechanism, dimensions)
     greater = np.maximum(outward, inward)
     differs = np.abs(outward - inward) > MORE * greater
     named = np.where(outward > inward, "outward", "inward")
     return np.asarray(np.where((greater > 0.0) & differs, named, "equal"))
 
 
-def _stroke_work(mechanism: Mechanism, dimensions: Array) -> Array:
+def _work_against_strokes(mechanism: Mechanism, dimensions: Array) -> Array:
     """Return the work against the outward and the inward stroke (2, n), J."""
     linkage = Linkage(dimensions[:, 0], dimensions[:, 1], dimensions[:, 2], mechanism.branch)
     work = np.zeros((2, len(dimensions)))

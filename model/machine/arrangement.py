@@ -53,26 +53,28 @@ class Arrangement:
 
     def _require_distinct_cylinders(self, i: int, k: int) -> None:
         """Raise an error if two cylinders at the same position have the same phase and bank."""
-        angles = self.phases[k] - self.phases[i], self.bank(k) - self.bank(i)
-        if self.place(i) == self.place(k) and all(abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles):
-            bank_text = f", both in the bank at {math.degrees(self.bank(k)):.6g} deg" if self.banks else ""
+        angles = self.phases[k] - self.phases[i], self.bank_angle(k) - self.bank_angle(i)
+        if self.shaft_position(i) == self.shaft_position(k) and all(
+            abs(math.remainder(angle, _TURN)) <= _SAME for angle in angles
+        ):
+            bank_text = f", both in the bank at {math.degrees(self.bank_angle(k)):.6g} deg" if self.banks else ""
             raise InputError(
                 f"cylinders at one place must differ in phase or bank; got {math.degrees(self.phases[i]):.6g} deg "
                 f"for cylinder {i + 1} and {math.degrees(self.phases[k]):.6g} deg for cylinder {k + 1}{bank_text}; "
                 "change one of them, or give all their places along the shaft"
             )
 
-    def bank(self, k: int) -> float:
+    def bank_angle(self, k: int) -> float:
         """Return the bank angle of cylinder k, rad."""
         return self.banks[k] if self.banks else 0.0
 
-    def place(self, k: int) -> float:
+    def shaft_position(self, k: int) -> float:
         """Return the position of cylinder k along the shaft, m."""
         return self.places[k] if self.places else 0.0
 
-    def lead(self, k: int) -> float:
+    def lead_over_slider_line(self, k: int) -> float:
         """Return the lead of cylinder k's crank angle, from its own slider line, over the shaft angle, rad."""
-        return self.phases[k] - self.bank(k)
+        return self.phases[k] - self.bank_angle(k)
 
     @property
     def text(self) -> str:

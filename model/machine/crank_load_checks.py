@@ -12,8 +12,8 @@ def require_loads_repeating_each_turn(mechanism: Mechanism) -> None:
         if load.differs_after_a_turn:
             raise InputError(
                 "a spring on the crank would wind up with every turn; got a crank that rotates fully with a "
-                f'{load.size}; let the crank swing, [motion] kind = "swing", or give its torque over the crank '
-                "angle"
+                f'{load.magnitude_text}; let the crank swing, [motion] kind = "swing", or give its torque over the '
+                "crank angle"
             )
 
 
@@ -21,4 +21,6 @@ def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
     """Raise an error for loads on the crank if an analysis supports only loads on the slider. subject: the analysis."""
     for load in mechanism.with_largest_variables.loads:
         if load.on_crank:
-            raise InputError(f"{subject} only takes loads on the slider; got {load.size}; leave that load out")
+            raise InputError(
+                f"{subject} only takes loads on the slider; got {load.magnitude_text}; leave that load out"
+            )

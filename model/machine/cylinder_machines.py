@@ -59,11 +59,11 @@ def member_machines(mechanism: Mechanism) -> tuple[Member, ...]:
     cylinders = []
     x, y = mechanism.gravity
     for k in range(len(arrangement.phases)):
-        bank = arrangement.bank(k)
+        bank = arrangement.bank_angle(k)
         c, s = math.cos(bank), math.sin(bank)
         turned = (x, y) if bank == 0.0 else (c * x + s * y, c * y - s * x)
         cylinder = replace(mechanism, arrangement=None, speed_profile=None, gravity=turned)
-        cylinders.append(Member(cylinder, arrangement.lead(k), bank, arrangement.place(k)))
+        cylinders.append(Member(cylinder, arrangement.lead_over_slider_line(k), bank, arrangement.shaft_position(k)))
     return tuple(cylinders)
 
 
@@ -72,8 +72,8 @@ def require_single_cylinder_at_constant_speed(mechanism: Mechanism, subject: str
     require_one_cylinder(mechanism.arrangement, subject)
     if mechanism.speed_profile is not None:
         raise InputError(
-            f"{subject} needs a constant crank speed; got a speed profile, {mechanism.speed_profile.text}; leave "
-            "out speed_profile"
+            f"{subject} needs a constant crank speed; got a speed profile, "
+            f"{mechanism.speed_profile.description}; leave out speed_profile"
         )
 
 

@@ -33,7 +33,7 @@ class ConstantTorque:
         """Return the torque, N m, at motor speeds, rad/s."""
         return np.full(np.shape(speed), self.torque)[()]
 
-    def slope(self, speed: ArrayLike) -> Any:
+    def torque_slope(self, speed: ArrayLike) -> Any:
         """Return the torque's derivative with respect to speed, N m s."""
         return np.zeros(np.shape(speed))[()]
 
@@ -69,7 +69,7 @@ class LinearMotor:
         """Return the torque, N m, at motor speeds, rad/s."""
         return self.stall_torque * (1.0 - np.asarray(speed) / self.no_load_speed)[()]
 
-    def slope(self, speed: ArrayLike) -> Any:
+    def torque_slope(self, speed: ArrayLike) -> Any:
         """Return the torque's derivative with respect to speed, N m s."""
         return np.full(np.shape(speed), -self.stall_torque / self.no_load_speed)[()]
 
@@ -115,7 +115,7 @@ class TorqueTable:
         """Return the torque, N m, at motor speeds, rad/s; NaN beyond the table."""
         return self._curve(speed)[()]
 
-    def slope(self, speed: ArrayLike) -> Any:
+    def torque_slope(self, speed: ArrayLike) -> Any:
         """Return the torque's derivative with respect to speed, N m s; NaN beyond the table."""
         return self._curve(speed, 1)[()]
 
@@ -213,7 +213,7 @@ class Drive:
             parts.append(f"recovery {self.recovery:.6g}")
         return ", ".join(parts)
 
-    def torque(self, crank_speed: ArrayLike, direction: float) -> Array:
+    def torque_on_crank(self, crank_speed: ArrayLike, direction: float) -> Array:
         """Return the torque on the crank, N m, counter-clockwise, at crank speeds, rad/s.
 
         direction: +1 or -1, direction in which the motor is intended to turn the crank.

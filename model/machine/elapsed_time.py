@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from ..arrays import Array, Mask
-from ..quadrature import Samples, gauss, legendre_fit_matrix, resolve
+from ..quadrature import Samples, gauss_nodes_and_weights, legendre_fit_matrix, resolve_panels
 
 _TURN = 2.0 * math.pi
 _NODES = 20  # nodes in each panel
@@ -35,7 +35,7 @@ class ElapsedTime:
     @classmethod
     def integrate(cls, ratio: Callable[[Array], Array], ends: Array) -> ElapsedTime:
         """Integrate 1 / p for a ratio p > 0. ends: increasing crank angles in a turn, rad; p is analytic in between."""
-        nodes, basis = gauss(_NODES)[0], legendre_fit_matrix(_NODES).T
+        nodes, basis = gauss_nodes_and_weights(_NODES)[0], legendre_fit_matrix(_NODES).T
 
         def sample(low: Array, width: Array) -> Samples:
             values = 1.0 / ratio(low[:, None] + width[:, None] * nodes)
@@ -44,7 +44,7 @@ class ElapsedTime:
             rough: Mask = ~(tail <= _CONVERGED * coefficients[:, 0] + _NOISE * values.max(axis=1) ** 2)
             return rough, [0.5 * width[:, None] * coefficients]
 
-        start, _, parts = resolve(sample, ends[:-1], np.diff(ends), deepest=_DEEPEST, limit=_PANELS)
+        start, _, parts = resolve_panels(sample, ends[:-1], np.diff(ends), deepest=_DEEPEST, limit=_PANELS)
         order = np.argsort(start)
         integrals = legendre.legint(parts[order].T, lbnd=-1.0)
         series = np.asarray(integrals, dtype=np.float64)

@@ -25,7 +25,7 @@ class Pin:
         require_numbers(self, "radius", "coefficient", phrase="the {} of a pin", least=0.0)
 
     @property
-    def circle(self) -> float:
+    def friction_circle_radius(self) -> float:
         """Radius of the friction circle, m: coefficient times radius."""
         return self.coefficient * self.radius
 
@@ -54,7 +54,9 @@ class Friction:
     @property
     def acts(self) -> bool:
         """Whether any joint has friction."""
-        return self.guide > 0.0 or any(pin.circle > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin))
+        return self.guide > 0.0 or any(
+            pin.friction_circle_radius > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin)
+        )
 
 
 def require_frictionless(friction: Friction, subject: str) -> None:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ..checks import require_kinds, require_numbers
+from ..checks import require_field_types, require_numbers
 from ..errors import InputError
 from .arm import Arm
 from .lever_cylinder import Cylinder
@@ -27,7 +27,7 @@ class Lever:
 
     def __post_init__(self) -> None:
         require_numbers(self, "frame_angle", "pin_angle", phrase="the {} of a lever")
-        require_kinds(self, {"cylinder": Cylinder, "arm": Arm}, "tables of a job state them")
+        require_field_types(self, {"cylinder": Cylinder, "arm": Arm}, "tables of a job state them")
 
     @property
     def texts(self) -> list[str]:

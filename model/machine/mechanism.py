@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from ..checks import require_all_finite, require_kinds, require_numbers, store_as_tuples
+from ..checks import require_all_finite, require_field_types, require_numbers, store_as_tuples
 from ..errors import InputError
 from .arrangement import Arrangement
 from .clearance import Clearance
@@ -16,7 +16,7 @@ from .friction import Friction
 from .lever import Lever, require_lever_alone
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
-from .loads.load_text import range_text
+from .loads.load_text import join_range_ends
 from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .strength import Strength
@@ -152,8 +152,8 @@ class Mechanism:
 
     def __post_init__(self) -> None:
         store_as_tuples(self, "gravity", "loads", "varying")
-        require_kinds(self, _KINDS, _TABLES)
-        require_kinds(self, {"varying": Varying}, _TABLES, item_by_item=True)
+        require_field_types(self, _KINDS, _TABLES)
+        require_field_types(self, {"varying": Varying}, _TABLES, item_by_item=True)
         require_numbers(self, "speed", "acceleration", phrase="{}")
         require_numbers(self, "slider_mass", phrase="the slider mass", least=0.0, unit="kg")
         gravity: object = self.gravity
@@ -212,7 +212,9 @@ class Mechanism:
     def load_texts(self) -> list[str]:
         """Each load in a sentence, with the ranges of its variables."""
         low, high = self.at_lower_and_upper_bounds
-        return [range_text(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)]
+        return [
+            join_range_ends(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)
+        ]
 
     def with_values(self, values: Sequence[float]) -> Mechanism:
         """Return the machine with these values, SI, for its variables (k,)."""

@@ -17,7 +17,7 @@ from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
 from .links import Bar, Link
 from .loads.load import Load
-from .loads.registry import code_of
+from .loads.registry import kernel_code_of_load
 from .loads.stroke_force import StrokeForce
 from .mechanism import Mechanism
 from .memoise import memoise_by_machine
@@ -47,9 +47,9 @@ _DATUMS = {"crank pivot": 0, "zero crank angle": 0, "inner dead centre": 1, "out
 class Loads(NamedTuple):
     """Fixed structure of the loads.
 
-    kind: (k,), see `loads.registry.code_of`. datum: (k,). factor: (k, 3), whether a table acts in the outward
-    stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table begins.
-    knots, force: of the tables. on_crank: whether any load is a torque on the crank.
+    kind: (k,), see `loads.registry.kernel_code_of_load`. datum: (k,). factor: (k, 3), whether a table acts in the
+    outward stroke, in the inward stroke, and as a torque on the crank. start: (k + 1,), index at which a load's table
+    begins. knots, force: of the tables. on_crank: whether any load is a torque on the crank.
     """
 
     kind: Integers
@@ -103,7 +103,7 @@ def raw_vector(mechanism: Mechanism) -> Array:
     raw[Raw.GUIDE_DISTANCE] = mechanism.slider.guide or 0.0
     for index, load in enumerate(mechanism.loads):
         place = Raw.END + LOAD_SLOTS * index
-        numbers = load.numbers()
+        numbers = load.numbers_for_kernel()
         raw[place : place + len(numbers)] = numbers
     return np.array(raw, dtype=np.float64)
 
@@ -124,10 +124,10 @@ def _link_numbers(link: Link) -> tuple[float, ...]:
     return (0.0, 0.0, 0.0, link.mass, centre, share, link.centre_across, inertia, per_mass)
 
 
-def _table_acts_in(load: Load) -> tuple[float, float, float]:
+def _stroke_and_crank_factors(load: Load) -> tuple[float, float, float]:
     if load.on_crank:
         return (0.0, 0.0, 1.0)
-    outward, inward = load.numbers()[:2]
+    outward, inward = load.numbers_for_kernel()[:2]
     return (outward, inward, 0.0)
 
 
@@ -146,14 +146,14 @@ def load_structure(mechanism: Mechanism) -> Loads:
     start = [0]
     for load in mechanism.loads:
         places, forces = load.knots()
-        back = mechanism.direction < 0.0 and load.turns
+        back = mechanism.direction < 0.0 and load.has_knots_along_rotation
         at.extend([-place for place in reversed(places)] if back else places)
         force.extend(reversed(forces) if back else forces)
         start.append(len(at))
     return Loads(
-        np.array([code_of(type(load)) for load in mechanism.loads], dtype=np.int64),
+        np.array([kernel_code_of_load(type(load)) for load in mechanism.loads], dtype=np.int64),
         np.array([_DATUMS[getattr(load, "datum", "crank pivot")] for load in mechanism.loads], dtype=np.int64),
-        np.array([_table_acts_in(load) for load in mechanism.loads], dtype=np.float64).reshape(-1, 3),
+        np.array([_stroke_and_crank_factors(load) for load in mechanism.loads], dtype=np.float64).reshape(-1, 3),
         np.array(start, dtype=np.int64),
         np.array(at, dtype=np.float64),
         np.array(force, dtype=np.float64),
@@ -165,7 +165,9 @@ def load_structure(mechanism: Mechanism) -> Loads:
 def raw_inputs_with_added_masses_only(mechanism: Mechanism) -> tuple[Array, Loads]:
     """Return raw numbers and loads in which only added masses act: loads without effect create no breakpoints."""
     raw, _ = raw_inputs_with_all_features(mechanism)
-    if not any(load.inertial for load in mechanism.loads):
+    if not any(load.is_moving_mass for load in mechanism.loads):
         return raw[: int(Raw.END)], load_structure(Mechanism())
     nothing = StrokeForce(outward=0.0, inward=0.0)
-    return raw, load_structure(Mechanism(loads=tuple(own if own.inertial else nothing for own in mechanism.loads)))
+    return raw, load_structure(
+        Mechanism(loads=tuple(own if own.is_moving_mass else nothing for own in mechanism.loads))
+    )

@@ -93,7 +93,7 @@ _SLOTS |= {f"lever.{name}": (slot, _LEVER[name]) for name, slot in LEVER.items()
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 
 
-def unit_of(path: str) -> str:
+def unit_of_number(path: str) -> str:
     """Return the SI unit of a number in a machine. Raises `InputError` for a number that designs cannot set."""
     return _POLAR[path] if path in _POLAR else _slot_of(path)[1]
 
@@ -110,7 +110,7 @@ def _slot_of(path: str) -> tuple[int, str]:
 
 
 @dataclass(frozen=True)
-class Numbers:
+class RawNumbers:
     """Raw numbers for n designs.
 
     columns: indices (c,) of the raw numbers; crank, rod and offset first. values: (n, c). slopes: (n, c, 3 + k), their
@@ -121,7 +121,7 @@ class Numbers:
     values: Array
     slopes: Array | None
 
-    def chain(self, gradients: Array) -> Array:
+    def chain_to_designs(self, gradients: Array) -> Array:
         """Convert derivatives with respect to raw numbers, (n, ..., c), to the design's own, (n, ..., 3 + k)."""
         if self.slopes is None:
             return gradients
@@ -132,29 +132,29 @@ _THREE = np.arange(3)
 
 
 @memoise_by_batch
-def raw_numbers_of_designs(mechanism: Mechanism, designs: Array, *, limit: int, gradients: bool) -> Numbers:
+def raw_machine_numbers(mechanism: Mechanism, designs: Array, *, slot_count: int, gradients: bool) -> RawNumbers:
     """Return the raw numbers that designs (n, 3 + k) of a machine with k variables set.
 
     limit: number of raw numbers; a signal independent of loads has fewer. gradients: whether to return slopes.
     """
-    require_width(mechanism, designs)
+    require_design_columns(mechanism, designs)
     if not mechanism.varying:
-        return Numbers(_THREE, designs, None)
-    by_slot = {slot: value for slot, value in raw_numbers_by_slot(mechanism, designs).items() if slot < limit}
+        return RawNumbers(_THREE, designs, None)
+    by_slot = {slot: value for slot, value in raw_numbers_by_slot(mechanism, designs).items() if slot < slot_count}
     columns = np.array(list(by_slot), dtype=np.int64)
     values = np.ascontiguousarray(np.stack(list(by_slot.values()), axis=1))
     shape = len(designs) if gradients else 0, len(columns), designs.shape[1]
     rates = _raw_number_slopes(mechanism.varying)
     if rates is not None:
         by_column = np.array([rates[slot] for slot in by_slot])
-        return Numbers(columns, values, np.array(np.broadcast_to(by_column, shape)))
+        return RawNumbers(columns, values, np.array(np.broadcast_to(by_column, shape)))
     slopes = np.empty(shape)
     for v in range(designs.shape[1] if gradients else 0):
         stepped = designs.astype(np.complex128)
         stepped[:, v] += 1j * STEP
         moved = raw_numbers_by_slot(mechanism, stepped)
         slopes[:, :, v] = np.stack([moved[slot].imag for slot in by_slot], axis=1) / STEP
-    return Numbers(columns, values, slopes)
+    return RawNumbers(columns, values, slopes)
 
 
 def raw_number_at_slot(mechanism: Mechanism, slot: int, designs: Array, *, otherwise: float) -> tuple[Array, Array]:
@@ -162,14 +162,14 @@ def raw_number_at_slot(mechanism: Mechanism, slot: int, designs: Array, *, other
 
     `otherwise`: value if designs do not set it.
     """
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=True)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=10**9, gradients=True)
     place = np.flatnonzero(numbers.columns == slot)
     if numbers.slopes is None or not len(place):
         return np.full(len(designs), otherwise), np.zeros(designs.shape)
     return numbers.values[:, place[0]], numbers.slopes[:, place[0]]
 
 
-def formula_of_numbers(
+def evaluate_formula_of_raw_numbers(
     mechanism: Mechanism, designs: Array, formula: Callable[[Callable[[int], Any]], Any], *, gradients: bool
 ) -> tuple[Array, Array | None]:
     """Return a formula for designs (n, 3 + k): values (n,) and complex-step derivatives (n, 3 + k).
@@ -177,13 +177,13 @@ def formula_of_numbers(
     formula: smooth formula that accepts real or complex numbers. Its argument is a function that returns the raw number
     at a slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
     """
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=10**9, gradients=gradients)
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
     slots_used: dict[int, None] = {}
 
     def number(slot: int) -> Any:
         slots_used[slot] = None
-        return set_numbers[slot] if slot in set_numbers else nominal_number(mechanism, slot)
+        return set_numbers[slot] if slot in set_numbers else nominal_raw_number(mechanism, slot)
 
     plain = formula(number) + np.zeros(len(designs))
     if not gradients:
@@ -194,10 +194,10 @@ def formula_of_numbers(
             set_numbers[slot] = set_numbers[slot] + 1j * STEP
             by_number[:, place] = np.imag(formula(number)) / STEP
             set_numbers[slot] = set_numbers[slot].real
-    return plain, numbers.chain(by_number)
+    return plain, numbers.chain_to_designs(by_number)
 
 
-def nominal_number(mechanism: Mechanism, slot: int) -> float:
+def nominal_raw_number(mechanism: Mechanism, slot: int) -> float:
     """Return the raw number at a slot (`Raw`, `PINS`, `DRIVE`) that designs do not set."""
     for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE)):
         for name, place in slots.items():
@@ -211,7 +211,7 @@ def _nominal_numbers(mechanism: Mechanism) -> Array:
     return raw_vector(mechanism.nominal)
 
 
-def require_width(mechanism: Mechanism, designs: Array) -> None:
+def require_design_columns(mechanism: Mechanism, designs: Array) -> None:
     """Raise `InputError` unless designs (n, 3 + k) have as many numbers as the machine requires."""
     if designs.shape[1] != 3 + len(mechanism.varying):
         names = "".join(f", {item.name}" for item in mechanism.varying)

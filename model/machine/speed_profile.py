@@ -46,31 +46,31 @@ class Harmonics:
                 f"{len(self.sines)} sines; correct them, or leave out the profile"
             )
         theta = np.linspace(0.0, _TURN, _SAMPLES * max(len(self.cosines), len(self.sines)), endpoint=False)
-        _require_positive(theta, self.ratio(theta))
+        _require_positive(theta, self.speed_ratio(theta))
 
     @property
     def knots(self) -> tuple[float, ...]:
         """Crank angles at which the profile is not analytic: none."""
         return ()
 
-    def ratio(self, theta: Array) -> Array:
+    def speed_ratio(self, theta: Array) -> Array:
         """Return p at crank angles, rad, real or complex."""
         total = np.ones_like(theta)
-        for k, (a, b) in enumerate(self.pairs, start=1):
+        for k, (a, b) in enumerate(self.coefficient_pairs, start=1):
             total = total + a * np.cos(k * theta) + b * np.sin(k * theta)
         return np.asarray(total)
 
-    def slope(self, theta: Array) -> Array:
+    def speed_ratio_slope(self, theta: Array) -> Array:
         """Return dp/d(theta)."""
         total = np.zeros_like(theta)
-        for k, (a, b) in enumerate(self.pairs, start=1):
+        for k, (a, b) in enumerate(self.coefficient_pairs, start=1):
             total = total + k * (b * np.cos(k * theta) - a * np.sin(k * theta))
         return np.asarray(total)
 
-    def curvature(self, theta: Array) -> Array:
+    def speed_ratio_curvature(self, theta: Array) -> Array:
         """Return the second derivative of p."""
         total = np.zeros_like(theta)
-        for k, (a, b) in enumerate(self.pairs, start=1):
+        for k, (a, b) in enumerate(self.coefficient_pairs, start=1):
             total = total - k**2 * (a * np.cos(k * theta) + b * np.sin(k * theta))
         return np.asarray(total)
 
@@ -78,7 +78,7 @@ class Harmonics:
     def elapsed_time(self) -> ElapsedTime:
         """Elapsed time as a function of the crank angle."""
         return ElapsedTime.integrate(
-            self.ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines)))
+            self.speed_ratio, np.linspace(0.0, _TURN, 1 + 4 * max(len(self.cosines), len(self.sines)))
         )
 
     @property
@@ -87,16 +87,16 @@ class Harmonics:
         return _TURN / self.elapsed_time.full_turn
 
     @property
-    def pairs(self) -> list[tuple[float, float]]:
+    def coefficient_pairs(self) -> list[tuple[float, float]]:
         """a_k and b_k of each harmonic."""
         count = max(len(self.cosines), len(self.sines))
         cosines, sines = (values + (0.0,) * (count - len(values)) for values in (self.cosines, self.sines))
         return list(zip(cosines, sines, strict=True))
 
     @property
-    def text(self) -> str:
+    def description(self) -> str:
         """A short description of the profile."""
-        count = len(self.pairs)
+        count = len(self.coefficient_pairs)
         return f"{count} {'harmonic' if count == 1 else 'harmonics'} of the crank angle"
 
 
@@ -133,7 +133,7 @@ class SpeedTable:
                 )
         turns = self._spline.derivative().roots()  # gives NaN for an interval of constant speed
         ends = np.concatenate([turns[np.isfinite(turns)], self.angles])
-        _require_positive(ends, self.ratio(ends))
+        _require_positive(ends, self.speed_ratio(ends))
 
     def _require_less_than_a_turn(self) -> None:
         """Raise an error for a table that spans a turn or more."""
@@ -161,7 +161,7 @@ class SpeedTable:
         return CubicSpline(*closed, bc_type="periodic")
 
     @cached_property
-    def mean(self) -> float:
+    def mean_speed(self) -> float:
         """Mean speed over the crank angle."""
         return float(self._spline.integrate(self.angles[0], self.angles[0] + _TURN)) / _TURN
 
@@ -170,22 +170,22 @@ class SpeedTable:
         """Crank angles at which the profile is not analytic."""
         return self.angles
 
-    def ratio(self, theta: Array) -> Array:
+    def speed_ratio(self, theta: Array) -> Array:
         """Return p at crank angles, rad."""
-        return np.asarray(self._spline(theta) / self.mean)
+        return np.asarray(self._spline(theta) / self.mean_speed)
 
-    def slope(self, theta: Array) -> Array:
+    def speed_ratio_slope(self, theta: Array) -> Array:
         """Return dp/d(theta)."""
-        return np.asarray(self._spline(theta, 1) / self.mean)
+        return np.asarray(self._spline(theta, 1) / self.mean_speed)
 
-    def curvature(self, theta: Array) -> Array:
+    def speed_ratio_curvature(self, theta: Array) -> Array:
         """Return the second derivative of p."""
-        return np.asarray(self._spline(theta, 2) / self.mean)
+        return np.asarray(self._spline(theta, 2) / self.mean_speed)
 
     @cached_property
     def elapsed_time(self) -> ElapsedTime:
         """Elapsed time as a function of the crank angle."""
-        return ElapsedTime.integrate(self.ratio, np.array([*self.angles, self.angles[0] + _TURN]))
+        return ElapsedTime.integrate(self.speed_ratio, np.array([*self.angles, self.angles[0] + _TURN]))
 
     @property
     def time_mean_over_angle_mean(self) -> float:
@@ -193,12 +193,12 @@ class SpeedTable:
         return _TURN / self.elapsed_time.full_turn
 
     @property
-    def pieces(self) -> tuple[Array, Array]:
+    def spline_pieces(self) -> tuple[Array, Array]:
         """Knots (k + 1,) in a turn, rad, and the polynomials (4, k) of p between them, by descending powers."""
-        return np.array(self._spline.x), np.ascontiguousarray(self._spline.c / self.mean)
+        return np.array(self._spline.x), np.ascontiguousarray(self._spline.c / self.mean_speed)
 
     @property
-    def text(self) -> str:
+    def description(self) -> str:
         """A short description of the profile."""
         return f"table of {len(self.angles)} crank angles"
 
@@ -211,7 +211,7 @@ def time_per_angle(profile: Profile, theta: Array) -> Array:
 
     It is the weight in averages over time: dt = d(theta) / (speed p).
     """
-    return np.asarray(profile.time_mean_over_angle_mean / profile.ratio(theta))
+    return np.asarray(profile.time_mean_over_angle_mean / profile.speed_ratio(theta))
 
 
 def _require_positive(theta: Array, ratio: Array) -> None:

@@ -40,7 +40,7 @@ def turns_per_cycle(loads: Iterable[Load]) -> int:
 @memoise_by_machine
 def machines_of_both_turns(mechanism: Mechanism) -> tuple[Mechanism, ...]:
     """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
-    _datum(mechanism)
+    _cycle_datum(mechanism)
     return tuple(_machine_of_turn(mechanism, turn) for turn in (1, 2))
 
 
@@ -58,7 +58,7 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
         return replace(item, sets=tuple(sets), idle=not sets)
 
     varying = tuple(numbers_of_turn(item) for item in mechanism.varying)
-    return replace(mechanism, loads=tuple(load.on_turn(turn) for load in loads), varying=varying)
+    return replace(mechanism, loads=tuple(load.load_on_turn(turn) for load in loads), varying=varying)
 
 
 def machine_of_first_turn(mechanism: Mechanism) -> Mechanism:
@@ -66,22 +66,22 @@ def machine_of_first_turn(mechanism: Mechanism) -> Mechanism:
     return machines_of_both_turns(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
 
 
-def half_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:
+def half_of_cycle_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:
     """Return the half, 0 or 1, that contains crank angles, rad, for dead centres inner and outer; broadcasts."""
-    datum = _datum(mechanism)
+    datum = _cycle_datum(mechanism)
     way = 1.0 if datum == "zero crank angle" else mechanism.direction
     start = np.mod({"zero crank angle": 0.0, "inner dead centre": inner, "outer dead centre": outer}[datum], TURN)
     start = np.where(start < TURN, start, 0.0)  # rounding of a tiny negative angle
     return np.asarray(np.mod(np.floor(way * (crank_angle - start) / TURN), 2.0), dtype=np.int64)
 
 
-def shift_into_half(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
+def shift_angles_into_half(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array, half: Any) -> Array:
     """Return crank angles shifted by whole turns into [0, 4 pi), rad, and into a given half there."""
     angle = np.mod(crank_angle, TURN)
-    return np.where(half_at(mechanism, inner, outer, angle) == half, angle, angle + TURN)
+    return np.where(half_of_cycle_at(mechanism, inner, outer, angle) == half, angle, angle + TURN)
 
 
-def _datum(mechanism: Mechanism) -> str:
+def _cycle_datum(mechanism: Mechanism) -> str:
     datums = {load.cycle_datum for load in mechanism.loads if load.cycle_turns > 1}
     if len(datums) != 1:
         raise InputError(

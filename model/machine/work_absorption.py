@@ -25,11 +25,11 @@ def may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
     """Return whether the mean drive torque over a turn may be nonzero for some design.
 
     It is zero without all of these: friction in loaded joints, crank acceleration, loads that depend on speed or have
-    their own formula, loads that differ between strokes, and loads over crank angle (`Load.turn_work`). For each
+    their own formula, loads that differ between strokes, and loads over crank angle (`Load.turn_work_by_key`). For each
     variable two values are tried, neither of them special.
     """
     return any(
-        machine.acceleration != 0.0 or _has_friction(machine) or _load_works(machine)
+        machine.acceleration != 0.0 or _has_friction(machine) or _loads_do_net_work(machine)
         for machine in _trial_machines(mechanism)
     )
 
@@ -39,7 +39,7 @@ def loads_may_do_work_over_a_turn(mechanism: Mechanism) -> bool:
 
     See `may_do_work_over_a_turn`.
     """
-    return any(map(_load_works, _trial_machines(mechanism)))
+    return any(map(_loads_do_net_work, _trial_machines(mechanism)))
 
 
 @memoise_by_machine
@@ -86,7 +86,7 @@ def needs_drive_torque(machine: Mechanism) -> bool:
     At constant speed and without gravity, the crank and the counterweight load the pivot but need no torque.
     """
     turned = any(load.on_crank for load in _acting_loads(machine))
-    lifted = crank_weighs(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
+    lifted = crank_has_mass(machine) and (any(machine.gravity) or machine.acceleration != 0.0)
     return carries_linkage_forces(machine) or turned or lifted
 
 
@@ -96,14 +96,14 @@ def _acting_loads(machine: Mechanism) -> list[Load]:
     return [
         load
         for load in machine.loads
-        if load.acts and (driven if load.inertial else machine.speed != 0.0 or not load.speed_power)
+        if load.acts and (driven if load.is_moving_mass else machine.speed != 0.0 or not load.speed_power)
     ]
 
 
 def carries_pivot_force(machine: Mechanism) -> bool:
     """Return whether a force acts on the crank pivot: from the linkage, or from weight and inertia of the crank."""
     driven = machine.speed != 0.0 or machine.acceleration != 0.0 or any(machine.gravity)
-    return carries_linkage_forces(machine) or (crank_weighs(machine) and driven)
+    return carries_linkage_forces(machine) or (crank_has_mass(machine) and driven)
 
 
 def has_rod_or_slider_mass(machine: Mechanism) -> bool:
@@ -111,7 +111,7 @@ def has_rod_or_slider_mass(machine: Mechanism) -> bool:
     return machine.slider_mass > 0.0 or _has_weight(machine.rod)
 
 
-def crank_weighs(machine: Mechanism) -> bool:
+def crank_has_mass(machine: Mechanism) -> bool:
     """Return whether the crank, with its counterweight, has a mass or an inertia."""
     return _has_weight(machine.crank) or machine.counterweight.mass > 0.0 or machine.counterweight.inertia > 0.0
 
@@ -122,9 +122,13 @@ def _has_weight(link: Link) -> bool:
 
 def _has_friction(machine: Mechanism) -> bool:
     friction = machine.friction
-    past_pivot = friction.guide > 0.0 or friction.crank_pin.circle > 0.0 or friction.slider_pin.circle > 0.0
+    past_pivot = (
+        friction.guide > 0.0
+        or friction.crank_pin.friction_circle_radius > 0.0
+        or friction.slider_pin.friction_circle_radius > 0.0
+    )
     return (past_pivot and carries_linkage_forces(machine)) or (
-        friction.crank_pivot.circle > 0.0 and carries_pivot_force(machine)
+        friction.crank_pivot.friction_circle_radius > 0.0 and carries_pivot_force(machine)
     )
 
 
@@ -136,9 +140,9 @@ def _trial_machines(mechanism: Mechanism) -> list[Mechanism]:
     return [mechanism.with_largest_variables, mechanism.with_values(inner)]
 
 
-def _load_works(machine: Mechanism) -> bool:
+def _loads_do_net_work(machine: Mechanism) -> bool:
     sizes: defaultdict[Hashable, list[float]] = defaultdict(list)
     for load in _acting_loads(machine):
-        for key, works in load.turn_work(moving=machine.speed != 0.0).items():
+        for key, works in load.turn_work_by_key(moving=machine.speed != 0.0).items():
             sizes[key].extend(works)
     return any(abs(math.fsum(parts)) > _ROUNDING * math.fsum(map(abs, parts)) for parts in sizes.values())

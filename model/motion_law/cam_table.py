@@ -42,8 +42,8 @@ def cam_table(law: MotionLaw, intervals: int = POINTS) -> CamTable:
     phi = np.append(turn.passed[cell] + place * turn.width[cell], TURN)
     angle = turn.start % TURN + turn.way * phi
     inside = np.append(angle[:-1], angle[0])
-    after, before = law.acceleration(inside), law.acceleration(inside, before=True)
-    time, speed = np.concatenate([[0.0], law.time(inside[1:-1]), [law.period]]), law.speed(inside)
+    after, before = law.acceleration_at(inside), law.acceleration_at(inside, before=True)
+    time, speed = np.concatenate([[0.0], law.time_at(inside[1:-1]), [law.period]]), law.speed_at(inside)
     steps = np.abs(after - before) > _STEP * float(np.abs(after).max())
     first, last = np.arange(len(phi)) == 0, np.arange(len(phi)) == len(phi) - 1
     double = np.repeat(np.arange(len(phi)), np.where(steps & ~first & ~last, 2, 1))

@@ -68,7 +68,7 @@ class LawTurn:
         equation.require_inertia(0.0)
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self._copy_cells(PeriodicTurn(equation, dimensions))
-        if self._turn.terms.speed_dependent:
+        if self._turn.terms.depends_on_speed:
             raise InputError(
                 "a motion law only takes loads that do not depend on the speed; got one that does; leave out "
                 "viscous loads and drag"
@@ -84,34 +84,34 @@ class LawTurn:
         cells = np.arange(len(turn.width))
 
         def at_cell_ends(values: Array) -> Array:
-            return np.stack([values_at(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)])
+            return np.stack([interpolate_in_cells(values, cells, np.full(len(cells), end)) for end in (0.0, 1.0)])
 
         angles = np.stack([turn.low, turn.low + turn.width])
         self.end_terms = LawTerms(
             self.inertia_at(angles), at_cell_ends(slope), at_cell_ends(load), *self.slider_derivatives(angles)
         )
 
-    def finer(self, cells: Mask) -> LawTurn:
+    def with_halved_cells(self, cells: Mask) -> LawTurn:
         """Return the turn with the chosen cells (n,) halved."""
         turn = object.__new__(LawTurn)
         turn.machine, turn.linkage = self.machine, self.linkage
-        turn._copy_cells(self._turn.cut(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
+        turn._copy_cells(self._turn.cut_at_angles(self._turn.low[cells] + 0.5 * self._turn.width[cells]))
         return turn
 
     @property
-    def weights(self) -> Array:
+    def angle_weights(self) -> Array:
         """Weights (n, 16) for an integral over phi."""
         return np.asarray(self.width[:, None] * WEIGHTS)
 
     @property
-    def low(self) -> Array:
+    def cell_start_angles(self) -> Array:
         """Crank angle at the start of each cell, (n,), rad."""
         return self._turn.low
 
     @property
     def load_work(self) -> float:
         """Work that the loads absorb in a turn, J; gravity absorbs none."""
-        return float(np.sum(self.weights * self.terms.load))
+        return float(np.sum(self.angle_weights * self.terms.load))
 
     def slider_derivatives(self, crank_angle: Array) -> tuple[Array, Array]:
         """Return x' and x'' by phi, m, at crank angles, rad."""
@@ -120,24 +120,24 @@ class LawTurn:
 
     def inertia_at(self, crank_angle: Array) -> Array:
         """Return J, kg m^2, at crank angles, rad."""
-        return np.asarray(self._turn.equation.inertia(crank_angle))
+        return np.asarray(self._turn.equation.moving_inertia(crank_angle))
 
-    def locate(self, crank_angle: Array) -> tuple[IntArray, Array]:
+    def locate_in_cells(self, crank_angle: Array) -> tuple[IntArray, Array]:
         """Return the cells (n,) that contain crank angles, rad, and the positions within them, from 0 to 1."""
         phi = np.mod(self.way * (crank_angle - self.start), TURN)
         cell = np.clip(np.searchsorted(self.passed, phi, side="right") - 1, 0, len(self.width) - 1)
         return np.asarray(cell), (phi - self.passed[cell]) / self.width[cell]
 
-    def integrals(self, values: Array) -> Array:
+    def integrals_to_nodes(self, values: Array) -> Array:
         """Return integrals over phi (n, 16) of values at the nodes, from the start of each cell to its nodes."""
         return np.asarray(self.width[:, None] * (values @ INTEGRALS.T))
 
-    def integral_of(self, values: Array, cell: IntArray, place: Array) -> Array:
+    def integral_from_cell_start(self, values: Array, cell: IntArray, place: Array) -> Array:
         """Return integrals over phi of values at all nodes, from the start of cells (n,) to positions within them."""
         return np.asarray(self.width[cell] * np.einsum("ni,ni->n", cell_integral_weights(place), values[cell]))
 
 
-def values_at(values: Array, cell: IntArray, place: Array) -> Array:
+def interpolate_in_cells(values: Array, cell: IntArray, place: Array) -> Array:
     """Return values (n,) at positions from 0 to 1 in cells, interpolated from those at all nodes (cells, 16)."""
     basis = legendre.legvander(2.0 * place - 1.0, DEGREE) @ FIT
     return np.asarray(np.einsum("ni,ni->n", basis, values[cell]))

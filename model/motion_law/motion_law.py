@@ -16,7 +16,7 @@ from ..arrays import Array, IntArray
 from ..quadrature import NODES
 from ..transient.crank_equation import TURN
 from ..transient.speed_profile_cycle import CrankMotion
-from .law_turn import LawTurn, values_at
+from .law_turn import LawTurn, interpolate_in_cells
 
 _NEWTON = 8
 
@@ -40,10 +40,10 @@ class MotionLaw:
         return cls(turn, torque - excess / float(turn.width.sum()), start_energy)
 
     @cached_property
-    def energies(self) -> Array:
+    def cell_start_energies(self) -> Array:
         """K at the start of each cell, J, (n,)."""
         gain = self.turn.width * 0.5 * (self.torque + np.roll(self.torque, -1))
-        gain -= np.sum(self.turn.weights * self.turn.terms.load, axis=1)
+        gain -= np.sum(self.turn.angle_weights * self.turn.terms.load, axis=1)
         return self.start_energy + np.concatenate([[0.0], np.cumsum(gain)[:-1]])
 
     @cached_property
@@ -51,7 +51,7 @@ class MotionLaw:
         """K at the nodes, J, (n, 16)."""
         cell = np.repeat(np.arange(len(self.torque)), self.turn.angle.shape[1])
         place = np.tile(NODES, len(self.torque))
-        return self._energy(cell, place).reshape(self.turn.angle.shape)
+        return self._energy_in_cells(cell, place).reshape(self.turn.angle.shape)
 
     @property
     def node_torques(self) -> Array:
@@ -66,55 +66,66 @@ class MotionLaw:
     @property
     def period(self) -> float:
         """Time of a turn, s."""
-        return float(np.sum(self.turn.weights * self.node_slowness))
+        return float(np.sum(self.turn.angle_weights * self.node_slowness))
 
     @property
     def rms_torque(self) -> float:
         """Root mean square of the drive torque over the time of a turn, N m."""
-        return math.sqrt(float(np.sum(self.turn.weights * self.node_torques**2 * self.node_slowness)) / self.period)
+        return math.sqrt(
+            float(np.sum(self.turn.angle_weights * self.node_torques**2 * self.node_slowness)) / self.period
+        )
 
-    def combined(self, other: MotionLaw, share: float) -> MotionLaw:
+    def mixed_with(self, other: MotionLaw, share: float) -> MotionLaw:
         """Return a mixture of this law's K and T with those of another law, in the proportion `share`."""
         torque = (1.0 - share) * self.torque + share * other.torque
         return MotionLaw(self.turn, torque, (1.0 - share) * self.start_energy + share * other.start_energy)
 
-    def energy(self, crank_angle: Array) -> Array:
+    def energy_at(self, crank_angle: Array) -> Array:
         """Return K, J, at crank angles (n,), rad."""
-        return self._energy(*self.turn.locate(crank_angle))
+        return self._energy_in_cells(*self.turn.locate_in_cells(crank_angle))
 
-    def speed(self, crank_angle: Array) -> Array:
+    def speed_at(self, crank_angle: Array) -> Array:
         """Return the crank speed, rad/s, positive counter-clockwise, at crank angles (n,), rad."""
-        return np.asarray(self.turn.way * np.sqrt(2.0 * self.energy(crank_angle) / self.turn.inertia_at(crank_angle)))
+        return np.asarray(
+            self.turn.way * np.sqrt(2.0 * self.energy_at(crank_angle) / self.turn.inertia_at(crank_angle))
+        )
 
     def torque_at(self, crank_angle: Array) -> Array:
         """Return the drive torque, N m, positive counter-clockwise, at crank angles (n,), rad."""
-        return np.asarray(self.turn.way * self._torque(*self.turn.locate(crank_angle)))
+        return np.asarray(self.turn.way * self._torque_in_cells(*self.turn.locate_in_cells(crank_angle)))
 
-    def acceleration(self, crank_angle: Array, *, before: bool = False) -> Array:
+    def acceleration_at(self, crank_angle: Array, *, before: bool = False) -> Array:
         """Return the crank acceleration, rad/s^2, positive counter-clockwise, at crank angles (n,), rad.
 
         before: whether to return the value before a step in the load, if an angle lies on one.
         """
-        cell, place = self.turn.locate(crank_angle)
+        cell, place = self.turn.locate_in_cells(crank_angle)
         if before:
             first = place <= 0.0
             cell, place = np.where(first, cell - 1, cell), np.where(first, 1.0, place)
         inertia = self.turn.inertia_at(crank_angle)
         load, slope = (
-            values_at(values, cell, place) for values in (self.turn.terms.load, self.turn.terms.inertia_slope)
+            interpolate_in_cells(values, cell, place)
+            for values in (self.turn.terms.load, self.turn.terms.inertia_slope)
         )
-        energy = self._energy(cell, place)
-        return np.asarray(self.turn.way * (self._torque(cell, place) - load - slope * energy / inertia) / inertia)
+        energy = self._energy_in_cells(cell, place)
+        return np.asarray(
+            self.turn.way * (self._torque_in_cells(cell, place) - load - slope * energy / inertia) / inertia
+        )
 
     @property
-    def motion(self) -> CrankMotion:
+    def crank_motion(self) -> CrankMotion:
         """The law as a crank motion that can be evaluated like any speed profile."""
-        return CrankMotion(lambda angle: (self.speed(angle), self.acceleration(angle)), np.mod(self.turn.low, TURN))
+        return CrankMotion(
+            lambda angle: (self.speed_at(angle), self.acceleration_at(angle)), np.mod(self.turn.cell_start_angles, TURN)
+        )
 
-    def time(self, crank_angle: Array) -> Array:
+    def time_at(self, crank_angle: Array) -> Array:
         """Return the time since the start of the turn, s, at crank angles (n,), rad."""
-        cell, place = self.turn.locate(crank_angle)
-        return np.asarray(self._cell_start_times[cell] + self.turn.integral_of(self.node_slowness, cell, place))
+        cell, place = self.turn.locate_in_cells(crank_angle)
+        return np.asarray(
+            self._cell_start_times[cell] + self.turn.integral_from_cell_start(self.node_slowness, cell, place)
+        )
 
     def angle_at(self, time: Array) -> Array:
         """Return the crank angle, rad, not reduced modulo a turn, at times (n,) from 0 to the period, s."""
@@ -122,24 +133,30 @@ class MotionLaw:
             np.searchsorted(self._cell_start_times, time, side="right") - 1, 0, len(self._cell_start_times) - 1
         )
         rest = time - self._cell_start_times[cell]
-        lasts = self.turn.integral_of(self.node_slowness, cell, np.ones(len(time)))
+        lasts = self.turn.integral_from_cell_start(self.node_slowness, cell, np.ones(len(time)))
         place = rest / lasts
         for _ in range(_NEWTON):
-            error = self.turn.integral_of(self.node_slowness, cell, place) - rest
+            error = self.turn.integral_from_cell_start(self.node_slowness, cell, place) - rest
             place = np.clip(
-                place - error / (self.turn.width[cell] * values_at(self.node_slowness, cell, place)), 0.0, 1.0
+                place - error / (self.turn.width[cell] * interpolate_in_cells(self.node_slowness, cell, place)),
+                0.0,
+                1.0,
             )
         return np.asarray(self.turn.start + self.turn.way * (self.turn.passed[cell] + place * self.turn.width[cell]))
 
     @cached_property
     def _cell_start_times(self) -> Array:
-        lasts = np.sum(self.turn.weights * self.node_slowness, axis=1)
+        lasts = np.sum(self.turn.angle_weights * self.node_slowness, axis=1)
         return np.concatenate([[0.0], np.cumsum(lasts)[:-1]])
 
-    def _torque(self, cell: IntArray, place: Array) -> Array:
+    def _torque_in_cells(self, cell: IntArray, place: Array) -> Array:
         return np.asarray(self.torque[cell] + (np.roll(self.torque, -1) - self.torque)[cell] * place)
 
-    def _energy(self, cell: IntArray, place: Array) -> Array:
+    def _energy_in_cells(self, cell: IntArray, place: Array) -> Array:
         first, rise = self.torque[cell], (np.roll(self.torque, -1) - self.torque)[cell]
         gain = self.turn.width[cell] * place * (first + 0.5 * rise * place)
-        return np.asarray(self.energies[cell] + gain - self.turn.integral_of(self.turn.terms.load, cell, place))
+        return np.asarray(
+            self.cell_start_energies[cell]
+            + gain
+            - self.turn.integral_from_cell_start(self.turn.terms.load, cell, place)
+        )

@@ -67,12 +67,12 @@ class Averages:
         return None if self.gradients is None else np.asarray(self.gradients[2])
 
 
-def average_torque(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
-    """Return mean and RMS drive torque, N m, for designs (n, 3 + k), as `average` does."""
-    return average(mechanism, Signal.TORQUE, designs, gradients=gradients)
+def torque_averages(mechanism: Mechanism, designs: Array, *, gradients: bool = False) -> Averages:
+    """Return mean and RMS drive torque, N m, for designs (n, 3 + k), as `signal_averages` does."""
+    return signal_averages(mechanism, Signal.TORQUE, designs, gradients=gradients)
 
 
-def average(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
+def signal_averages(mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool = False) -> Averages:
     """Return mean and RMS values of a signal for fully rotating designs (n, 3 + k): crank, rod, offset, m.
 
     The k additional columns are the values of the machine's variables. The torque keeps its sign; any other signal
@@ -91,12 +91,12 @@ def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradient
         return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
-            average(half, kind, designs, gradients=gradients) for half in machines_of_both_turns(mechanism)
+            signal_averages(half, kind, designs, gradients=gradients) for half in machines_of_both_turns(mechanism)
         )
         return Averages(*averages_of_both_turns(first, second))
     raw, loads = signal_inputs(mechanism, kind)
     rubbing = kind.needs_forces and needs_friction_kernel(mechanism)
-    jumps = rubbing or (kind.needs_forces and any(load.steps for load in mechanism.with_largest_variables.loads))
+    jumps = rubbing or (kind.needs_forces and any(load.has_steps for load in mechanism.with_largest_variables.loads))
     task = MeansTask(int(kind), loads, cycle_window(mechanism, kind), rubbing, jumps)
     means = turn_means(task, raw, mechanism, designs, squares=True, gradients=gradients)
     mean, rms = means.mean[:, 0], np.sqrt(means.square[:, 0])

@@ -173,7 +173,7 @@ def _sample_squared_rss_error(
 
 
 @analytic
-def row_of(kind: Any) -> Any:
+def sample_row_of_signal(kind: Any) -> Any:
     """Return the row that holds the samples of a signal."""
     return 0 if kind == _TORQUE else (1 if kind == _WORST else 2)
 
@@ -189,7 +189,7 @@ def sample_curves(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> Non
     for squares in (False, True):
         is_needed = False
         for kind in kinds:
-            is_needed = is_needed or (row_of(kind) == 2) == squares
+            is_needed = is_needed or (sample_row_of_signal(kind) == 2) == squares
         for k in range(angles // 2 + 1 if is_needed else 0):
             # If an angle is its own mirror image, the other row is a spare one, because writing one row twice would be
             # slow.
@@ -199,7 +199,7 @@ def sample_curves(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> Non
             else:
                 _sample_torque_and_worst_case(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
     for kind in kinds:
-        q = row_of(kind)
+        q = sample_row_of_signal(kind)
         for j in range(LANES):
             samples[q, 0, j] = samples[q, angles, j]
 
@@ -230,7 +230,7 @@ def _fill_parabola_vertex(samples: Any, i: Any, mark: Any, top: Any) -> None:
 
 
 @analytic
-def two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
+def find_two_highest(samples: Any, b: Any, mark: Any, top: Any) -> bool:
     """Find each lane's highest sample, and the highest other local maximum that could exceed it between samples.
 
     samples: samples of one signal. `top` (6, LANES) receives three values for each of both maxima: the index, the

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import needs_friction_kernel, sides_of
-from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
+from ..dynamics.friction_signs import friction_signs_in_segment, needs_friction_kernel
+from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque import Forces
 from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..kernel.batches import in_chunks
@@ -50,8 +50,8 @@ def _fill_forces(
             sine, cosine = math.sin(theta), math.cos(theta)
             step = angles[n, k].imag
             s, c = complex(sine, cosine * step), complex(cosine, -sine * step)
-            _, outward = enter_segment(d, block, 0, theta, loads, watch, piece, shift)
-            sides = sides_of(theta, d, Segment(block, loads, outward, piece, shift), rubbing)
+            _, outward = find_segment_pieces(d, block, 0, theta, loads, watch, piece, shift)
+            sides = friction_signs_in_segment(theta, d, Segment(block, loads, outward, piece, shift), rubbing)
             segment = Segment(curved, loads, outward, piece, shift)
             m = design_motion(s, c, z)
             load = load_on_slider(m, z, angles[n, k], segment)

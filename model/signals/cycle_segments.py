@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..dynamics.segments import angle_within
+from ..dynamics.segments import angle_identifying_segment
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class Segments:
         """A place in each segment that identifies its strokes and pieces."""
         low: Any = self.low
         high: Any = self.high
-        return np.asarray(angle_within(low, high))
+        return np.asarray(angle_identifying_segment(low, high))
 
-    def panels(self, fineness: Array) -> tuple[IntArray, Array, Array, Array, IntArray]:
+    def split_into_panels(self, fineness: Array) -> tuple[IntArray, Array, Array, Array, IntArray]:
         """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) per unit."""
         width = self.high - self.low
         count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)

@@ -18,7 +18,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.segments import crowding_parameter
-from ..dynamics.torque import forces, load_without_pieces
+from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import in_chunks, require_full_rotation
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
@@ -28,12 +28,12 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from ..machine.two_turn_machine import machine_of_first_turn
 from .coarse_peaks import LANES as LANES
-from .coarse_peaks import ROWS, fill_curve_numbers, row_of, sample_curves, two_highest
+from .coarse_peaks import ROWS, fill_curve_numbers, find_two_highest, sample_curves, sample_row_of_signal
 from .signal_inputs import cycle_window
-from .signals import Signal, design_motion, signal
+from .signals import Signal, design_motion, signal_without_friction
 
 ANGLES = 64
 """Sampled angles per turn if thousands of designs are only ranked."""
@@ -123,7 +123,7 @@ def _signal_value(kind: Any, sine: Any, cosine: Any, m: Any, d: Any, direction: 
     """Value of a signal, with the load for the stroke that the slider is in."""
     outward = d.branch.real * m.x_1.real * direction > 0.0
     load = load_without_pieces(m, d, d.outward_force if outward else d.inward_force)
-    return signal(kind, sine, cosine, m, d, load)
+    return signal_without_friction(kind, sine, cosine, m, d, load)
 
 
 @analytic
@@ -190,8 +190,8 @@ def _fill_design_derivatives(kind: Any, tops: _Tops, block: Any, direction: Any,
 def _refine_maxima(kind: Any, tau: Any, top: Any, lanes: _Lanes, work: Any, tops: _Tops) -> Any:
     """Move every lane to its local maximum within one angle on either side, starting at the vertex of the parabola.
 
-    top: place, vertex and curvature of `coarse_peaks.two_highest`. work: workspace (12, lanes). A lane that has settled
-    stays there while others take more steps, so its result does not depend on them.
+    top: place, vertex and curvature of `coarse_peaks.find_two_highest`. work: workspace (12, lanes). A lane that has
+    settled stays there while others take more steps, so its result does not depend on them.
     """
     best, sines, cosines = tops
     h = 2.0 * math.pi / tau.shape[1]
@@ -246,9 +246,9 @@ def _torque_at_dead_centres(d: Any) -> Any:
     """Larger magnitude of the torque at the two dead centres, where loads along the stroke need no torque."""
     outer, inner = d.e * inverse(d.l + d.r), -d.e * inverse(d.l - d.r)
     sine, cosine = outer, d.branch * root(1.0 - outer * outer)
-    at_outer = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    at_outer = forces_without_friction(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
     sine, cosine = inner, -d.branch * root(1.0 - inner * inner)
-    at_inner = forces(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
+    at_inner = forces_without_friction(sine, cosine, design_motion(sine, cosine, d), d, 0.0).torque
     return max(abs(at_outer), abs(at_inner))
 
 
@@ -258,8 +258,8 @@ def _fill_higher_maximum(
 ) -> None:
     """Fill in the higher of each lane's two refined maxima.
 
-    tops: `top` from `coarse_peaks.two_highest`; rivals: whether any lane has a second maximum. found: workspace (2, 3,
-    lanes).
+    tops: `top` from `coarse_peaks.find_two_highest`; rivals: whether any lane has a second maximum. found: workspace
+    (2, 3, lanes).
     """
     kappa = lanes.kappa
     for i in range(2 if rivals else 1):
@@ -334,7 +334,7 @@ def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) ->
         for j in range(last if out.still.shape[0] else 0):
             out.still[here + j] = slope[j]
         for q in range(signals):
-            rivals = two_highest(samples[row_of(task.kinds[q])], scaled, mark, tops)
+            rivals = find_two_highest(samples[sample_row_of_signal(task.kinds[q])], scaled, mark, tops)
             peak = _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2])
             _fill_higher_maximum(task.kinds[q], tau, tops, rivals, lanes, work, found, peak)
             for j in range(last):
@@ -370,7 +370,7 @@ def screened_maxima(
     values, peak_angles = np.empty((signals, n)), np.empty((signals, n if places else 0))
     standing = np.empty(n if still else 0)
     raw, loads = raw_inputs_with_all_features(machine_of_first_turn(mechanism))
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((signals if gradients else 0, n, len(columns)))
     codes = np.array([int(kind) for kind in kinds])
@@ -382,6 +382,6 @@ def screened_maxima(
 
     in_chunks(n, work, size=16 * LANES)
     return tuple(
-        Screened(values[q], peak_angles[q], standing, numbers.chain(slopes[q]) if gradients else None)
+        Screened(values[q], peak_angles[q], standing, numbers.chain_to_designs(slopes[q]) if gradients else None)
         for q in range(signals)
     )

@@ -23,7 +23,7 @@ to 0.01 deg, no angle then becomes the end of the cycle: half of 0.01 deg is 8.7
 _SAME_ANGLE = 1e-3  # rad: an equally high point closer to a peak than this is the same peak
 
 
-def first_greatest(values: Array, angles: Array, period: float) -> IntArray:
+def index_of_first_maximum(values: Array, angles: Array, period: float) -> IntArray:
     """Return the indices (...) of the maxima of values (..., k); among equal values, the first by crank angle, rad.
 
     Angles count from zero. The index is 0 if no value is finite.

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import TURN, cycle_turns
-from .first_of_equal_maxima import angle_in_cycle, first_greatest
+from .first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
 from .peaks import find_peaks
 from .signals import Signal
 
@@ -21,6 +21,6 @@ def first_peaks(mechanism: Mechanism, kind: Signal, designs: Array) -> tuple[Arr
     """
     peaks = find_peaks(mechanism, kind, designs, limit=_MOST)
     period = cycle_turns(mechanism) * TURN
-    first = first_greatest(peaks.values, peaks.angles, period)
+    first = index_of_first_maximum(peaks.values, peaks.angles, period)
     angles = np.take_along_axis(peaks.angles, first[:, None], axis=1)[:, 0]
     return peaks.values[:, 0], np.array([angle_in_cycle(angle, period) for angle in angles.tolist()])

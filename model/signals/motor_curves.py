@@ -83,7 +83,7 @@ class MotorShaft(Shaft):
         self.curve, self._direction = curve, mechanism.direction
         drive = _required_drive(mechanism)
         self._lossy = drive.is_lossy or any(_EFFICIENCIES & {*item.paths} for item in mechanism.varying)
-        self._train = _numbers_of(mechanism, drive, designs)
+        self._train = _drive_train_numbers(mechanism, drive, designs)
 
     def evaluate(
         self, row: IntArray, probe: Array, angle: Array, *, rate: Array | None = None, gradients: bool = False
@@ -109,7 +109,9 @@ class MotorShaft(Shaft):
         breaks = super()._cut_at_kinks(breaks)
         codes = ([GEAR] if self._lossy else []) + ([SUPPLY] if self.curve is MotorCurve.DRAWN else [])
         for code in codes:
-            breaks = join_breaks([breaks, self.crossings(breaks, partial(self._values, _KINKS[code]), code)])
+            breaks = join_breaks(
+                [breaks, self.sign_change_breakpoints(breaks, partial(self._values, _KINKS[code]), code)]
+            )
         return breaks
 
     def _values(self, curve: MotorCurve, row: IntArray, probe: Array, angle: Array) -> Array:
@@ -156,7 +158,11 @@ class MotorShaft(Shaft):
             return speed * ones, self._direction * train.acceleration * ones
         ratio, slope, bend = (
             derivative(angle)[:, :, None]
-            for derivative in (self.profile.ratio, self.profile.slope, self.profile.curvature)
+            for derivative in (
+                self.profile.speed_ratio,
+                self.profile.speed_ratio_slope,
+                self.profile.speed_ratio_curvature,
+            )
         )
         stepped_ratio, stepped_slope = ratio + step * slope, slope + step * bend
         return speed * stepped_ratio, self._direction * train.speed * train.speed * stepped_ratio * stepped_slope
@@ -168,7 +174,7 @@ def _required_drive(mechanism: Mechanism) -> Drive:
     return mechanism.drive
 
 
-def _numbers_of(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
+def _drive_train_numbers(mechanism: Mechanism, drive: Drive, designs: Array) -> _Numbers:
     """Return the drive-train values for designs (n, 3 + k)."""
 
     def stepped(slot: int, otherwise: float | None) -> _Stepped:
@@ -191,7 +197,7 @@ def motor_curve(mechanism: Mechanism, design: Array, crank_angle: Array, curve: 
     NaN where friction locks the design. Raises `InputError` without a drive.
     """
     shaft = MotorShaft(mechanism, curve, require_full_rotation(design))
-    if not shaft.drives[0]:
+    if not shaft.unlocked_designs[0]:
         return np.full(len(crank_angle), np.nan)
     row = np.zeros(len(crank_angle), dtype=np.int64)
     return shaft.evaluate(row, crank_angle, crank_angle[:, None])[0][:, 0, 0]
@@ -237,12 +243,14 @@ def motor_averages(mechanism: Mechanism, designs: Array, curve: MotorCurve, grad
         shaft = MotorShaft(mechanism, curve, designs[begin:end], gradients=gradients)
         means = shaft_means(shaft, end - begin)
         integral, rms = shaft.period * means.values[MEAN], np.sqrt(means.values[SQUARE_OVER_TIME])
-        values[:, begin:end] = np.where(means.nothing, 0.0, np.where(shaft.drives, np.stack([integral, rms]), np.inf))
+        values[:, begin:end] = np.where(
+            means.nothing, 0.0, np.where(shaft.unlocked_designs, np.stack([integral, rms]), np.inf)
+        )
         if means.gradients is not None:
-            positive = (rms > 0.0) & ~means.nothing & shaft.drives
+            positive = (rms > 0.0) & ~means.nothing & shaft.unlocked_designs
             half = np.where(positive, 0.5 / np.where(positive, rms, 1.0), 0.0)
             slopes[0, begin:end] = np.where(
-                (means.nothing | ~shaft.drives)[:, None], 0.0, shaft.period * means.gradients[MEAN]
+                (means.nothing | ~shaft.unlocked_designs)[:, None], 0.0, shaft.period * means.gradients[MEAN]
             )
             slopes[1, begin:end] = half[:, None] * means.gradients[SQUARE_OVER_TIME]
 

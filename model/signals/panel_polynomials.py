@@ -22,18 +22,18 @@ from ..quadrature import (
     MOST_HALVINGS,
     NODES,
     Samples,
-    gauss,
+    gauss_nodes_and_weights,
     last_coefficients_magnitude,
-    resolve,
+    resolve_panels,
 )
-from .first_of_equal_maxima import first_greatest
+from .first_of_equal_maxima import index_of_first_maximum
 
 Curves = Callable[[Array], Array]
 
 _PRODUCT = 24  # number of nodes that integrate the product of three polynomials exactly
 _RESOLVED = 1e-12  # remaining magnitude of the last coefficients on a resolved panel, relative to that of the curve
 _SHORTEST = 1e-12  # rad
-_PRODUCT_NODES, _PRODUCT_WEIGHTS = gauss(_PRODUCT)
+_PRODUCT_NODES, _PRODUCT_WEIGHTS = gauss_nodes_and_weights(_PRODUCT)
 _AT_PRODUCT_NODES = legendre.legvander(2.0 * _PRODUCT_NODES - 1.0, DEGREE)
 
 
@@ -45,10 +45,10 @@ class Extreme:
     angle: float
 
 
-def peak_of(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
+def larger_extreme(ends: tuple[Extreme, Extreme], period: float) -> Extreme:
     """Return the minimum or maximum, whichever has the larger magnitude; if equal, the first in the cycle."""
     sizes = np.abs([end.value for end in ends])
-    first = ends[int(first_greatest(sizes, np.array([end.angle for end in ends]), period))]
+    first = ends[int(index_of_first_maximum(sizes, np.array([end.angle for end in ends]), period))]
     return Extreme(math.copysign(float(sizes.max()), first.value), first.angle)
 
 
@@ -82,8 +82,10 @@ class Panels:
         return float(np.sum(self.width * products) / np.sum(self.width))
 
     def extremes(self, curve: int) -> tuple[Extreme, Extreme]:
-        """Return the minimum and the maximum; among equal values the first (`first_greatest`)."""
-        return self._greatest(self.coefficients[:, :, curve], -1.0), self._greatest(self.coefficients[:, :, curve], 1.0)
+        """Return the minimum and the maximum; among equal values the first (`index_of_first_maximum`)."""
+        return self._greatest_value(self.coefficients[:, :, curve], -1.0), self._greatest_value(
+            self.coefficients[:, :, curve], 1.0
+        )
 
     def integral(self, curve: int) -> float:
         """Return the integral over the crank angle."""
@@ -97,10 +99,10 @@ class Panels:
         starts = np.concatenate([[0.0], np.cumsum(integrals.sum(axis=1))])
         values = [*starts]
         for start, row, integral in zip(starts, c, integrals, strict=False):
-            values += [start + legendre.legval(x, integral) for x in _roots(row)]
+            values += [start + legendre.legval(x, integral) for x in _roots_in_panel(row)]
         return float(max(values) - min(values))
 
-    def _greatest(self, coefficients: Array, sign: float) -> Extreme:
+    def _greatest_value(self, coefficients: Array, sign: float) -> Extreme:
         c = sign * coefficients
         x = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]])
         samples = legendre.legval(x, c.T)  # (p, 18)
@@ -109,7 +111,7 @@ class Panels:
         best, tops, places, rows = float(samples[panel, place]), [], [], []
         for i in np.flatnonzero(top + spread >= best):
             rate = legendre.legder(c[i])
-            stationary, slopes = _roots(rate), legendre.legval([-1.0, 1.0], rate)
+            stationary, slopes = _roots_in_panel(rate), legendre.legval([-1.0, 1.0], rate)
             ends = [end for end, falls in ((-1.0, slopes[0] <= 0.0), (1.0, slopes[1] >= 0.0)) if falls]
             candidates = np.concatenate([stationary, ends])
             tops.append(legendre.legval(candidates, c[i]))
@@ -117,11 +119,11 @@ class Panels:
             rows.append(np.full(len(candidates), i))
         values, at, row = np.concatenate(tops), np.concatenate(places), np.concatenate(rows)
         angles = self.low[row] + 0.5 * (1.0 + at) * self.width[row]
-        first = int(first_greatest(values, angles, float(np.sum(self.width))))
+        first = int(index_of_first_maximum(values, angles, float(np.sum(self.width))))
         return Extreme(sign * max(best, float(values.max())), float(angles[first]))
 
 
-def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
+def resolve_curves(curves: Curves, ends: Array, reference_magnitudes: Array) -> Panels:
     """Return curves (m,) on panels between ascending ends, rad.
 
     curves: function of crank angles (n,) that returns (m, n), smooth between the ends. sizes: reference magnitudes (m,)
@@ -134,15 +136,17 @@ def panels_of(curves: Curves, ends: Array, sizes: Array) -> Panels:
         angles = low[:, None] + width[:, None] * NODES
         values = curves(angles.ravel()).reshape(-1, *angles.shape)
         steep = ANGLE_ROUNDING * np.ptp(values, axis=2).T / width[:, None]
-        rough: Mask = np.any(np.maximum(_RESOLVED * sizes, steep) < last_coefficients_magnitude(values).T, axis=1)
+        rough: Mask = np.any(
+            np.maximum(_RESOLVED * reference_magnitudes, steep) < last_coefficients_magnitude(values).T, axis=1
+        )
         return rough, [np.einsum("ki,mpi->pkm", FIT, values)]
 
-    lows, widths, coefficients = resolve(sample, low, width, limit=len(low) + MOST_HALVINGS)
+    lows, widths, coefficients = resolve_panels(sample, low, width, limit=len(low) + MOST_HALVINGS)
     order = np.argsort(lows, kind="stable")
     return Panels(lows[order], widths[order], coefficients[order])
 
 
-def _roots(coefficients: Array) -> Array:
+def _roots_in_panel(coefficients: Array) -> Array:
     """Return the real roots within the panel."""
     size = np.abs(coefficients).max()
     if not size > 0.0:

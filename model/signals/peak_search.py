@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..quadrature import NODES, Samples, last_coefficients_magnitude, resolve
+from ..quadrature import NODES, Samples, last_coefficients_magnitude, resolve_panels
 from .cycle_segments import Segments
 from .roots import find_roots
 
@@ -94,15 +94,15 @@ def find_maxima(
     search = _Search(curve, segments, np.ones(len(segments.row), bool) if counted is None else counted, signed)
     count = len(fineness)
     tops, best, size = search.inner_maxima(fineness, limit)
-    tops = _joined([tops, search.breakpoint_maxima()])
-    tops = _ranked(_joined([tops, best.select(~np.isin(best.row, tops.row))]))
+    tops = _join_maxima([tops, search.breakpoint_maxima()])
+    tops = _rank_maxima(_join_maxima([tops, best.select(~np.isin(best.row, tops.row))]))
     rank = np.arange(len(tops.row)) - np.searchsorted(tops.row, tops.row, side="left")
     tops, rank = tops.select(rank < limit), rank[rank < limit]
     values, places = np.full((count, limit), -np.inf), np.full((count, limit), np.nan)
     slopes = np.zeros((count, limit, curve.numbers))
     values[tops.row, rank], places[tops.row, rank] = tops.value, tops.place
     if curve.numbers:
-        slopes[tops.row, rank] = search.slopes(tops)
+        slopes[tops.row, rank] = search.maxima_slopes(tops)
     return Maxima(values, places, slopes, size)
 
 
@@ -121,7 +121,7 @@ class _Search:
 
     def inner_maxima(self, fineness: Array, limit: int) -> tuple[_Tops, _Tops, Array]:
         """Return the maxima between breakpoints, each design's highest sample, and the curve's maximum magnitude."""
-        row, probe, low, width, segment = self.segments.panels(fineness)
+        row, probe, low, width, segment = self.segments.split_into_panels(fineness)
         counts = self.counted[segment]
         row, probe, low, width, segment = row[counts], probe[counts], low[counts], width[counts], segment[counts]
         size = np.zeros(len(fineness))
@@ -133,12 +133,12 @@ class _Search:
             rough: Mask = last_coefficients_magnitude(curve[:, 1:-1, 0]) > _ROUGH * size[row]
             return rough, [place, self.signed_as_judged(curve)]
 
-        panels = resolve(sample, low, width, row, probe, segment, deepest=_DEEPEST)
+        panels = resolve_panels(sample, low, width, row, probe, segment, deepest=_DEEPEST)
         _, _, row, probe, segment, place, curve = panels
         value, slope = np.where(np.isnan(curve[..., 0]), -np.inf, curve[..., 0]), curve[..., 1]
         greatest, rows = value.argmax(axis=1), np.arange(len(row))
         zeros = np.zeros(len(row), dtype=np.int64)
-        samples = _ranked(_Tops(row, value[rows, greatest], place[rows, greatest], segment, zeros))
+        samples = _rank_maxima(_Tops(row, value[rows, greatest], place[rows, greatest], segment, zeros))
         best = samples.select(np.unique(samples.row, return_index=True)[1])
         highest = np.full(len(fineness), -np.inf)
         highest[best.row] = best.value
@@ -200,7 +200,7 @@ class _Search:
         of_left = from_left & (~(left <= right + tolerance) | rises_not)
         of_right = ~from_left & np.isfinite(right) & ~(right <= left + tolerance) & rises_not
         before, following = before[of_left], following[of_right]
-        return _joined(
+        return _join_maxima(
             [
                 _Tops(
                     segments.row[before], left[of_left], segments.high[before], before, np.ones(len(before), np.int64)
@@ -215,7 +215,7 @@ class _Search:
             ]
         )
 
-    def slopes(self, tops: _Tops) -> Array:
+    def maxima_slopes(self, tops: _Tops) -> Array:
         """Return the derivatives (t, v) of maxima by the design: at their places, and as breakpoints move."""
         segments, rate = self.segments, np.zeros((len(tops.row), self.curve.numbers))
         begins = np.where(tops.end > 0, segments.next_segment[tops.segment], tops.segment)
@@ -227,7 +227,7 @@ class _Search:
         return np.asarray(curve[:, 2:])
 
 
-def _ranked(tops: _Tops) -> _Tops:
+def _rank_maxima(tops: _Tops) -> _Tops:
     """Return maxima by design, highest first; only the first of several at one place."""
     tops = tops.select(np.lexsort((-tops.value, tops.place, tops.row)))
     again = (tops.row[1:] == tops.row[:-1]) & (np.abs(np.diff(tops.place)) < _SAME) & (np.diff(tops.segment) == 0)
@@ -235,6 +235,6 @@ def _ranked(tops: _Tops) -> _Tops:
     return tops.select(np.lexsort((tops.place, -tops.value, tops.row)))
 
 
-def _joined(parts: list[_Tops]) -> _Tops:
+def _join_maxima(parts: list[_Tops]) -> _Tops:
     columns = zip(*((p.row, p.value, p.place, p.segment, p.end) for p in parts), strict=True)
     return _Tops(*(np.concatenate(column) for column in columns))

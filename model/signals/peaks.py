@@ -12,12 +12,12 @@ from ..kernel.batches import in_chunks, require_full_rotation
 from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
 from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
-from .turn_peaks import TurnTask, find_in_turns
+from .turn_peaks import TurnTask, find_turn_peaks
 from .two_turn_peaks import highest_peaks_of_both_turns
 
 ANGLES = 128
@@ -77,7 +77,7 @@ def find_peaks(
     n = len(designs)
     values, peak_angles = np.empty((n, limit)), np.empty((n, limit))
     raw, loads = signal_inputs(mechanism, kind)
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=gradients)
     columns, designs = numbers.columns, numbers.values
     slopes = np.empty((n if gradients else 0, limit, len(columns)))
     rubbing = kind.needs_forces and needs_friction_kernel(mechanism)
@@ -86,7 +86,7 @@ def find_peaks(
     def work(begin: int, end: int) -> None:
         blocks, steps = derived_blocks(raw, loads, columns, designs[begin:end], steps=gradients)
         part = slice(begin, end)
-        find_in_turns(task, blocks, steps, values[part], peak_angles[part], slopes[part] if gradients else slopes)
+        find_turn_peaks(task, blocks, steps, values[part], peak_angles[part], slopes[part] if gradients else slopes)
 
     in_chunks(n, work, knots=len(loads.knots))
-    return Peaks(values, peak_angles, numbers.chain(slopes) if gradients else None)
+    return Peaks(values, peak_angles, numbers.chain_to_designs(slopes) if gradients else None)

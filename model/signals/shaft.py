@@ -13,15 +13,15 @@ from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.friction_signs import needs_friction_kernel
 from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
-from ..dynamics.torque_with_friction import always_drives
+from ..dynamics.torque_with_friction import least_determinacy_margin
 from ..kinematics import geometry
 from ..machine.cylinder_machines import cylinder_machines, single_cylinder
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
-from ..machine.two_turn_machine import TURN, cycle_turns, half_at, machines_of_both_turns
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
+from ..machine.two_turn_machine import TURN, cycle_turns, half_of_cycle_at, machines_of_both_turns
 from .cycle_segments import Segments
 from .roots import find_roots
 from .shaft_curves import (
@@ -83,7 +83,7 @@ class Shaft:
         plain, stepped = [], []
         for part in self._parts:
             raw, loads = signal_inputs(part, signal)
-            numbers = raw_numbers_of_designs(part, designs, limit=len(raw), gradients=gradients)
+            numbers = raw_machine_numbers(part, designs, slot_count=len(raw), gradients=gradients)
             numbers_block, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)
             self._loads.append(loads)
             plain.append(numbers_block)
@@ -112,14 +112,14 @@ class Shaft:
         return copied
 
     @cached_property
-    def drives(self) -> Mask:
+    def unlocked_designs(self) -> Mask:
         """Designs (n,) that friction does not lock."""
         if not self.rubbing:
             return np.ones(len(self._designs), dtype=bool)
-        return np.asarray(always_drives(design_at(self._plain[0][:, :, 0].T, slice(None))) > 0.0)
+        return np.asarray(least_determinacy_margin(design_at(self._plain[0][:, :, 0].T, slice(None))) > 0.0)
 
     @cached_property
-    def fineness(self) -> Array:
+    def panels_per_turn(self) -> Array:
         """Initial panels per turn (n,): more for designs near locking and for rough profiles."""
         r, l, e = self._designs[:, :3].T
         crowd = np.array([crowding_parameter(*lengths) for lengths in zip(r, l, e, strict=True)])
@@ -131,7 +131,7 @@ class Shaft:
             return np.zeros((len(angle), len(self._axes.lead)), dtype=np.int64)
         inner, outer = self._dead_centres
         at = angle[:, None] + self._axes.lead
-        return np.asarray(half_at(self._single, inner[row, None], outer[row, None], at))
+        return np.asarray(half_of_cycle_at(self._single, inner[row, None], outer[row, None], at))
 
     @cached_property
     def _dead_centres(self) -> tuple[Array, ...]:
@@ -151,7 +151,7 @@ class Shaft:
         evaluated = self._evaluate(self._curve, self._evaluations(row, probe, angle, rate), gradients)
         return evaluated.curve, evaluated.size
 
-    def outward(self, segments: Segments) -> Mask:
+    def moves_outward(self, segments: Segments) -> Mask:
         """Return whether the slider of the first cylinder moves outward in the segments."""
         items = self._evaluations(segments.row, segments.probe, segments.probe[:, None])
         return np.asarray(self._evaluate(self._curve, items).outward[:, 0] == 1)
@@ -193,8 +193,8 @@ class Shaft:
     @cached_property
     def breaks(self) -> Breaks:
         """All breakpoints of the designs that friction does not lock."""
-        parts = [self._breaks_of_half(half) for half in range(len(self._parts))]
-        rows = np.flatnonzero(self.drives)
+        parts = [self._breakpoints_of_turn(half) for half in range(len(self._parts))]
+        rows = np.flatnonzero(self.unlocked_designs)
         fixed = np.concatenate([self._pace.knots[:-1] + turn * TURN for turn in range(len(self._parts))])
         fixed = np.append(np.mod(fixed, self.period), 0.0)
         row, angle = np.repeat(rows, len(fixed)), np.tile(fixed, len(rows))
@@ -211,14 +211,14 @@ class Shaft:
             def contact(row: IntArray, probe: Array, angle: Array, touch: ShaftCurve = touch) -> Array:
                 return self._evaluate(touch, self._evaluations(row, probe, angle)).curve[:, :, 0]
 
-            parts.append(self.crossings(breaks, contact, CONTACT, int(member)))
+            parts.append(self.sign_change_breakpoints(breaks, contact, CONTACT, int(member)))
         return join_breaks(parts)
 
-    def _breaks_of_half(self, half: int) -> Breaks:
+    def _breakpoints_of_turn(self, half: int) -> Breaks:
         """Return the breakpoints of every cylinder in one of two turns."""
         cuts = breakpoints_of(self._plain[half], self._loads[half], self._watch, rubbing=False)
         places = np.arange(cuts.angle.shape[1])
-        row, place = np.nonzero((places < cuts.many[:, None]) & self.drives[:, None])
+        row, place = np.nonzero((places < cuts.many[:, None]) & self.unlocked_designs[:, None])
         parts = []
         for member in self.members:
             for turn in range(len(self._parts)):
@@ -227,7 +227,9 @@ class Shaft:
                 belongs = np.ones(len(row), dtype=bool)
                 if len(self._parts) > 1:
                     inner, outer = (ends[row] for ends in self._dead_centres)
-                    near = [half_at(self._single, inner, outer, local + away) == half for away in (-_NEAR, _NEAR)]
+                    near = [
+                        half_of_cycle_at(self._single, inner, outer, local + away) == half for away in (-_NEAR, _NEAR)
+                    ]
                     belongs = near[0] | near[1]
                 parts.append(
                     Breaks(
@@ -242,7 +244,7 @@ class Shaft:
                 )
         return join_breaks(parts)
 
-    def crossings(
+    def sign_change_breakpoints(
         self, breaks: Breaks, curve: Callable[[IntArray, Array, Array], Array], code: int, member: int = 0
     ) -> Breaks:
         """Return the angles between neighbouring samples at which a curve changes sign.
@@ -250,7 +252,7 @@ class Shaft:
         curve: function of designs (p,), angles in their segments (p,) and angles (p, k), rad, that returns (p, k).
         """
         segments = segments_of(breaks, self.period)
-        row, probe, low, width, _ = segments.panels(np.full(len(self.drives), _CROSSED))
+        row, probe, low, width, _ = segments.split_into_panels(np.full(len(self.unlocked_designs), _CROSSED))
         angle = low[:, None] + width[:, None] * np.linspace(0.0, 1.0, 17)
         value = curve(row, probe, angle)
         panel, place = np.nonzero((value[:, :-1] < 0.0) != (value[:, 1:] < 0.0))

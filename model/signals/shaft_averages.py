@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..machine.speed_profile import time_per_angle
-from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve
+from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve_panels
 from .cycle_segments import Segments
 from .shaft import Shaft
 from .shaft_peaks import NOTHING
@@ -50,8 +50,8 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
             rough |= _is_rough(np.sqrt(time) * value, np.sqrt(time) * size, sizes[1], row, width)
         return rough, [angle, value]
 
-    row, probe, low, width, _ = segments.panels(shaft.fineness)
-    _, width, row, probe, angle, value = resolve(sample, low, width, row, probe)
+    row, probe, low, width, _ = segments.split_into_panels(shaft.panels_per_turn)
+    _, width, row, probe, angle, value = resolve_panels(sample, low, width, row, probe)
     weight, time = width[:, None] * WEIGHTS / shaft.period, _time_weight(shaft, angle)
     weights = [weight] * 2 if time is None else [weight, weight, weight * time]
     for index, row_weights in enumerate(weights):
@@ -63,7 +63,7 @@ def shaft_means(shaft: Shaft, count: int) -> Means:
             np.add.at(slopes[index], row, np.einsum("pk,pkv->pv", rate, slope))
     if shaft.gradients:
         _add_jumps_at_moving_breakpoints(shaft, segments, slopes)
-    sums[:, ~shaft.drives] = np.nan
+    sums[:, ~shaft.unlocked_designs] = np.nan
     nothing = np.sqrt(sums[SQUARE]) <= NOTHING * sizes[0]
     mean_rows = [MEAN, SQUARE, SQUARE if rows == 2 else SQUARE_OVER_TIME]
     return Means(sums[mean_rows], slopes[mean_rows] if shaft.gradients else None, nothing)

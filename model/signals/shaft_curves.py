@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import sides_of
-from ..dynamics.inertia import reflected_inertia, shaking
+from ..dynamics.friction_signs import friction_signs_in_segment
+from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
-    enter_segment,
+    find_segment_pieces,
     frictionless_cut_imaginary_shift,
     load_on_slider,
 )
@@ -127,7 +127,7 @@ def vector_of_motion(kind: Any, s: Any, c: Any, m: Any, d: Any, rate: Any) -> An
         return (third * d.speed * d.speed + 3.0 * m.x_2 * d.acceleration + m.x_1 * rate) * d.speed, zero
     if kind == _INERTIA:
         return reflected_inertia(s, c, m, d), zero
-    x, y, moment = shaking(s, c, m, d)
+    x, y, moment = shaking_force_and_moment(s, c, m, d)
     return (moment, zero) if kind == _SHAKING_MOMENT else (x, y)
 
 
@@ -219,9 +219,9 @@ def _enter_segment(
             shaft.blocks.plain[items.row[p] * shaft.turns + half], ratio, slope, shaft.axes, k, space.real
         )
         d, local = design_at(space.real, 0), items.probe[p] + shaft.axes.lead[k]
-        _, outward = enter_segment(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
+        _, outward = find_segment_pieces(d, space.real, 0, local, loads, watch, space.piece[i], space.shift[i])
         segment = Segment(space.real, loads, outward, space.piece[i], space.shift[i])
-        signs = sides_of(local, d, segment, curve.rubbing)
+        signs = friction_signs_in_segment(local, d, segment, curve.rubbing)
         space.sides[i, 0], space.sides[i, 1], space.sides[i, 2] = signs.turn, signs.slide, signs.swing
         space.sides[i, 3], space.sides[i, 4] = signs.press, signs.grip
         out.outward[p, i] = 1 if outward else 0

@@ -21,9 +21,9 @@ def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tupl
     where friction locks the design.
     """
     segments = segments_of(shaft.breaks, shaft.period)
-    live = None if stroke is None else shaft.outward(segments) == stroke
-    maxima = find_maxima(shaft, segments, shaft.fineness, limit=limit, counted=live)
+    live = None if stroke is None else shaft.moves_outward(segments) == stroke
+    maxima = find_maxima(shaft, segments, shaft.panels_per_turn, limit=limit, counted=live)
     nothing = np.isfinite(maxima.values) & (maxima.values <= NOTHING * maxima.size[:, None])
     values = np.where(nothing, 0.0, maxima.values)
-    values[~shaft.drives, 0] = np.inf
+    values[~shaft.unlocked_designs, 0] = np.inf
     return values, np.mod(maxima.places, shaft.period), np.where(nothing[:, :, None], 0.0, maxima.slopes)

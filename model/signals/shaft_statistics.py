@@ -20,7 +20,7 @@ from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import knot_count
 from ..machine.two_turn_machine import TURN
 from ..machine.work_absorption import may_do_work_over_a_turn
-from .panel_polynomials import panels_of
+from .panel_polynomials import resolve_curves
 from .shaft import Shaft
 from .shaft_averages import MEAN, SQUARE, shaft_means
 from .shaft_curves import CURVES, WORK
@@ -104,7 +104,7 @@ def highest_peaks(parts: list[PeakArrays]) -> PeakArrays:
 def shaft_signal_averages(
     mechanism: Mechanism, kind: Signal, designs: Array, *, gradients: bool
 ) -> tuple[Array, Array | None]:
-    """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `average`.
+    """Return `Averages` (3, n) of a signal that adds up, and their derivatives (3, n, 3 + k); see `signal_averages`.
 
     The mean of a signal judged by its magnitude is NaN, except for the reflected inertia.
     """
@@ -179,4 +179,4 @@ def greatest_speed_ratio(mechanism: Mechanism) -> float:
     if profile is None:
         return 1.0
     ends = np.union1d(np.linspace(0.0, TURN, 9), np.mod(profile.knots, TURN))
-    return panels_of(lambda angle: profile.ratio(angle)[None], ends, np.ones(1)).extremes(0)[1].value
+    return resolve_curves(lambda angle: profile.speed_ratio(angle)[None], ends, np.ones(1)).extremes(0)[1].value

@@ -15,7 +15,7 @@ _SAME = 1e-9  # rad, and fraction of a sum that counts as cancelled
 def has_shaking_force(mechanism: Mechanism) -> bool:
     """Return whether a machine's cylinders leave a shaking force for some design."""
     arrangement = mechanism.arrangement
-    return arrangement is None or is_unbalanced(arrangement, lambda k: cmath.exp(1j * arrangement.bank(k)))
+    return arrangement is None or is_unbalanced(arrangement, lambda k: cmath.exp(1j * arrangement.bank_angle(k)))
 
 
 def has_rocking_couple(mechanism: Mechanism) -> bool:
@@ -23,7 +23,9 @@ def has_rocking_couple(mechanism: Mechanism) -> bool:
     arrangement = mechanism.arrangement
     if arrangement is None or not any(arrangement.places):
         return False
-    return is_unbalanced(arrangement, lambda k: arrangement.place(k) * cmath.exp(1j * arrangement.bank(k)))
+    return is_unbalanced(
+        arrangement, lambda k: arrangement.shaft_position(k) * cmath.exp(1j * arrangement.bank_angle(k))
+    )
 
 
 def is_unbalanced(arrangement: Arrangement, weight: Callable[[int], complex]) -> bool:
@@ -33,7 +35,7 @@ def is_unbalanced(arrangement: Arrangement, weight: Callable[[int], complex]) ->
     """
     groups: list[tuple[float, list[complex]]] = []
     for k in range(len(arrangement.phases)):
-        lead = arrangement.lead(k)
+        lead = arrangement.lead_over_slider_line(k)
         for group_lead, weights in groups:
             if abs(math.remainder(lead - group_lead, 2.0 * math.pi)) <= _SAME:
                 weights.append(weight(k))

@@ -17,7 +17,7 @@ def cycle_window(mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -
     strokes = {"cycle": 0, "outward stroke": 1, "inward stroke": 2}
     friction = mechanism.with_largest_variables.friction
     split = kind.needs_forces and (has_load_change_at_dead_centres(mechanism) or friction.guide > 0.0)
-    swing = kind.needs_forces and friction.slider_pin.circle > 0.0
+    swing = kind.needs_forces and friction.slider_pin.friction_circle_radius > 0.0
     if kind in (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS):
         window = mechanism.tolerances.window
         return CycleWindow(strokes[window.during], float(window.start), float(window.end), False)

@@ -6,9 +6,9 @@ from enum import IntEnum, auto
 from typing import Any
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.inertia import reflected_inertia, shaking
+from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..dynamics.segments import Segment, load_on_slider
-from ..dynamics.torque import forces
+from ..dynamics.torque import forces_without_friction
 from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_slider_derivative
@@ -60,7 +60,7 @@ def slider_pin_to_guide_centre(m: Any, d: Design) -> Any:
 
 
 @analytic
-def size_of_force(kind: Any, f: Any, m: Any, d: Design) -> Any:
+def signal_of_joint_forces(kind: Any, f: Any, m: Any, d: Design) -> Any:
     """Return the value of a `Signal` that follows from the joint forces alone."""
     if kind == _TORQUE:
         return magnitude(f.torque)
@@ -83,7 +83,7 @@ def signal_of_forces(kind: Any, f: Any, m: Any, d: Design, theta: Any, segment: 
     if kind in (_TORQUE, _POWER):
         torque = torque_without_crank_loads(f.torque, theta, rotation_sense(d), segment)
         return magnitude(torque * d.speed) if kind == _POWER else magnitude(torque)
-    return size_of_force(kind, f, m, d)
+    return signal_of_joint_forces(kind, f, m, d)
 
 
 @analytic
@@ -102,15 +102,15 @@ def signal_of_motion(kind: Any, sine: Any, cosine: Any, m: Any, d: Design) -> An
         return root_sum_square(influences(sine, cosine, m, d.l), d)
     if kind == _INERTIA:
         return reflected_inertia(sine, cosine, m, d)
-    x, y, moment = shaking(sine, cosine, m, d)
+    x, y, moment = shaking_force_and_moment(sine, cosine, m, d)
     return root(x * x + y * y) if kind == _SHAKING_FORCE else magnitude(moment)
 
 
 @analytic
-def signal(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> Any:
+def signal_without_friction(kind: Any, sine: Any, cosine: Any, m: Any, d: Design, load: Any) -> Any:
     """Return the value of a `Signal` at one crank angle for the load on the slider (N, outward), without friction."""
     if kind <= _LINE:
-        return size_of_force(kind, forces(sine, cosine, m, d, load), m, d)
+        return signal_of_joint_forces(kind, forces_without_friction(sine, cosine, m, d, load), m, d)
     return signal_of_motion(kind, sine, cosine, m, d)
 
 

@@ -22,20 +22,20 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import add_contact_cuts, cut_imaginary_shift, sides_of
+from ..dynamics.friction_signs import add_guide_force_change_cuts, cut_imaginary_shift, friction_signs_in_segment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
-    angle_within,
+    angle_identifying_segment,
     breakpoint_capacity,
     crank_angle_from_crowded,
     crowded_from_crank_angle,
     cut_cycle,
-    enter_segment,
+    find_segment_pieces,
     load_on_slider,
 )
-from ..dynamics.torque_with_friction import Sides, always_drives, joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction, least_determinacy_margin
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel
@@ -44,7 +44,7 @@ from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from ..quadrature import ANGLE_ROUNDING, DEEPEST, MOST_HALVINGS, NODES, TAIL, WEIGHTS
 from .signals import Signal, signal_of_forces, signal_of_motion
 
@@ -313,12 +313,12 @@ def fill_means(
     for n in range(blocks.shape[0]):
         block, gap = blocks[n], gaps[n]
         d = design_at(block, 0)
-        if task.rubbing and not always_drives(d) > 0.0:
+        if task.rubbing and not least_determinacy_margin(d) > 0.0:
             means.mean[n, :] = np.inf
             continue
         count = cut_cycle(d, block, 0, loads, watch, cuts)
         if task.rubbing:
-            count = add_contact_cuts(d, block, loads, watch, cuts, count, piece, shift)
+            count = add_guide_force_change_cuts(d, block, loads, watch, cuts, count, piece, shift)
         cuts.angle[count] = cuts.angle[0] + _TURN
         # Same as `crowding_parameter`, but from the gap: no digits are lost, so no floor is needed.
         kappa = math.sqrt(math.sqrt(gap * (gap + 2.0 * d.r)) / (gap + d.r))
@@ -328,10 +328,10 @@ def fill_means(
         workspace.greatest[:] = 0.0
         for s in range(count):
             a, b = cuts.angle[s], cuts.angle[s + 1]
-            probe = angle_within(a, b)
-            _, outward = enter_segment(d, block, 0, probe, loads, watch, piece, shift)
+            probe = angle_identifying_segment(a, b)
+            _, outward = find_segment_pieces(d, block, 0, probe, loads, watch, piece, shift)
             segment = Segment(block, loads, outward, piece, shift)
-            sides = sides_of(probe, d, segment, task.rubbing)
+            sides = friction_signs_in_segment(probe, d, segment, task.rubbing)
             curve = _Curve(task.kind, d, gap, kappa, segment, sides, steps[n * nv : (n + 1) * nv])
             left = _add_segment(curve, a, b, points, left, n, workspace, means)
             if task.jumps:
@@ -345,7 +345,7 @@ def turn_means(
 
     raw: the machine's raw numbers. squares: whether mean squares are needed.
     """
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=gradients)
     count, gaps, curves = len(designs), _distance_to_locking(*numbers.values.T[:3]), CURVES if task.kind == WORK else 1
     squared, rows, columns = curves if squares else 0, count if gradients else 0, len(numbers.columns)
     means = CurveMeans(
@@ -362,7 +362,12 @@ def turn_means(
 
     in_chunks(count, work, knots=len(task.loads.knots))
     if gradients:
-        return CurveMeans(means.mean, means.square, numbers.chain(means.mean_slope), numbers.chain(means.square_slope))
+        return CurveMeans(
+            means.mean,
+            means.square,
+            numbers.chain_to_designs(means.mean_slope),
+            numbers.chain_to_designs(means.square_slope),
+        )
     return means
 
 

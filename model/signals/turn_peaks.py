@@ -14,20 +14,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.friction_signs import add_contact_cuts, cut_imaginary_shift, sides_of
+from ..dynamics.friction_signs import add_guide_force_change_cuts, cut_imaginary_shift, friction_signs_in_segment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
-    angle_within,
+    angle_identifying_segment,
     breakpoint_capacity,
     crank_angle_from_crowded,
     crowded_from_crank_angle,
     crowding_parameter,
     cut_cycle,
-    enter_segment,
+    find_segment_pieces,
 )
-from ..dynamics.torque_with_friction import Sides, always_drives
+from ..dynamics.torque_with_friction import Sides, least_determinacy_margin
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, kernel
 from ..machine.design import Design, design_at
@@ -95,7 +95,7 @@ class _Workspace(NamedTuple):
 
 
 @analytic
-def _slope(theta: Any, curve: _Curve) -> Any:
+def _value_and_slope(theta: Any, curve: _Curve) -> Any:
     """Value and slope over the crank angle."""
     sine, cosine = math.sin(theta), math.cos(theta)
     s, c = complex(sine, cosine * STEP), complex(cosine, -sine * STEP)
@@ -105,12 +105,12 @@ def _slope(theta: Any, curve: _Curve) -> Any:
 
 
 @analytic
-def _refine(a: Any, b: Any, start: Any, curve: _Curve) -> Any:
+def _refine_peak(a: Any, b: Any, start: Any, curve: _Curve) -> Any:
     """Highest point found in (a, b): a root of the slope by secants, bisecting whenever a secant leaves the bracket."""
     theta = at = old_theta = start
     best = old_slope = 0.0
     for i in range(_ITERATIONS):
-        value, slope = _slope(theta, curve)
+        value, slope = _value_and_slope(theta, curve)
         # On a flat top values differ only by rounding errors; the later angle is then the better one.
         if i == 0 or value >= best - _FLAT * best:
             best, at = value, theta
@@ -157,7 +157,7 @@ def _is_listed(angles: Any, count: Any, theta: Any) -> bool:
 
 
 @analytic
-def _insert(tops: _Tops, count: int, value: float, theta: float, s: int, p: int) -> int:
+def _insert_peak(tops: _Tops, count: int, value: float, theta: float, s: int, p: int) -> int:
     """Insert a peak into the lists, highest first; if they are full, drop the lowest. Return their new length."""
     capacity: int = tops.value.shape[0]
     if count == capacity and value <= tops.value[capacity - 1]:
@@ -172,7 +172,7 @@ def _insert(tops: _Tops, count: int, value: float, theta: float, s: int, p: int)
 
 
 @analytic
-def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Workspace) -> float:
+def _sample_segments(task: TurnTask, d: Design, block: Any, count: int, workspace: _Workspace) -> float:
     """Sample all segments of a design for a single peak, else prepare the samples; return the highest value."""
     cuts, theta, kappa = workspace.cuts, workspace.theta, crowding_parameter(d.r, d.l, d.e)
     single = workspace.tops.value.shape[0] == 1
@@ -185,15 +185,15 @@ def _sample(task: TurnTask, d: Design, block: Any, count: int, workspace: _Works
         start = workspace.starts[s]
         workspace.starts[s + 1] = start
         workspace.negligible[s] = b - a < _SHORTEST
-        probe = angle_within(a, b)
-        workspace.counts[s], outward = enter_segment(
+        probe = angle_identifying_segment(a, b)
+        workspace.counts[s], outward = find_segment_pieces(
             d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift
         )
         if workspace.negligible[s] or not workspace.counts[s]:
             has_motion = False
             continue
         segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
-        sides = sides_of(probe, d, segment, task.rubbing)
+        sides = friction_signs_in_segment(probe, d, segment, task.rubbing)
         # A segment shorter than the spacing, such as between knots of a long table, has no samples of its own; the
         # slopes at its ends show whether it contains a peak.
         low = high = 0.0
@@ -244,10 +244,10 @@ def _peaks_near_samples(curve: _Curve, s: int, floor: float, best: float, worksp
         left, right, angle = theta[max(i - 1, start)], theta[min(i + 1, end)], theta[i]
         # A single call serves both rows, as the compiler inlines each call separately.
         for finer in range(2):
-            value, angle = _refine(left, right, angle, curve)
+            value, angle = _refine_peak(left, right, angle, curve)
             # A finer row that rises up to the end of the segment has no maximum inside; the breakpoint may be one.
             if (finer == 0 or a + _SAME < angle < b - _SAME) and not _is_listed(tops.angle, peaks, angle):
-                peaks = _insert(tops, peaks, value, angle, s, -1)
+                peaks = _insert_peak(tops, peaks, value, angle, s, -1)
             if finer == 1 or not f[i] > _NEAR * best:
                 break
             left, right = theta[max(i - 2, start)], theta[min(i + 2, end)]
@@ -283,12 +283,12 @@ def _inner_peaks(
         if not hopeful:
             workspace.edge[s, :] = -1.0
             continue
-        probe = angle_within(a, b)
-        _, outward = enter_segment(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+        probe = angle_identifying_segment(a, b)
+        _, outward = find_segment_pieces(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
         segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
-        curve = _Curve(task.kind, d, segment, sides_of(probe, d, segment, task.rubbing))
+        curve = _Curve(task.kind, d, segment, friction_signs_in_segment(probe, d, segment, task.rubbing))
         for side in range(2):
-            value, slope = _slope(b if side else a, curve)
+            value, slope = _value_and_slope(b if side else a, curve)
             workspace.edge[s, 2 * side], workspace.edge[s, 2 * side + 1] = value, slope
         workspace.value[start], workspace.value[end] = workspace.edge[s, 0], workspace.edge[s, 2]
         for i in range(start, end + 1):
@@ -314,9 +314,9 @@ def _breakpoint_peaks(count: int, workspace: _Workspace, peaks: int) -> int:
         tolerance = _CONTINUOUS * max(left, right)
         if counts[before] and left >= right - tolerance and edge[before, 3] >= 0.0:
             if left > right + tolerance or edge[s, 1] <= 0.0:
-                peaks = _insert(workspace.tops, peaks, left, cuts.angle[s], before, s)
+                peaks = _insert_peak(workspace.tops, peaks, left, cuts.angle[s], before, s)
         elif counts[s] and right > left + tolerance and edge[s, 1] <= 0.0:
-            peaks = _insert(workspace.tops, peaks, right, cuts.angle[s], s, s)
+            peaks = _insert_peak(workspace.tops, peaks, right, cuts.angle[s], s, s)
     return peaks
 
 
@@ -325,10 +325,10 @@ def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace:
     """Fill `out` (v,) with the derivatives of peak i. steps: derived numbers (v, rows, 1) with imaginary steps."""
     cuts, tops = workspace.cuts, workspace.tops
     s, pin = tops.segment[i], tops.pin[i]
-    probe = angle_within(cuts.angle[s], cuts.angle[s + 1])
-    _, outward = enter_segment(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
+    probe = angle_identifying_segment(cuts.angle[s], cuts.angle[s + 1])
+    _, outward = find_segment_pieces(d, block, 0, probe, task.loads, task.watch, workspace.piece, workspace.shift)
     segment = Segment(block, task.loads, outward, workspace.piece, workspace.shift)
-    sides = sides_of(probe, d, segment, task.rubbing)
+    sides = friction_signs_in_segment(probe, d, segment, task.rubbing)
     # A breakpoint at the end of the last segment lies a turn ahead of its list entry.
     angle = tops.angle[i] if pin < 0 or pin == s else cuts.angle[s + 1]
     sine, cosine = math.sin(angle), math.cos(angle)
@@ -344,7 +344,7 @@ def _fill_gradient(task: TurnTask, d: Design, block: Any, steps: Any, workspace:
 
 
 @kernel
-def find_in_turns(
+def find_turn_peaks(
     task: TurnTask, blocks: Cube, steps: ComplexCube, values: Table, peak_angles: Table, gradients: Cube
 ) -> None:
     """Fill the peaks for n designs (n, k), highest first, and their derivatives (n, k, v), if these have rows.
@@ -372,21 +372,25 @@ def find_in_turns(
     for n in range(blocks.shape[0]):
         block = blocks[n]
         d = design_at(block, 0)
-        if task.rubbing and not always_drives(d) > 0.0:
+        if task.rubbing and not least_determinacy_margin(d) > 0.0:
             values[n, :], values[n, 0], peak_angles[n, :] = -np.inf, np.inf, np.nan
             if nv:
                 gradients[n] = 0.0
             continue
         count = cut_cycle(d, block, 0, loads, task.watch, cuts)
         if task.rubbing:
-            count = add_contact_cuts(d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift)
+            count = add_guide_force_change_cuts(
+                d, block, loads, task.watch, cuts, count, workspace.piece, workspace.shift
+            )
         cuts.angle[count] = cuts.angle[0] + _TURN
-        highest = _sample(task, d, block, count, workspace)  # for a single peak, low segments need nothing further
+        highest = _sample_segments(
+            task, d, block, count, workspace
+        )  # for a single peak, low segments need nothing further
         floor = _HOPELESS * highest if listed == 1 else -1.0
         peaks, best, best_at, best_segment = _inner_peaks(task, d, block, count, floor, workspace)
         peaks = _breakpoint_peaks(count, workspace, peaks)
         if peaks == 0 and best_segment >= 0:  # a constant curve
-            peaks = _insert(tops, peaks, best, best_at, best_segment, -1)
+            peaks = _insert_peak(tops, peaks, best, best_at, best_segment, -1)
         for i in range(listed):
             if i >= peaks:
                 values[n, i], peak_angles[n, i] = -np.inf, np.nan

@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..kinematics import geometry
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import shift_into_half
+from ..machine.two_turn_machine import shift_angles_into_half
 
 
 class _Peaks(Protocol):
@@ -67,4 +67,6 @@ def _angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Arra
     if mechanism.branch == "crossed":
         inner, outer = np.pi - inner, np.pi - outer
     is_finite = np.isfinite(angles)
-    return np.where(is_finite, shift_into_half(mechanism, inner, outer, np.where(is_finite, angles, 0.0), half), angles)
+    return np.where(
+        is_finite, shift_angles_into_half(mechanism, inner, outer, np.where(is_finite, angles, 0.0), half), angles
+    )

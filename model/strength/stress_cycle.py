@@ -41,8 +41,8 @@ from .stress_search import (
     STATIONS,
     Candidates,
     SampledStress,
-    choose,
-    climb,
+    choose_highest_candidates,
+    climb_to_maxima,
     empty_candidates,
     first_candidates,
     list_maximum_candidates,
@@ -117,8 +117,8 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
     count = list_maximum_candidates(start, samples, criteria, margin, *space, best, candidates)
     candidates = first_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
-    climb(samples, criteria, candidates, values, angles)
-    choose(candidates, criteria, values, angles, chosen)
+    climb_to_maxima(samples, criteria, candidates, values, angles)
+    choose_highest_candidates(candidates, criteria, values, angles, chosen)
     rows = chosen[chosen >= 0]
     at = candidates.samples[rows]
     angle_there, further = theta[at], np.minimum(at + 1, len(theta) - 1)
@@ -139,7 +139,7 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
 
 def _refine_maxima(bars: StressLocations, sides: Array, criteria: Array, maxima: _Maxima) -> None:
     """Follow maxima using samples of their own, until these are so close that the cubics are exact."""
-    begin, end = bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel())
+    begin, end = bars.segment_end_angles(np.repeat(maxima.bar, 2), maxima.segment.ravel())
     begin, end = begin.reshape(-1, 2), end.reshape(-1, 2)
     width, near = _CLOSE * maxima.spacing, _FORETOLD * maxima.spacing
     waiting = np.arange(len(maxima.bar))
@@ -159,7 +159,7 @@ def _refine_maxima(bars: StressLocations, sides: Array, criteria: Array, maxima:
         )
         samples = SampledStress(theta, np.arange(len(theta)) % 2 == 0, stress, sides)
         values, angles = np.empty(c), np.full((c, 2), np.nan)
-        climb(samples, criteria, candidates, values, angles)
+        climb_to_maxima(samples, criteria, candidates, values, angles)
         angles = np.where(is_counted, angles, angles[:, ::-1])
         moved = np.abs(angles - maxima.angle[waiting])
         maxima.value[waiting], maxima.share[waiting], maxima.angle[waiting] = values, candidates.share, angles
@@ -172,11 +172,13 @@ def _refine_maxima(bars: StressLocations, sides: Array, criteria: Array, maxima:
         waiting = waiting[~is_converged]
 
 
-def _gradients(bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: IntArray) -> Array:
+def _maxima_gradients(
+    bars: StressLocations, all_sides: Array, criteria: Array, maxima: _Maxima, pins: IntArray
+) -> Array:
     """Return the derivatives (c, 3 + k) of maxima at breakpoints `pins` (c, 2), or at none (-1)."""
     is_counted = maxima.is_counted
     counted_bars = np.broadcast_to(maxima.bar[:, None], is_counted.shape)[is_counted]
-    slopes = bars.slopes(counted_bars, maxima.segment[is_counted], maxima.angle[is_counted], pins[is_counted])
+    slopes = bars.design_slopes(counted_bars, maxima.segment[is_counted], maxima.angle[is_counted], pins[is_counted])
     shares, sides = (
         np.repeat(column, is_counted.sum(axis=1))[:, None] for column in (maxima.share, all_sides[maxima.side])
     )
@@ -193,8 +195,8 @@ _SIDES = np.array([1.0, -1.0])
 _memoised_field = memoise_by_batch(stress_field_of)
 
 
-def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) -> StressPeaks:
-    n, width = bars.rows, bars.rates.shape[1]
+def _peaks_at_locations(bars: StressLocations, criteria: Array, gradients: bool, limit: int) -> StressPeaks:
+    n, width = bars.bar_count, bars.rates.shape[1]
     peaks = StressPeaks(
         np.full((n, limit), -np.inf),
         np.zeros((n, limit)),
@@ -212,10 +214,12 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
         maxima.bar, maxima.side, maxima.pull, np.zeros((len(maxima.bar), 2), np.int64), maxima.share
     )
     chosen = np.empty((n, limit), np.int64)
-    choose(candidates, criteria, maxima.value, maxima.angle, chosen)
+    choose_highest_candidates(candidates, criteria, maxima.value, maxima.angle, chosen)
     is_found = chosen >= 0
     maxima = maxima.select(chosen[is_found])
-    begin, end = (ends.reshape(-1, 2) for ends in bars.ends(np.repeat(maxima.bar, 2), maxima.segment.ravel()))
+    begin, end = (
+        ends.reshape(-1, 2) for ends in bars.segment_end_angles(np.repeat(maxima.bar, 2), maxima.segment.ravel())
+    )
     early, late = maxima.angle - begin < _EDGE, end - maxima.angle < _EDGE
     maxima.angle = np.where(early, begin, np.where(late, end, maxima.angle))
     next_segment = (maxima.segment + 1) % bars.segment_counts(maxima.bar)[:, None]
@@ -227,8 +231,8 @@ def _peaks(bars: StressLocations, criteria: Array, gradients: bool, limit: int) 
     peaks.labels[is_found] = LABEL_STEP * label_class + turned[:, 0] + _OTHER * turned[:, 1]
     peaks.places[is_found] = np.column_stack([maxima.share, _SIDES[maxima.side], maxima.angle])
     if peaks.gradients is not None:
-        peaks.gradients[is_found] = _gradients(bars, _SIDES, criteria, maxima, pins)
-    peaks.values[bars.locked, 0] = np.inf
+        peaks.gradients[is_found] = _maxima_gradients(bars, _SIDES, criteria, maxima, pins)
+    peaks.values[bars.locked_bars, 0] = np.inf
     return peaks
 
 
@@ -293,7 +297,7 @@ def stress_peaks(
 
     def work(begin: int, end: int) -> None:
         chunk = designs[begin:end]
-        peaks = _peaks(
+        peaks = _peaks_at_locations(
             stress_at_locations(_memoised_field(mechanism, chunk), mechanism, chunk, places), criteria, gradients, limit
         )
         for target, part in ((values, peaks.values), (labels, peaks.labels), (peak_places, peaks.places)):

@@ -22,9 +22,9 @@ import numpy as np
 from ..arrays import Array, IntArray, Mask
 from ..kernel.kernel import Integers, IntegerTable, Table, rarely_used_kernel
 from ..machine.mechanism import Mechanism
-from ..machine.raw_numbers_of_designs import formula_of_numbers
+from ..machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
 from .section_forces import CRANK
-from .stress_points import WIDE, Field, Samples
+from .stress_points import WIDE, Samples, StressField
 
 _MANY = WIDE // 2
 
@@ -66,63 +66,68 @@ class StressLocations:
     + k, 2), their derivatives with respect to the numbers of the design.
     """
 
-    field: Field
+    field: StressField
     places: tuple[StressLocation, ...]
     samples: Samples
     factors: Array
     rates: Array
 
     @property
-    def rows(self) -> int:
+    def bar_count(self) -> int:
         """Return the number of bars, m n."""
         return len(self.factors)
 
     @property
-    def locked(self) -> Mask:
+    def locked_bars(self) -> Mask:
         """Return whether friction locks the design of each bar, (m n,)."""
-        return np.tile(self.field.locked, len(self.places))
+        return np.tile(self.field.locked_designs, len(self.places))
 
     def segment_counts(self, bars: IntArray) -> IntArray:
         """Return the number of segments in the cycles of bars (p,)."""
-        counts: IntArray = self.field.cuts.many[self._design(bars)]
+        counts: IntArray = self.field.cuts.many[self._designs_of_bars(bars)]
         return counts
 
-    def ends(self, bars: IntArray, segment: IntArray) -> tuple[Array, Array]:
+    def segment_end_angles(self, bars: IntArray, segment: IntArray) -> tuple[Array, Array]:
         """Return where segments (p,) of bars (p,) begin and end, rad."""
-        return self.field.ends(self._design(bars), segment)
+        return self.field.segment_end_angles(self._designs_of_bars(bars), segment)
 
     def stress_at(self, bars: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives with respect to the crank angle, (p, WIDE)."""
-        stress = self.field.stress_at(self._design(bars), segment, angle)
-        return _stress_by_location(self.places, stress, np.arange(len(bars)), self._place(bars), self.factors[bars])
+        stress = self.field.stress_at(self._designs_of_bars(bars), segment, angle)
+        return _stress_at_locations(
+            self.places, stress, np.arange(len(bars)), self._locations_of_bars(bars), self.factors[bars]
+        )
 
-    def slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
+    def design_slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return the derivatives with respect to the numbers of the design, (p, 3 + k, WIDE / 2).
 
         cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
         """
-        stress, numbers = self.field.slopes(self._design(bars), segment, angle, cut), self.field.numbers
+        stress, numbers = (
+            self.field.raw_number_slopes(self._designs_of_bars(bars), segment, angle, cut),
+            self.field.numbers,
+        )
         values = stress[:, 0]
         if numbers.slopes is not None:
-            stress = np.einsum("pcx,pck->pkx", stress, numbers.slopes[self._design(bars)])
+            stress = np.einsum("pcx,pck->pkx", stress, numbers.slopes[self._designs_of_bars(bars)])
         p, k = stress.shape[:2]
-        place, row = np.repeat(self._place(bars), k), np.repeat(np.arange(p), k)
+        place, row = np.repeat(self._locations_of_bars(bars), k), np.repeat(np.arange(p), k)
         factors, rates = np.repeat(self.factors[bars], k, axis=0), self.rates[bars].reshape(p * k, 2)
-        spread = _stress_by_location(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[
+        spread = _stress_at_locations(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[
             :, _MANY:
         ]
         eyes = np.array([isinstance(location, Eye) for location in self.places])[place]
-        spread[eyes] += _stress_by_location(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
+        spread[eyes] += _stress_at_locations(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
         return spread.reshape(p, k, _MANY)
 
-    def _place(self, bars: IntArray) -> IntArray:
+    def _locations_of_bars(self, bars: IntArray) -> IntArray:
         return bars // len(self.field.blocks)
 
-    def _design(self, bars: IntArray) -> IntArray:
+    def _designs_of_bars(self, bars: IntArray) -> IntArray:
         return bars % len(self.field.blocks)
 
 
-def _stress_by_location(
+def _stress_at_locations(
     places: Sequence[StressLocation], stress: Array, row: IntArray, place: IntArray, factors: Array
 ) -> Array:
     """Return the stress at locations (p, WIDE) from rows (p,) of the stress in both links (r, 2 WIDE)."""
@@ -175,7 +180,7 @@ def _fill_location_stress(
 
 
 def stress_at_locations(
-    field: Field, mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
+    field: StressField, mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
 ) -> StressLocations:
     """Return the `StressLocations` for designs (n, 3 + k) whose links have a field."""
     cycle_samples, n, many = field.samples, len(designs), len(places)
@@ -192,7 +197,7 @@ def stress_at_locations(
         np.tile(cycle_samples.theta, many),
         np.tile(cycle_samples.begins_segment, many),
         np.tile(cycle_samples.segment, many),
-        _stress_by_location(places, cycle_samples.stress, row, of_place, factors[of_bar]),
+        _stress_at_locations(places, cycle_samples.stress, row, of_place, factors[of_bar]),
     )
     return StressLocations(field, tuple(places), samples, factors, rates)
 
@@ -216,5 +221,7 @@ def _eye_stress_factors(mechanism: Mechanism, designs: Array, eye: Eye) -> tuple
     """Return the factors of axial stress and bending in the whole section, (n, 2), and their derivatives."""
     factors, rates = np.empty((len(designs), 2)), np.empty((*designs.shape, 2))
     for number, formula in enumerate(eye_stress_factor_formulas(mechanism, eye)):
-        factors[:, number], rates[:, :, number] = formula_of_numbers(mechanism, designs, formula, gradients=True)
+        factors[:, number], rates[:, :, number] = evaluate_formula_of_raw_numbers(
+            mechanism, designs, formula, gradients=True
+        )
     return factors, rates

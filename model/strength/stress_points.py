@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
-from ..dynamics.friction_signs import cut_imaginary_shift, needs_friction_kernel, sides_of
+from ..dynamics.friction_signs import cut_imaginary_shift, friction_signs_in_segment, needs_friction_kernel
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
-    angle_within,
+    angle_identifying_segment,
     crank_angle_from_crowded,
     crowded_from_crank_angle,
     crowding_parameter,
-    enter_segment,
+    find_segment_pieces,
     load_on_slider,
 )
 from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
@@ -33,7 +33,7 @@ from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads, Raw
-from ..machine.raw_numbers_of_designs import Numbers, raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import RawNumbers, raw_machine_numbers
 from ..signals.signal_inputs import cycle_window, signal_inputs
 from ..signals.signals import Signal, design_motion
 from .section_forces import stress_along
@@ -85,7 +85,7 @@ class Bars(NamedTuple):
 
 
 @rarely_used_kernel
-def _stress(
+def _fill_stress(
     blocks: Cube,
     steps: ComplexCube,
     bars: Bars,
@@ -102,7 +102,7 @@ def _stress(
     last, last_column, last_probe, outward = -1, -2, 0.0, False
     d = design_at(block, 0)
     segment = Segment(block, loads, outward, piece, shift)
-    sides = sides_of(0.0, d, segment, False)
+    sides = friction_signs_in_segment(0.0, d, segment, False)
     for p in range(points.design.shape[0]):
         n, v, probe, angle = points.design[p], points.column[p], points.probe[p], points.angle[p]
         if n != last:
@@ -110,9 +110,9 @@ def _stress(
                 block[i, 0] = blocks[n, i, 0]
             d = design_at(block, 0)
         if n != last or probe != last_probe:
-            _, outward = enter_segment(d, block, 0, probe, loads, watch, piece, shift)
+            _, outward = find_segment_pieces(d, block, 0, probe, loads, watch, piece, shift)
             segment = Segment(block, loads, outward, piece, shift)
-            sides = sides_of(probe, d, segment, rubbing)
+            sides = friction_signs_in_segment(probe, d, segment, rubbing)
         if n != last or v != last_column:
             for i in range(rows):
                 z_block[i, 0] = complex(block[i, 0], 0.0) if v < 0 else steps[n * nv + v, i, 0]
@@ -170,21 +170,21 @@ def _sample_segments(
             for i in range(points):
                 angle = crank_angle_from_crowded(low + (high - low) * i / (points - 1), kappa)
                 theta[total] = a if i == 0 else b if i == points - 1 else angle
-                probe[total], first[total], segment[total] = angle_within(a, b), i == 0, s
+                probe[total], first[total], segment[total] = angle_identifying_segment(a, b), i == 0, s
                 total += 1
     start[designs.shape[0]] = total
     return total
 
 
 @dataclass(frozen=True)
-class Field:
+class StressField:
     """Stress over the cycles of n designs: their samples, and the data to evaluate it at any crank angle.
 
     kappa: (n,), parameter kappa of the crowded angle. locked: (n,), whether friction locks the design.
     """
 
     mechanism: Mechanism
-    numbers: Numbers
+    numbers: RawNumbers
     blocks: Array
     sizes: Array
     loads: Loads
@@ -193,12 +193,12 @@ class Field:
     samples: Samples
 
     @property
-    def locked(self) -> Mask:
+    def locked_designs(self) -> Mask:
         """Return whether friction locks each design, (n,)."""
         is_locked: Mask = self.cuts.many == 0
         return is_locked
 
-    def ends(self, design: IntArray, segment: IntArray) -> tuple[Array, Array]:
+    def segment_end_angles(self, design: IntArray, segment: IntArray) -> tuple[Array, Array]:
         """Return where segments (p,) of designs (p,) begin and end, rad."""
         angle, count = self.cuts.angle, self.cuts.many[design]
         last = segment + 1 == count
@@ -206,10 +206,10 @@ class Field:
 
     def stress_at(self, design: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives with respect to the crank angle, (p, 2 WIDE)."""
-        begin, end = self.ends(design, segment)
+        begin, end = self.segment_end_angles(design, segment)
         no_number = np.full(len(design), -1)
         points = Points(design, _angles_within(begin, end), angle, no_number, no_number)
-        return _stress_at(
+        return _stress_at_points(
             self.blocks,
             _NO_STEPS,
             self.sizes,
@@ -220,12 +220,12 @@ class Field:
             needs_friction_kernel(self.mechanism),
         )
 
-    def slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
+    def raw_number_slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return stress and its derivatives with respect to the raw numbers in `numbers`, (p, c, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
         """
-        begin, end = self.ends(design, segment)
+        begin, end = self.segment_end_angles(design, segment)
         columns = self.numbers.columns
         number_count = len(columns)
         raw, _ = signal_inputs(self.mechanism, Signal.CRANK_PIN_FORCE)
@@ -238,22 +238,22 @@ class Field:
             np.tile(np.arange(number_count), len(design)),
             np.repeat(cut, number_count),
         )
-        stress = _stress_at(
+        stress = _stress_at_points(
             self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, needs_friction_kernel(self.mechanism)
         )
         return stress.reshape(len(design), number_count, -1)
 
 
 def _angles_within(begin: Array, end: Array) -> Array:
-    """Return `angle_within` for many segments."""
-    angles: Array = angle_within(begin, end)  # type: ignore[arg-type, assignment]
+    """Return `angle_identifying_segment` for many segments."""
+    angles: Array = angle_identifying_segment(begin, end)  # type: ignore[arg-type, assignment]
     return angles
 
 
 _NO_STEPS, _NO_TURN = np.zeros((0, 0, 1), np.complex128), np.zeros((0, len(_SLOTS)))
 
 
-def _stress_at(
+def _stress_at_points(
     blocks: Array,
     steps: NDArray[np.complex128],
     sizes: Array,
@@ -264,14 +264,14 @@ def _stress_at(
     rubbing: bool,
 ) -> Array:
     out = np.zeros((len(points.design), 2 * WIDE))
-    _stress(blocks, steps, Bars(sizes, turned), points, cuts, loads, rubbing, out)
+    _fill_stress(blocks, steps, Bars(sizes, turned), points, cuts, loads, rubbing, out)
     return out
 
 
-def stress_field_of(mechanism: Mechanism, designs: Array) -> Field:
-    """Return the `Field` for designs (n, 3 + k), each rotating fully."""
+def stress_field_of(mechanism: Mechanism, designs: Array) -> StressField:
+    """Return the `StressField` for designs (n, 3 + k), each rotating fully."""
     raw, loads = signal_inputs(mechanism, Signal.CRANK_PIN_FORCE)
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=True)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=True)
     values, n = numbers.values, len(designs)
     blocks, _ = derived_blocks(raw, loads, numbers.columns, values)
     sizes = np.empty((n, len(_SLOTS)))
@@ -289,6 +289,8 @@ def stress_field_of(mechanism: Mechanism, designs: Array) -> Field:
     no_number = np.full(total, -1)
     design = np.repeat(np.arange(n), np.diff(start))
     points = Points(design, probe, theta, no_number, no_number)
-    stress = _stress_at(blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, needs_friction_kernel(mechanism))
+    stress = _stress_at_points(
+        blocks, _NO_STEPS, sizes, _NO_TURN, points, cuts, loads, needs_friction_kernel(mechanism)
+    )
     samples = Samples(start, theta, first, segment, stress)
-    return Field(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)
+    return StressField(mechanism, numbers, blocks, sizes, loads, cuts, kappa, samples)

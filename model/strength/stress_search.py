@@ -219,7 +219,9 @@ def _angle_of_nearby_maximum(samples: SampledStress, side: Any, sign: Any, xi: A
 
 
 @rarely_used_kernel
-def climb(samples: SampledStress, criteria: Table, candidates: Candidates, values: Row, angles: Table) -> None:
+def climb_to_maxima(
+    samples: SampledStress, criteria: Table, candidates: Candidates, values: Row, angles: Table
+) -> None:
     """Move candidates to the maxima next to them; fill values (c,), locations and angles (c, 2) of these maxima.
 
     `candidates` is updated in place. The search stays within the segment.
@@ -270,7 +272,9 @@ def climb(samples: SampledStress, criteria: Table, candidates: Candidates, value
 
 
 @rarely_used_kernel
-def choose(candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable) -> None:
+def choose_highest_candidates(
+    candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable
+) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 
     Among coinciding candidates, the highest counts: next to a breakpoint there may be two, one of them at the

@@ -19,7 +19,7 @@ from ..arrays import Array, Mask
 from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
-from .end_angles import Ends, ends_of
+from .end_angles import Ends, swing_ends
 from .slider_pin_force import pin_distance_from_crank_line
 from .swing import Swing
 
@@ -40,15 +40,15 @@ class DrivenAngles:
 
 def closes_over_swing(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close over the whole swing."""
-    return _closing(designs, ends_of(mechanism, swing, designs))
+    return _closing_designs(designs, swing_ends(mechanism, swing, designs))
 
 
 def swings_without_dead_point(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) close and, if the slider drives, pass no dead point."""
-    ends = ends_of(mechanism, swing, designs)
-    passing = _closing(designs, ends)
+    ends = swing_ends(mechanism, swing, designs)
+    passing = _closing_designs(designs, ends)
     if swing.driver == "slider" and passing.any():
-        sign = _sign(mechanism)
+        sign = _branch_sign(mechanism)
         passing &= ~_has_dead_point(ends, sign, designs)
         passing_ends = ends.select(passing)
         passing[passing] = (
@@ -61,16 +61,16 @@ def swings_without_dead_point(mechanism: Mechanism, swing: Swing, designs: Array
 def transmission_angle_candidates(mechanism: Mechanism, swing: Swing, designs: Array) -> DrivenAngles:
     """Return the transmission angles for designs (n, 3 + k) that close, see `closes_over_swing`."""
     return _transmission_angle_candidates(
-        swing, ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism), designs
+        swing, swing_ends(mechanism, swing, designs, slopes=True), _branch_sign(mechanism), designs
     )
 
 
 def slider_travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
     """Return the slider travel (n,) between the ends, m, and its slopes (n, 3 + k)."""
-    ends, sign = ends_of(mechanism, swing, designs, slopes=True), _sign(mechanism)
+    ends, sign = swing_ends(mechanism, swing, designs, slopes=True), _branch_sign(mechanism)
 
     def signed_travel(sizes: Any, first: Any, last: Any) -> Any:
-        return _position(last, sign, sizes) - _position(first, sign, sizes)
+        return _slider_position(last, sign, sizes) - _slider_position(first, sign, sizes)
 
     values, slopes = _with_slopes(signed_travel, designs, ends, (ends.start, 0), (ends.end, 1))
     side = np.where(values < 0.0, -1.0, 1.0)
@@ -79,7 +79,7 @@ def slider_travels(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[
 
 def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Array, Array]:
     """Return the crank angle (n,) between the ends, rad, and its slopes (n, 3 + k)."""
-    ends = ends_of(mechanism, swing, designs, slopes=True)
+    ends = swing_ends(mechanism, swing, designs, slopes=True)
     assert ends.slopes is not None
     slopes = np.zeros(designs.shape)
     for place, v in enumerate(ends.columns):
@@ -87,11 +87,11 @@ def swing_angles(mechanism: Mechanism, swing: Swing, designs: Array) -> tuple[Ar
     return ends.high - ends.low, slopes
 
 
-def _sign(mechanism: Mechanism) -> float:
+def _branch_sign(mechanism: Mechanism) -> float:
     return mechanism.sign
 
 
-def _closing(designs: Array, ends: Ends) -> Mask:
+def _closing_designs(designs: Array, ends: Ends) -> Mask:
     r, l = designs[:, 0], designs[:, 1]
     with np.errstate(invalid="ignore"):
         pin_distance, angle = ends.largest_pin_distance_from_line(designs), ends.high - ends.low
@@ -115,7 +115,7 @@ def _transmission_angle_candidates(
 ) -> DrivenAngles:
     places: list[tuple[Array, int | None]] = [(ends.start, 0), (ends.end, 1)]
     if swing.driver == "crank":
-        normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.occurrences(angle)]
+        normal_angles = [angle for angle in (0.5 * np.pi, 1.5 * np.pi) if ends.columns or swing.angles_within(angle)]
         places += [(ends.wrap_into_swing(angle), None) for angle in normal_angles]
         side = None
     else:
@@ -187,6 +187,6 @@ def _angles_with_slider_at_pivot(ends: Ends, sign: float, designs: Array) -> lis
     return angles
 
 
-def _position(angle: Any, sign: float, sizes: Any) -> Any:
+def _slider_position(angle: Any, sign: float, sizes: Any) -> Any:
     sine, cosine = np.sin(angle), np.cos(angle)
     return motion(sine, cosine, sizes[:, 0], sizes[:, 1], sizes[:, 2], sign).x

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..machine.mechanism import Mechanism
-from ..machine.raw_numbers_of_designs import Numbers
+from ..machine.raw_numbers_of_designs import RawNumbers
 from .angles_from_position import crank_angles_at
 from .swing import STARTS, Swing
 
@@ -77,7 +77,7 @@ class Ends:
         """Return the maximum distance (n,) between the crank pin and the slider line over the swings, m."""
         return greatest_pin_distance(designs, self.extreme_angles())
 
-    def stepped(self, columns: int, column: int | None) -> Complexes:
+    def with_imaginary_steps(self, columns: int, column: int | None) -> Complexes:
         """Return both ends (n c, 2), the start last, with an imaginary step in each of c numbers."""
         moved = np.repeat(np.stack([self.start, self.end], axis=1)[:, None] + 0j, columns, axis=1)
         assert self.slopes is not None
@@ -87,8 +87,8 @@ class Ends:
 
 
 def append_start_number(
-    numbers: Numbers, plain: Complexes, steps: Complexes, designs: Array, column: int
-) -> tuple[Numbers, Complexes]:
+    numbers: RawNumbers, plain: Complexes, steps: Complexes, designs: Array, column: int
+) -> tuple[RawNumbers, Complexes]:
     """Return numbers and stepped blocks followed by the start of the swing, a number that no kernel uses.
 
     plain: blocks (n, rows, 1). steps: (n c, rows, 1); none if no derivatives are requested.
@@ -103,7 +103,7 @@ def append_start_number(
         slope[:, 0, column] = 1.0
         slopes = np.concatenate([numbers.slopes, slope], axis=1)
     values = np.concatenate([numbers.values, designs[:, column : column + 1]], axis=1)
-    return Numbers(np.append(numbers.columns, _NO_SLOT), values, slopes), steps
+    return RawNumbers(np.append(numbers.columns, _NO_SLOT), values, slopes), steps
 
 
 def greatest_pin_distance(designs: Array, angles: Iterable[Array]) -> Array:
@@ -121,11 +121,11 @@ def swing_start_column(mechanism: Mechanism) -> int | None:
     return None
 
 
-def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
+def swing_ends(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool = False) -> Ends:
     """Return both ends of the swings for designs (n, 3 + k). slopes: whether derivatives are needed."""
     sign = mechanism.sign
     column = swing_start_column(mechanism)
-    plain = _ends(swing, sign, designs, column)
+    plain = _end_angles(swing, sign, designs, column)
     if not slopes:
         return Ends(*plain)
     columns = ((0, 1, 2) if swing.stated_for == "slider" else ()) + (() if column is None else (column,))
@@ -133,11 +133,11 @@ def ends_of(mechanism: Mechanism, swing: Swing, designs: Array, *, slopes: bool 
     for place, v in enumerate(columns):
         moved = designs.astype(np.complex128)
         moved[:, v] += 1j * STEP
-        stepped[:, place] = np.stack([end.imag for end in _ends(swing, sign, moved, column)], axis=1) / STEP
+        stepped[:, place] = np.stack([end.imag for end in _end_angles(swing, sign, moved, column)], axis=1) / STEP
     return Ends(*plain, columns, stepped)
 
 
-def _ends(swing: Swing, sign: float, designs: Any, column: int | None) -> tuple[Any, Any]:
+def _end_angles(swing: Swing, sign: float, designs: Any, column: int | None) -> tuple[Any, Any]:
     if column is None:
         first, last = (np.full(len(designs), angle) for angle in (swing.start, swing.end))
     else:

@@ -95,7 +95,7 @@ def swing_curves(
 ) -> SwingCurves:
     """Return the curves of a linkage accepted by `require_swing`, at fractions (n,) of the time of one stroke."""
     share = np.atleast_1d(np.asarray(share, dtype=np.float64))
-    s, s_1, s_2 = way_of(swing.law, share, swing.table)
+    s, s_1, s_2 = way_of(swing.law, share, swing.law_pieces)
     s_1 = np.maximum(s_1, 0.0)  # at rest, rounding may give a speed of the opposite sign, which would reverse friction
     s, s_1, s_2 = (1.0 - s, -s_1, -s_2) if back else (s, s_1, s_2)
     first, last = driver_start_and_end(linkage, swing)
@@ -108,11 +108,11 @@ def swing_curves(
         theta, speed, rise = place, velocity, acceleration
         m = _motion_at(linkage, theta)
     else:
-        theta = angles_at(linkage, swing, place)
+        theta = crank_angles_at_slider(linkage, swing, place)
         m = _motion_at(linkage, theta)
         speed = velocity / m.x_1
         rise = (acceleration - m.x_2 * speed**2) / m.x_1
-    turning = swing.way * (-1.0 if back else 1.0)
+    turning = swing.forward_direction * (-1.0 if back else 1.0)
     slowly = np.where(speed == 0.0, turning * _STILL, speed)
     cycle_curves = cycle_at_speeds(mechanism, linkage, theta, slowly, rise)
     d = derived_design(mechanism, linkage)._replace(speed=slowly, acceleration=rise)
@@ -168,7 +168,7 @@ def _motion_at(linkage: Linkage, theta: Array) -> Motion:
     return m
 
 
-def angles_at(linkage: Linkage, swing: Swing, x: Array) -> Array:
+def crank_angles_at_slider(linkage: Linkage, swing: Swing, x: Array) -> Array:
     """Return the crank angles (n,) in a swing without dead point that put the slider at x (n,).
 
     theta = atan2(e, x) -+ acos((r^2 + d^2 - l^2) / (2 r d)), d^2 = x^2 + e^2, then one Newton step, as acos is

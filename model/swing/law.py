@@ -20,7 +20,7 @@ _LAWS: tuple[Law, ...] = get_args(Law)
 _TRAPEZOID, _HARMONIC, _CYCLOIDAL, _POLYNOMIAL, _TABLE = (_LAWS.index(law) for law in _LAWS[2:])
 
 
-def code_of(law: Law) -> int:
+def law_code(law: Law) -> int:
     """Return the code of a law in kernels."""
     return _LAWS.index(law)
 
@@ -124,7 +124,7 @@ def _require_points(t: Array, s: Array) -> None:
 
 def travel_speed_acceleration(law: Law, share: Array, table: Array = NO_TABLE) -> tuple[Array, Array, Array]:
     """Return s, ds/dt and d2s/dt2 at fractions of the time, from 0 to 1; see `travel_and_derivatives_at`."""
-    return travel_and_derivatives_at(code_of(law), table, share, share)[:3]
+    return travel_and_derivatives_at(law_code(law), table, share, share)[:3]
 
 
 def time_fractions_at_travel(law: Law, s: Array, table: Array = NO_TABLE) -> Array:
@@ -139,7 +139,7 @@ def time_fractions_at_travel(law: Law, s: Array, table: Array = NO_TABLE) -> Arr
     return np.asarray(0.5 * (low + high))
 
 
-def corners(law: Law, table: Array = NO_TABLE) -> tuple[float, ...]:
+def corner_times(law: Law, table: Array = NO_TABLE) -> tuple[float, ...]:
     """Return the fractions of the time between the ends at which the acceleration has a jump or a kink."""
     if len(table):
         return tuple(table[1:, 2].tolist())

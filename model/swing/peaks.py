@@ -175,7 +175,7 @@ def _peaks_of_swinging_designs(
     def work(begin: int, end: int) -> None:
         designs_here = rows[begin:end]
         batch = batch_of(designs[designs_here])
-        stuck = batch.locked()
+        stuck = batch.may_lock()
         if stuck.any():
             values[designs_here[stuck], 0] = np.inf
             designs_here = designs_here[~stuck]
@@ -184,7 +184,7 @@ def _peaks_of_swinging_designs(
             maxima = find(batch)
             values[designs_here], places[designs_here] = maxima.values, maxima.places
             if gradients:
-                slopes[designs_here] = batch.numbers.chain(maxima.slopes)
+                slopes[designs_here] = batch.numbers.chain_to_designs(maxima.slopes)
 
     in_chunks(len(rows), work, size=_CHUNK)
     return SwingPeaks(values, places, slopes if gradients else None)

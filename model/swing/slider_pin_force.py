@@ -1,6 +1,6 @@
 """Equilibrium of a linkage whose slider is pushed and whose crank is free: the force in the slider pin.
 
-The equations are those of `forces`, written for numbers of one design, for arrays, and for kernels.
+The equations are those of `torque`, written for numbers of one design, for arrays, and for kernels.
 """
 
 from __future__ import annotations

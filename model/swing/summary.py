@@ -84,9 +84,9 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
         drive_start=(float(still[0].drive[0]), float(still[1].drive[1])),
         drive_end=(float(still[0].drive[1]), float(still[1].drive[0])),
         holds=slow.friction_holds(),
-        energy_forward=cycle.energy(back=False),
-        energy_back=cycle.energy(back=True),
-        stored=free.energy(back=False),
+        energy_forward=cycle.driver_work(back=False),
+        energy_back=cycle.driver_work(back=True),
+        stored=free.driver_work(back=False),
         efficiency=None if locked else _drive_efficiency(slow, free),
         peak_power=power,
         least_transmission=cycle.least("driven_angle"),
@@ -98,7 +98,7 @@ def summarise(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSumm
 def _drive_efficiency(slow: SwingCycle, free: SwingCycle) -> float | None:
     """Return the energy without friction divided by that with friction, for the first driven stroke."""
     for back in (False, True):
-        least, spent = free.energy(back=back), slow.energy(back=back)
+        least, spent = free.driver_work(back=back), slow.driver_work(back=back)
         if least > 0.0 and spent > 0.0:
             return least / spent
     return None

@@ -94,7 +94,7 @@ class Swing:
                 f"a tabulated motion law must have points, and any other must have none; got the law {self.law} "
                 f"and {len(self.points)} points; give both, or neither"
             )
-        _ = self.table
+        _ = self.law_pieces
         if self.driver == "cylinder":
             self._require_lever_swing(angle)
         if self.actuator_tolerance and self.driver == "crank":
@@ -133,21 +133,21 @@ class Swing:
         return self.driver == "turning crank"
 
     @cached_property
-    def table(self) -> Array:
+    def law_pieces(self) -> Array:
         """Pieces (k, 7) of a tabulated law, see `law.law_spline_pieces`; empty for other laws."""
         return law_spline_pieces(self.points) if self.points else NO_TABLE
 
     @property
-    def fastest(self) -> float:
+    def greatest_travel_rate(self) -> float:
         """Greatest ds/dt of a law with a name, half-way: all are symmetric and slow down towards their ends."""
         return float(travel_speed_acceleration(self.law, np.array([0.5]))[1][0])
 
     @property
-    def way(self) -> float:
+    def forward_direction(self) -> float:
         """+1 if the crank turns counter-clockwise on the forward stroke, -1 otherwise."""
         return math.copysign(1.0, self.end - self.start)
 
-    def occurrences(self, angle: float) -> list[float]:
+    def angles_within(self, angle: float) -> list[float]:
         """Return the crank angles within the swing that equal an angle up to whole turns."""
         low, high = sorted((self.start, self.end))
         occurrence = angle + _TURN * math.ceil((low - angle) / _TURN)
@@ -163,7 +163,7 @@ def without_inertia(swing: Swing) -> Swing:
     return replace(swing, law="slow", duration=None, points=())
 
 
-def dead_points(linkage: Linkage) -> tuple[float, ...]:
+def dead_point_angles(linkage: Linkage) -> tuple[float, ...]:
     """Return the crank angles of one linkage at which crank and rod are in line, rad.
 
     Stretched: (r + l) sin(theta) = e; folded: (r - l) sin(theta) = e; each on its own branch.
@@ -235,7 +235,7 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
 
 def _require_swing_without_dead_point(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> None:
     _require_closing(linkage, swing)
-    passed = sorted(angle for dead in dead_points(linkage) for angle in swing.occurrences(dead))
+    passed = sorted(angle for dead in dead_point_angles(linkage) for angle in swing.angles_within(dead))
     if swing.driver == "slider" and passed:
         raise InputError(
             "a slider drives the crank only between dead points, where crank and rod are in line; "
@@ -265,7 +265,7 @@ def _has_overlapping_links(linkage: Linkage, swing: Swing) -> bool:
 
 def extreme_angles(swing: Swing) -> list[float]:
     """Return the ends of a swing, and its crank angles normal to the slider line."""
-    return [swing.start, swing.end, *swing.occurrences(0.5 * math.pi), *swing.occurrences(1.5 * math.pi)]
+    return [swing.start, swing.end, *swing.angles_within(0.5 * math.pi), *swing.angles_within(1.5 * math.pi)]
 
 
 def _require_closing(linkage: Linkage, swing: Swing) -> None:

@@ -22,11 +22,11 @@ from ..machine.design import design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
-from ..machine.raw_numbers_of_designs import raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from .closure import swings_without_dead_point, transmission_angle_candidates
-from .end_angles import Ends, append_start_number, ends_of, greatest_pin_distance, swing_start_column
+from .end_angles import Ends, append_start_number, greatest_pin_distance, swing_ends, swing_start_column
 from .forces import locking_angle
-from .law import corners, reversed_law_pieces, time_fractions_at_travel
+from .law import corner_times, reversed_law_pieces, time_fractions_at_travel
 from .swing import Swing, without_inertia
 from .swing_states import ANGLE, GUIDE, PACE, PLACE, Complexes, KernelSwing, Points, kernel_swing, swing_states
 
@@ -80,8 +80,8 @@ class SwingBatch:
         self.path: KernelSwing = kernel_swing(self.swing, rubbing=self.rubs, forces=forces)
         self.designs, self.count = designs, len(designs)
         self.sign = mechanism.sign
-        self.ends: Ends = ends_of(mechanism, self.swing, designs, slopes=slopes)
-        numbers = raw_numbers_of_designs(mechanism, designs, limit=len(raw), gradients=slopes)
+        self.ends: Ends = swing_ends(mechanism, self.swing, designs, slopes=slopes)
+        numbers = raw_machine_numbers(mechanism, designs, slot_count=len(raw), gradients=slopes)
         self.blocks, self.steps = derived_blocks(raw, self.loads, numbers.columns, numbers.values, steps=slopes)
         self.complex_blocks: Complexes = self.blocks.astype(np.complex128)
         column = swing_start_column(mechanism)
@@ -89,8 +89,8 @@ class SwingBatch:
             numbers, self.steps = append_start_number(numbers, self.complex_blocks, self.steps, designs, column)
         self.numbers, self.columns = numbers, len(numbers.columns)
         self.plain_ends = np.stack([self.ends.start, self.ends.end], axis=1).astype(np.complex128)
-        self.stepped_ends = self.ends.stepped(self.columns, column) if slopes else self.plain_ends
-        self.table = self.swing.table
+        self.stepped_ends = self.ends.with_imaginary_steps(self.columns, column) if slopes else self.plain_ends
+        self.table = self.swing.law_pieces
         # Quantities that depend only on position are equal in both strokes: all laws except tables are symmetric in
         # time.
         alike = all(load.is_conservative for load in mechanism.loads)
@@ -111,7 +111,7 @@ class SwingBatch:
         )
         return flat.reshape(*shape, flat.shape[1])
 
-    def locked(self) -> Mask:
+    def may_lock(self) -> Mask:
         """Return which designs friction may lock somewhere in the swing."""
         if not self.rubs:
             return np.zeros(self.count, np.bool_)
@@ -133,7 +133,7 @@ class SwingBatch:
         forces: whether to include cuts that only forces have. contacts: whether these include sign changes of the guide
         force.
         """
-        self.table = reversed_law_pieces(self.swing.points) if back else self.swing.table
+        self.table = reversed_law_pieces(self.swing.points) if back else self.swing.law_pieces
         kinks = list(self._cuts_in_forces()) if forces else []
         kink_shares, codes = self._time_fractions_at_travel([way for way, _ in kinks]), [code for _, code in kinks]
         inner_cuts = [*self._cuts_at_law_corners(), *zip(kink_shares, codes, strict=True)]
@@ -147,7 +147,7 @@ class SwingBatch:
         return self._with_contacts(uncut) if touching else uncut
 
     def _cuts_at_law_corners(self) -> Any:
-        for share in corners(self.swing.law, self.table):
+        for share in corner_times(self.swing.law, self.table):
             yield np.full(self.count, share), -1
 
     def _cuts_in_forces(self) -> Any:
@@ -156,7 +156,9 @@ class SwingBatch:
         if self.rubs:
             for angle in (0.5 * np.pi, 1.5 * np.pi):
                 yield from self._cuts_at_angle(np.full(self.count, angle), ANGLE)
-            if friction.crank_pin.circle:  # the rod turns as fast as the crank where the slider is at the pivot
+            if (
+                friction.crank_pin.friction_circle_radius
+            ):  # the rod turns as fast as the crank where the slider is at the pivot
                 yield from self._cuts_at_position(0.0)
         if self.ways_differ and not slider:
             r, l, e = self.designs[:, :3].T
@@ -293,7 +295,7 @@ def can_swing_despite_friction(mechanism: Mechanism, swing: Swing, designs: Arra
 
         def work(begin: int, end: int) -> None:
             rows_here = rows[begin:end]
-            passing[rows_here] = ~SwingBatch(mechanism, swing, designs[rows_here], slopes=False).locked()
+            passing[rows_here] = ~SwingBatch(mechanism, swing, designs[rows_here], slopes=False).may_lock()
 
         in_chunks(len(rows), work)
     return passing

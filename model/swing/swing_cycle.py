@@ -16,10 +16,10 @@ from ..linkage.linkage import Linkage
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import load_structure
-from ..quadrature import graded_gauss
+from ..quadrature import graded_gauss_nodes_and_weights
 from .forces import SwingCurves, driver_start_and_end, swing_curves
-from .law import corners, reversed_law_pieces, time_fractions_at_travel
-from .swing import Swing, dead_points
+from .law import corner_times, reversed_law_pieces, time_fractions_at_travel
+from .swing import Swing, dead_point_angles
 
 _SAMPLES = 721
 _ZOOMS, _ZOOMED = 7, 41
@@ -91,17 +91,17 @@ class SwingCycle:
         padded = np.concatenate([[-np.inf], ranks, [-np.inf]])
         local = np.flatnonzero((ranks >= padded[:-2]) & (ranks >= padded[2:]))
         best = [int(np.argmax(ranks)), *local[np.argsort(-ranks[local], kind="stable")][: count - 1].tolist()]
-        candidates = [self._refined(name, back, rank, curves, row) for row in dict.fromkeys(best)]
+        candidates = [self._refine_extreme(name, back, rank, curves, row) for row in dict.fromkeys(best)]
         return candidates[int(np.argmax(_rank_values(np.array([point.value for point in candidates]), rank)))]
 
-    def _refined(self, name: str, back: bool, rank: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
+    def _refine_extreme(self, name: str, back: bool, rank: np.ufunc, curves: SwingCurves, best: int) -> SwingPoint:
         for _ in range(_ZOOMS):
             low, high = curves.share[max(best - 1, 0)], curves.share[min(best + 1, len(curves.share) - 1)]
             if (back, low, high) not in self._zoomed_curves:
                 self._zoomed_curves[back, low, high] = self.curves(np.linspace(low, high, _ZOOMED), back=back)
             curves = self._zoomed_curves[back, low, high]
             best = int(np.argmax(_rank_values(getattr(curves, name), rank)))
-        return _point_at(curves, best, back, float(getattr(curves, name)[best]))
+        return _point_of_sample(curves, best, back, float(getattr(curves, name)[best]))
 
     def first_locked(self) -> SwingPoint | None:
         """Return the first place where friction may lock the linkage, by bisection between many samples."""
@@ -118,7 +118,7 @@ class SwingCycle:
                     if first
                     else 0.0
                 )
-                return _point_at(self.curves(np.array([at]), back=back), 0, back, np.nan)
+                return _point_of_sample(self.curves(np.array([at]), back=back), 0, back, np.nan)
         return None
 
     def friction_holds(self) -> bool:
@@ -132,14 +132,14 @@ class SwingCycle:
         way = np.sign(last - first)
         return bool(np.all((way * forward.drive >= 0.0) & (way * back.drive[::-1] <= 0.0)))
 
-    def energy(self, *, back: bool) -> float:
+    def driver_work(self, *, back: bool) -> float:
         """Return the driver's work, J; zero if it is only a rounding error.
 
         Gauss quadrature on panels between the places where the drive has kinks or jumps. Each interval is graded
         towards its ends, because near a dead point the drive grows as the inverse square root of the distance from it.
         """
-        cuts = self._cuts(back)
-        u, w = graded_gauss(_PANELS, _GRADED)
+        cuts = self._cut_time_fractions(back)
+        u, w = graded_gauss_nodes_and_weights(_PANELS, _GRADED)
         spans = np.diff(cuts)
         share = (cuts[:-1, None] + spans[:, None] * u).ravel()
         curves = self.curves(share, back=back)
@@ -147,9 +147,9 @@ class SwingCycle:
         total, gross = float(np.sum(parts)), float(np.sum(np.abs(parts)))
         return 0.0 if abs(total) <= _EQUAL * gross else total
 
-    def _cuts(self, back: bool) -> Array:
-        table = reversed_law_pieces(self.swing.points) if back else self.swing.table
-        shares = [0.0, 1.0, *corners(self.swing.law, table), *self._shares_at_angles(self._kink_angles(), table)]
+    def _cut_time_fractions(self, back: bool) -> Array:
+        table = reversed_law_pieces(self.swing.points) if back else self.swing.law_pieces
+        shares = [0.0, 1.0, *corner_times(self.swing.law, table), *self._shares_at_angles(self._kink_angles(), table)]
         if back:
             shares = [1.0 - share for share in shares]
         return np.unique([*shares, *self._friction_changes(back)])
@@ -157,7 +157,7 @@ class SwingCycle:
     def _kink_angles(self) -> list[float]:
         """Return the crank angles at which loads or friction change: knots of tables, dead centres, rod reversals."""
         linkage, swing = self.linkage, self.swing
-        angles = [*dead_points(linkage), 0.5 * np.pi, 1.5 * np.pi]
+        angles = [*dead_point_angles(linkage), 0.5 * np.pi, 1.5 * np.pi]
         if bool(linkage.rotates_fully):
             angles += kinks_of_loads(self.mechanism, linkage).tolist()
         else:  # then no load is counted from a dead centre
@@ -165,7 +165,7 @@ class SwingCycle:
             for k, load in enumerate(self.mechanism.loads):
                 knots = loads.knots[loads.start[k] : loads.start[k + 1]]
                 angles += knots.tolist() if load.enters == Enters.ANGLE_TABLE else self._angles_at_positions(knots)
-        return [occurrence for angle in angles for occurrence in swing.occurrences(float(angle))]
+        return [occurrence for angle in angles for occurrence in swing.angles_within(float(angle))]
 
     def _angles_at_positions(self, knots: Array) -> list[float]:
         """Return the crank angles at which the slider passes given distances from the crank pivot."""
@@ -221,11 +221,11 @@ def _crank_pin_reverses(curves: SwingCurves) -> Mask:
     return curves.rod_rate > 1.0
 
 
-def _point_at(curves: SwingCurves, row: int, back: bool, value: float) -> SwingPoint:
+def _point_of_sample(curves: SwingCurves, sample: int, back: bool, value: float) -> SwingPoint:
     return SwingPoint(
         value,
         back,
-        float(curves.share[row]),
-        float(curves.crank_angle[row]),
-        float(curves.slider_position[row]),
+        float(curves.share[sample]),
+        float(curves.crank_angle[sample]),
+        float(curves.slider_position[sample]),
     )

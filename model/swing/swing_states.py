@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.friction_signs import sides_of
-from ..dynamics.segments import CycleWindow, Segment, enter_segment, load_on_slider
+from ..dynamics.friction_signs import friction_signs_in_segment
+from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque import add_crank_couple, balance_before_pin_force
 from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, inverse, magnitude
@@ -20,7 +20,7 @@ from ..kinematics.position import motion
 from ..machine.design import Design, design_at
 from ..machine.raw_machine_vector import Loads
 from ..signals.position_error import influences, worst_case
-from .law import code_of, travel_and_derivatives_at
+from .law import law_code, travel_and_derivatives_at
 from .slider_pin_force import (
     PinSides,
     frictionless_pin_force,
@@ -57,12 +57,14 @@ class KernelSwing(NamedTuple):
 def kernel_swing(swing: Swing, *, rubbing: bool, forces: bool) -> KernelSwing:
     """Return a swing for the kernel. rubbing: whether friction counts. forces: whether forces are needed."""
     per_time = 0.0 if swing.duration is None else 1.0 / swing.duration
-    law = code_of(swing.law)
-    return KernelSwing(swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.table)
+    law = law_code(swing.law)
+    return KernelSwing(
+        swing.driver == "slider", law, per_time, swing.actuator_tolerance, rubbing, forces, swing.law_pieces
+    )
 
 
 @analytic
-def slider_at(theta: Any, d: Any) -> Any:
+def slider_position_at(theta: Any, d: Any) -> Any:
     """Return the slider position at a crank angle, m."""
     m = motion(math.sin(theta), math.cos(theta), d.r, d.l, d.e, d.branch)
     return m.x
@@ -70,7 +72,7 @@ def slider_at(theta: Any, d: Any) -> Any:
 
 @analytic
 def _crank_angle(x: Any, r: Any, l: Any, e: Any, branch: Any, start: float, end: float) -> Any:
-    """Return the crank angle in a swing without dead point that puts the slider at x; see `forces.angles_at`."""
+    """Return the crank angle that puts the slider at x, as `forces.crank_angles_at_slider` does."""
     size = math.sqrt(x * x + e * e)
     ratio = (r * r + size * size - l * l) / (2.0 * r * size)
     half = math.acos(min(1.0, max(-1.0, ratio)))
@@ -167,7 +169,7 @@ def _stepped_motion(theta: Any, step: Any, z: Any) -> Any:
 def _probe_angle(path: KernelSwing, d: Any, s: Any, start: Any, end: Any) -> Any:
     """Return the crank angle at a fraction s of the travel."""
     if path.slider:
-        first, final = slider_at(start, d), slider_at(end, d)
+        first, final = slider_position_at(start, d), slider_position_at(end, d)
         return _crank_angle(first + (final - first) * s, d.r, d.l, d.e, d.branch, start, end)
     return start + (end - start) * s
 
@@ -185,7 +187,7 @@ def _drive_power_error_guide(
     d, angle, outward = design_at(space.block, 0), complex(theta, moved), False
     if path.forces:
         watch = CycleWindow(0, 0.0, 1.0, False, False)
-        _, outward = enter_segment(d, space.block, 0, probe_angle, loads, watch, space.piece, space.shift)
+        _, outward = find_segment_pieces(d, space.block, 0, probe_angle, loads, watch, space.piece, space.shift)
     segment = Segment(space.stepped, loads, outward, space.piece, space.shift)
     load = load_on_slider(m, z, angle, segment) if path.forces else 0j
     j = influences(zs, zc, m, z.l)
@@ -200,7 +202,7 @@ def _drive_power_error_guide(
         error = off * inverse(magnitude(m.x_1))
     else:
         if path.forces:
-            sides = sides_of(
+            sides = friction_signs_in_segment(
                 probe_angle, d, Segment(space.block, loads, outward, space.piece, space.shift), path.rubbing
             )
             f = joint_forces_with_optional_friction(zs, zc, m, z, load, sides)

@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
-from ..quadrature import graded_gauss
+from ..quadrature import graded_gauss_nodes_and_weights
 from .closure import swings_without_dead_point
 from .swing import Swing
 from .swing_batch import Pieces, SwingBatch
@@ -82,7 +82,7 @@ def _evaluate_swinging_designs(
 
     def work(begin: int, end: int) -> None:
         rows_here = rows[begin:end]
-        stuck = SwingBatch(mechanism, swing, designs[rows_here], slopes=False).locked()
+        stuck = SwingBatch(mechanism, swing, designs[rows_here], slopes=False).may_lock()
         values[rows_here[stuck]] = np.inf
         rows_here = rows_here[~stuck]
         if len(rows_here):
@@ -97,7 +97,7 @@ def _evaluate_swinging_designs(
 def _forward_work(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
     batch = SwingBatch(mechanism, swing, designs, slopes=gradients)
     values, slopes = _work_one_way(batch, batch.pieces(back=False), gradients)
-    return values, batch.numbers.chain(slopes[:, None])[:, 0] if gradients else slopes
+    return values, batch.numbers.chain_to_designs(slopes[:, None])[:, 0] if gradients else slopes
 
 
 def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, gradients: bool) -> tuple[Array, Array]:
@@ -113,13 +113,13 @@ def _efficiency_and_slopes(mechanism: Mechanism, swing: Swing, designs: Array, g
             values = np.where(driven, least / spent, values)
             by_raw = (by_least - (least / spent)[:, None] * by_spent) / spent[:, None]
         if gradients:
-            slope = np.where(driven[:, None], rubbing.numbers.chain(by_raw[:, None])[:, 0], slope)
+            slope = np.where(driven[:, None], rubbing.numbers.chain_to_designs(by_raw[:, None])[:, 0], slope)
     return values, slope
 
 
 def _work_one_way(batch: SwingBatch, pieces: Pieces, gradients: bool) -> tuple[Array, Array]:
     """Return the work over one stroke (n,) and its derivatives with respect to raw numbers (n, c)."""
-    u, w = graded_gauss(_PANELS, _GRADED)
+    u, w = graded_gauss_nodes_and_weights(_PANELS, _GRADED)
     design, piece = np.nonzero(pieces.has_length)
     a, b, probe = pieces.cuts[design, piece], pieces.cuts[design, piece + 1], pieces.probe[design, piece]
     share = a[:, None] * (1.0 - u) + b[:, None] * u

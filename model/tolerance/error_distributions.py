@@ -67,7 +67,7 @@ class Spreads:
                 )
 
     @property
-    def variances(self) -> Array:
+    def variances_per_squared_limit(self) -> Array:
         """Variance of each source, (8,), in units of its squared limit; for a pin, the component along the rod."""
         pin, guide = {"along the rod": (1.0, 1.0), "any direction": (0.5, 1.0), "anywhere": (0.25, 1.0 / 3.0)}[
             self.contact
@@ -77,7 +77,7 @@ class Spreads:
         )
         return np.array([*dimensions, pin, pin, pin, guide])
 
-    def draw(self, limits: Array, count: int, random: np.random.Generator) -> Draw:
+    def draw_errors(self, limits: Array, count: int, random: np.random.Generator) -> Draw:
         """Return errors of `count` machines for the limits (8,) of the sources."""
         dimensions = [
             limit * np.asarray(distribution.rvs(count, random_state=random))

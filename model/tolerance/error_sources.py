@@ -71,7 +71,7 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     return box
 
 
-def angles_where_error_counts(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
+def angle_ranges_where_error_counts(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
     """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
 
     count: angles per turn, concentrated where the linkage is close to locking. The ends of a part are among its angles;

@@ -37,7 +37,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..signals.first_of_equal_maxima import angle_in_cycle
-from .error_sources import angles_where_error_counts, limit_box
+from .error_sources import angle_ranges_where_error_counts, limit_box
 
 _CELLS = 4  # highest samples around which the maximum deviation is refined
 _TURN = 2.0 * np.pi
@@ -52,7 +52,7 @@ class Extremes:
     greatest: Array
 
     @property
-    def size(self) -> Array:
+    def largest_magnitude(self) -> Array:
         """Larger of the two magnitudes, (m,), m: the exact worst case."""
         return np.maximum(-self.least, self.greatest)
 
@@ -98,10 +98,10 @@ def worst_position_error(mechanism: Mechanism, linkage: Linkage) -> Worst:
     best = Worst(0.0, 0.0)
 
     def negative_size(angle: float) -> float:
-        return -float(position_deviation_extremes(mechanism, linkage, angle).size[0])
+        return -float(position_deviation_extremes(mechanism, linkage, angle).largest_magnitude[0])
 
-    for angles in angles_where_error_counts(mechanism, linkage):
-        sizes = position_deviation_extremes(mechanism, linkage, angles).size
+    for angles in angle_ranges_where_error_counts(mechanism, linkage):
+        sizes = position_deviation_extremes(mechanism, linkage, angles).largest_magnitude
         padded = np.concatenate([[-1.0], sizes, [-1.0]])
         tops = np.flatnonzero((sizes >= padded[:-2]) & (sizes >= padded[2:]))
         for i in tops[np.argsort(sizes[tops])[-_CELLS:]]:
@@ -113,7 +113,7 @@ def worst_position_error(mechanism: Mechanism, linkage: Linkage) -> Worst:
     return best
 
 
-def _position(r: Array, l: float, e: Array, angles: Array) -> Array:
+def _slider_position(r: Array, l: float, e: Array, angles: Array) -> Array:
     l_sin = e - r * np.sin(angles)
     return r * np.cos(angles) + np.sqrt(l * l - l_sin * l_sin)
 
@@ -125,7 +125,7 @@ def _greatest_position(r: Array, l: float, e: Array, middle: Array, turn: Array)
 
     def take(crank: Array | float, offset: Array | float, angles: Array) -> None:
         crank, offset = np.clip(crank, *r), np.clip(offset, *e)
-        np.maximum(best, _position(crank, l, offset, angles), out=best)
+        np.maximum(best, _slider_position(crank, l, offset, angles), out=best)
 
     for angles in ends:
         sine, cosine = np.sin(angles), np.cos(angles)
@@ -148,7 +148,7 @@ def _least_position(r: Array, l: float, e: Array, middle: Array, turn: Array) ->
     for crank, offset in product(r, e):
         dead = _clip_angle(np.pi + np.arcsin(offset / (l - crank)), middle, turn)
         for angles in (*(middle + turn[:, None]), dead):
-            np.minimum(best, _position(crank, l, offset, angles), out=best)
+            np.minimum(best, _slider_position(crank, l, offset, angles), out=best)
     return best
 
 

@@ -21,7 +21,7 @@ from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .error_distributions import Draw, Spreads
-from .error_sources import angles_where_error_counts, limits_of_sources, source_influences
+from .error_sources import angle_ranges_where_error_counts, limits_of_sources, source_influences
 
 CHUNK = 1024
 """Machines per chunk: each chunk has its own random stream, so that runs of any length begin alike."""
@@ -97,7 +97,7 @@ def simulate(
         )
     limits, counted = (
         limits_of_sources(mechanism, linkage),
-        np.concatenate(angles_where_error_counts(mechanism, linkage, count=angles)),
+        np.concatenate(angle_ranges_where_error_counts(mechanism, linkage, count=angles)),
     )
     everywhere = np.concatenate([theta, counted])
     ideal = linkage.at(everywhere).slider_position
@@ -108,7 +108,7 @@ def simulate(
             break
         random = np.random.default_rng([seed, chunk])
         rows = slice(count, min(count + CHUNK, samples))
-        drawn = spreads.draw(limits, CHUNK, random)
+        drawn = spreads.draw_errors(limits, CHUNK, random)
         off = _positions(linkage, drawn, everywhere)[: rows.stop - rows.start] - ideal
         errors[rows] = off[:, : len(theta)]
         greatest[rows] = np.abs(off[:, len(theta) :]).max(axis=1)
@@ -138,7 +138,7 @@ def _positions(linkage: Linkage, drawn: Draw, angles: Array) -> Array:
     return positions
 
 
-def summarise(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.0, 95.0, 99.865)) -> Summary:
+def summarise_sample(values: ArrayLike, *, percents: Sequence[float] = (0.135, 5.0, 50.0, 95.0, 99.865)) -> Summary:
     """Return mean, standard deviation and percentiles of a sample (n,), ignoring stuck machines (NaN).
 
     The percentiles 0.135 and 99.865 % are three standard deviations of a normal distribution. Raises `InputError` if
@@ -184,6 +184,6 @@ def variance_contributions(
     limits = limits_of_sources(mechanism, linkage)
     per_source: Array = (
         source_influences(mechanism, linkage, crank_angle) ** 2
-        * ((Spreads() if spreads is None else spreads).variances * limits * limits)[:, None]
+        * ((Spreads() if spreads is None else spreads).variances_per_squared_limit * limits * limits)[:, None]
     )
     return per_source

@@ -73,7 +73,7 @@ def balanced_speed(turn: PeriodicTurn, drive: Drive, motor: Torque, near: float)
 
 def _mean_friction(turn: PeriodicTurn, speed: float) -> float:
     """Return the mean friction torque against the rotation, N m, at a constant speed of this magnitude, rad/s."""
-    return turn.way * turn.mean(turn.friction(np.array(turn.way * speed), 0.0))
+    return turn.way * turn.mean(turn.friction_torque(np.array(turn.way * speed), 0.0))
 
 
 def _mean_friction_by_speed(turn: PeriodicTurn, top: float) -> Callable[[Array | float], Array | float]:

@@ -62,9 +62,9 @@ def turn_by_energy_integral(turn: PeriodicTurn, inertia: float, speed: float) ->
     for _ in range(_ROUNDS):
         load = turn.terms.static + (turn.way * turn.terms.drag + turn.terms.square * pace) * pace
         if turn.equation.rubs:
-            load = load + turn.friction(turn.way * pace, rise)
+            load = load + turn.friction_torque(turn.way * pace, rise)
         guess, stops = _motion_under_load(turn, load, inertia, speed)
-        if stops or not turn.speed_dependent:
+        if stops or not turn.depends_on_speed:
             return Coasting(load, guess, stops)
         rise = (guess[2] - load - 2.0 * turn.terms.spin * guess[0]) / (turn.terms.inertia + inertia)
         change = np.sqrt(2.0 * guess[0]) - pace
@@ -77,8 +77,8 @@ def turn_by_energy_integral(turn: PeriodicTurn, inertia: float, speed: float) ->
 def cut_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
     """Return the turn with panels that end at the minimum of W; load: values at the nodes, N m."""
     surplus = turn.way * (turn.mean(load) - load)
-    least = [turn.low[p] + place * turn.width[p] for p, place, rises in turn.zeros(surplus) if rises]
-    return turn.cut(np.array(least))
+    least = [turn.low[p] + place * turn.width[p] for p, place, rises in turn.zero_crossings(surplus) if rises]
+    return turn.cut_at_angles(np.array(least))
 
 
 def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
@@ -86,17 +86,17 @@ def refine_at_energy_minima(turn: PeriodicTurn, load: Array) -> PeriodicTurn:
 
     turn: from `cut_at_energy_minima`. load: values at the nodes, N m.
     """
-    starts, _ = turn.integral(turn.mean(load) - load)
+    starts, _ = turn.running_integral(turn.mean(load) - load)
     least = turn.low[starts - starts.min() <= _NEAR * np.ptp(starts)]
     away = np.abs(turn.width).max() * 4.0 ** -np.arange(_GRADES)
-    return turn.cut((least[:, None] + np.concatenate([-away, away])).ravel())
+    return turn.cut_at_angles((least[:, None] + np.concatenate([-away, away])).ravel())
 
 
 def _motion_under_load(turn: PeriodicTurn, load: Array, inertia: float, speed: float) -> tuple[Guess, bool]:
     """Return the motion under a load, N m at the nodes, and whether its crank stops."""
     from scipy.optimize import brentq
 
-    starts, nodes = turn.integral(turn.mean(load) - load)
+    starts, nodes = turn.running_integral(turn.mean(load) - load)
     least = min(float(starts.min()), float(nodes.min()))
     starts, nodes, total = starts - least, nodes - least, turn.terms.inertia + inertia
     weights = np.abs(turn.width)[:, None] * WEIGHTS
@@ -109,5 +109,5 @@ def _motion_under_load(turn: PeriodicTurn, load: Array, inertia: float, speed: f
     low, high = math.log(_STOPS * size), math.log(2.0 * size)
     stops = not late(low) > 0.0
     energy_sum = math.exp(low if stops else brentq(late, low, high, xtol=1e-15, rtol=1e-14))
-    at_starts = turn.equation.inertia(turn.low) + inertia
+    at_starts = turn.equation.moving_inertia(turn.low) + inertia
     return ((energy_sum + nodes) / total, (energy_sum + starts) / at_starts, turn.mean(load)), stops

@@ -22,20 +22,20 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..cycle.self_locking import require_driving
+from ..cycle.self_locking import require_no_locking
 from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
     Segment,
     add_formula_loads,
-    angle_within,
+    angle_identifying_segment,
     breakpoint_capacity,
     cut_cycle,
-    enter_segment,
+    find_segment_pieces,
     load_on_slider,
 )
-from ..dynamics.torque import forces, load_without_pieces
+from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
@@ -73,11 +73,11 @@ class Terms:
     square: Array
 
     @property
-    def speed_dependent(self) -> bool:
+    def depends_on_speed(self) -> bool:
         """Whether a load depends on the speed."""
         return bool(self.drag.any() or self.square.any())
 
-    def torque(self, speed: Any, acceleration: Any) -> Any:
+    def required_torque(self, speed: Any, acceleration: Any) -> Any:
         """Return the torque, N m, that the motion needs."""
         return self.inertia * acceleration + (self.spin + self.square) * speed**2 + self.static + self.drag * speed
 
@@ -88,10 +88,10 @@ def _cut_cycle(block: Table, loads: Loads, watch: CycleWindow, cuts: Cuts) -> in
 
 
 @kernel
-def _enter_segment_at(
+def _find_segment_pieces(
     block: Table, loads: Loads, watch: CycleWindow, probe: float, piece: Integers, shift: Row
 ) -> bool:
-    _, outward = enter_segment(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
+    _, outward = find_segment_pieces(design_at(block, 0), block, 0, probe, loads, watch, piece, shift)
     return outward
 
 
@@ -107,16 +107,16 @@ def _fill_equation_terms(
         sine, cosine = math.sin(theta), math.cos(theta)
         m = design_motion(sine, cosine, still)
         load = load_on_slider(m, still, theta, segment)
-        out[0, i] = forces(sine, cosine, m, push, 0.0).torque
-        out[1, i] = forces(sine, cosine, m, spin, 0.0).torque
-        static = forces(sine, cosine, m, still, load).torque
+        out[0, i] = forces_without_friction(sine, cosine, m, push, 0.0).torque
+        out[1, i] = forces_without_friction(sine, cosine, m, spin, 0.0).torque
+        static = forces_without_friction(sine, cosine, m, still, load).torque
         out[2, i] = torque_without_crank_loads(static, theta, way, segment)
         dragged = add_formula_loads(load_without_pieces(m, spin, 0.0), m, spin, block, 1, outward, loads)
-        out[3, i] = forces(sine, cosine, m, bare, dragged).torque
+        out[3, i] = forces_without_friction(sine, cosine, m, bare, dragged).torque
         load_torque = still.branch * load * m.x_1
         out[4, i] = load_torque - torque_without_crank_loads(0.0, theta, way, segment)
         squared = add_formula_loads(0.0, m, square, block, 4, outward, loads)
-        out[5, i] = forces(sine, cosine, m, bare, squared).torque
+        out[5, i] = forces_without_friction(sine, cosine, m, bare, squared).torque
 
 
 class Span:
@@ -164,24 +164,24 @@ class Equation:
     crowds: bool = True
     rubs: bool = False
 
-    def stretch(self, index: int, way: float) -> Span:
+    def stretch_from_breakpoint(self, index: int, way: float) -> Span:
         """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         raise NotImplementedError
 
     def spans_of_cycle(self, way: float) -> list[Span]:
         """Return the spans of the cycle in the order in which the crank passes them, counter-clockwise or clockwise."""
         order = range(len(self.breakpoints))
-        return [self.stretch(index, way) for index in (order if way > 0.0 else reversed(order))]
+        return [self.stretch_from_breakpoint(index, way) for index in (order if way > 0.0 else reversed(order))]
 
-    def height_energy(self, crank_angle: Array) -> Array:
+    def gravity_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity, J, counted from the crank pivot; same shape as the crank angle."""
         raise NotImplementedError
 
-    def inertia(self, crank_angle: Array) -> Array:
+    def moving_inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia, kg m^2; same shape as the crank angle."""
         raise NotImplementedError
 
-    def least_inertia(self, crank_angle: Array) -> Array:
+    def least_inertia_with_friction(self, crank_angle: Array) -> Array:
         """Return the minimum inertia that friction leaves, kg m^2 (`friction_state`); same shape as the crank angle."""
         raise NotImplementedError
 
@@ -191,14 +191,14 @@ class Equation:
         With friction, also if friction may cancel the resistance. added: inertia of the drive, kg m^2.
         """
         angles = np.concatenate([self.dead_centres, np.linspace(0.0, TURN, 720, endpoint=False)])
-        inertia = self.inertia(angles) + added
+        inertia = self.moving_inertia(angles) + added
         if not inertia.min() > 1e-6 * inertia.max():
             raise InputError(
                 "the crank needs inertia at every angle, also at the dead centres where the slider stops; got none "
                 "there; give the crank a mass, or the drive a flywheel"
             )
         if self.rubs:
-            inertia_left = self.least_inertia(angles) + added
+            inertia_left = self.least_inertia_with_friction(angles) + added
             if not inertia_left.min() > 1e-6 * inertia.max():
                 raise jamming_error(angles, inertia_left)
 
@@ -211,13 +211,15 @@ class Stretch(Span):
         count = len(equation.loads.kind)
         self._piece, self._shift = np.zeros(count, np.int64), np.zeros(count)
         self._block, self._loads = equation.block, equation.loads
-        counter_clockwise = _enter_segment_at(
-            self._block, self._loads, equation.watch, angle_within(low, high), self._piece, self._shift
+        counter_clockwise = _find_segment_pieces(
+            self._block, self._loads, equation.watch, angle_identifying_segment(low, high), self._piece, self._shift
         )
         self._outward = bool(counter_clockwise == (way > 0.0))
         if equation.rubs:
             d = design_at(self._block, _STILL)
-            rod = design_motion(math.sin(angle_within(low, high)), math.cos(angle_within(low, high)), d).rod_1
+            rod = design_motion(
+                math.sin(angle_identifying_segment(low, high)), math.cos(angle_identifying_segment(low, high)), d
+            ).rod_1
             slide = d.branch * (1.0 if self._outward else -1.0)
             senses = Senses(way, float(slide), math.copysign(1.0, rod * way))
             arguments = self._block, _PUSH, self._loads, self._outward, senses, self._piece, self._shift
@@ -239,7 +241,7 @@ class Stretch(Span):
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool = False
     ) -> tuple[Array, FrictionState]:
         """Return accelerations with friction, and the resulting torque and heat, (n,)."""
-        return self._rubbing.accelerate(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
+        return self._rubbing.solve_acceleration(crank_angle, speed, torque, inertia, guess, by_speed=by_speed)
 
 
 class CrankEquation(Equation):
@@ -254,7 +256,7 @@ class CrankEquation(Equation):
         linkage = single_rotating_linkage(mechanism, linkage)
         self.rubs = mechanism.friction.acts
         if self.rubs:
-            require_driving(mechanism.friction, linkage)
+            require_no_locking(mechanism.friction, linkage)
         require_one_cylinder(mechanism.arrangement, "motion under a motor")
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0
         self.loads, self.watch = load_structure(mechanism), cycle_window(mechanism, Signal.TORQUE)
@@ -265,7 +267,7 @@ class CrankEquation(Equation):
         raw[[Raw.GRAVITY_X, Raw.GRAVITY_Y], _SPIN:] = 0.0
         for index, load in enumerate(mechanism.loads):
             for column, power in _SPEED_POWERS.items():
-                if not load.inertial and load.speed_power != power:
+                if not load.is_moving_mass and load.speed_power != power:
                     raw[Raw.END + LOAD_SLOTS * index :, column][:LOAD_SLOTS] = 0.0
         self.block = np.hstack([derived_blocks(np.ascontiguousarray(column), self.loads)[0][0] for column in raw.T])
         self.dead_centres = np.asarray(linkage.dead_centre_angles)
@@ -285,7 +287,7 @@ class CrankEquation(Equation):
         is_distinct = np.diff(angles, prepend=angles[-1] - TURN) > NEAREST
         return np.asarray(angles[is_distinct] if len(angles) > 1 else angles)
 
-    def stretch(self, index: int, way: float) -> Stretch:
+    def stretch_from_breakpoint(self, index: int, way: float) -> Stretch:
         """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond 2 pi."""
         if (index, way) not in self._stretches:
             low = float(self.breakpoints[index])
@@ -294,13 +296,13 @@ class CrankEquation(Equation):
             self._stretches[index, way] = Stretch(self, low, high, way)
         return self._stretches[index, way]
 
-    def inertia(self, crank_angle: Array) -> Array:
+    def moving_inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia, kg m^2, from the kinetic energy of the bodies; same shape as the crank angle."""
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
         return np.asarray(moving_inertia(sine, cosine, design_motion(sine, cosine, d), d))
 
-    def least_inertia(self, crank_angle: Array) -> Array:
+    def least_inertia_with_friction(self, crank_angle: Array) -> Array:
         """Return the minimum inertia that friction leaves, kg m^2; same shape as the crank angle."""
         d = design_at(self.block, _PUSH)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)
@@ -308,7 +310,7 @@ class CrankEquation(Equation):
         inertia: Array = np.minimum(*(least_inertia_with_friction(sine, cosine, m, d, side) for side in (mu, -mu)))
         return inertia
 
-    def height_energy(self, crank_angle: Array) -> Array:
+    def gravity_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity, J, counted from the crank pivot; same shape as the crank angle."""
         d = design_at(self.block, _STILL)
         sine, cosine = np.sin(crank_angle), np.cos(crank_angle)

@@ -15,7 +15,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.cylinder_machines import Member, member_machines
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns, half_at, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, half_of_cycle_at, machines_of_both_turns
 from .crank_equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 from .friction_torque import (
     ITERATIONS,
@@ -106,7 +106,7 @@ class ShaftEquation(Equation):
 
         self._stretches: dict[tuple[int, float], ShaftStretch] = {}
 
-    def stretch(self, index: int, way: float) -> Span:
+    def stretch_from_breakpoint(self, index: int, way: float) -> Span:
         """Return the stretch from breakpoint `index` to the next one; the last stretch extends beyond the cycle."""
         if (index, way) not in self._stretches:
             ends = [*self.breakpoints.tolist(), float(self.breakpoints[0]) + self.period]
@@ -119,27 +119,29 @@ class ShaftEquation(Equation):
             at, half = middle + member.lead, 0
             if len(equations) > 1:
                 inner, outer = self._linkage.dead_centre_angles
-                half = int(half_at(member.mechanism, inner, outer, np.array(at)))
+                half = int(half_of_cycle_at(member.mechanism, inner, outer, np.array(at)))
             cuts = equations[half].breakpoints
             local = float(cuts[0]) + (at - float(cuts[0])) % TURN
             index = int(np.searchsorted(cuts, local, side="right")) - 1
-            parts.append((equations[half].stretch(index, way), member.lead + local - at))
+            parts.append((equations[half].stretch_from_breakpoint(index, way), member.lead + local - at))
         return ShaftStretch(low, high, way, parts)
 
-    def inertia(self, crank_angle: Array) -> Array:
+    def moving_inertia(self, crank_angle: Array) -> Array:
         """Return the moving inertia of all cylinders, kg m^2; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].inertia(crank_angle + member.lead) for member, equations in parts))
+        return np.asarray(sum(equations[0].moving_inertia(crank_angle + member.lead) for member, equations in parts))
 
-    def least_inertia(self, crank_angle: Array) -> Array:
+    def least_inertia_with_friction(self, crank_angle: Array) -> Array:
         """Return the minimum inertia that friction leaves for all cylinders, kg m^2; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].least_inertia(crank_angle + member.lead) for member, equations in parts))
+        return np.asarray(
+            sum(equations[0].least_inertia_with_friction(crank_angle + member.lead) for member, equations in parts)
+        )
 
-    def height_energy(self, crank_angle: Array) -> Array:
+    def gravity_energy(self, crank_angle: Array) -> Array:
         """Return the potential energy of gravity of all cylinders, J; same shape as the crank angle."""
         parts = zip(self._members, self._equations, strict=True)
-        return np.asarray(sum(equations[0].height_energy(crank_angle + member.lead) for member, equations in parts))
+        return np.asarray(sum(equations[0].gravity_energy(crank_angle + member.lead) for member, equations in parts))
 
 
 def equation_of(mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> Equation:

@@ -48,7 +48,7 @@ class FlywheelDesign:
     drive: Drive
 
     @property
-    def needed(self) -> bool:
+    def is_needed(self) -> bool:
         """Whether the machine without a flywheel runs less evenly than required."""
         return self.inertia > 0.0
 
@@ -74,7 +74,7 @@ def design_flywheel(
         return (
             runner.under_constant_torque(flywheel)
             if drive is None
-            else runner.running_under(replace(drive, flywheel=flywheel))
+            else runner.run_under_drive(replace(drive, flywheel=flywheel))
         )
 
     @cache

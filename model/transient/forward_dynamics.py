@@ -61,7 +61,7 @@ class Progress:
 Stop = Literal["edge", "standstill", "table", "time"]
 
 
-def drive_of(mechanism: Mechanism, drive: Drive | None) -> Drive:
+def required_drive(mechanism: Mechanism, drive: Drive | None) -> Drive:
     """Return the drive, by default the mechanism's own. Raises `InputError` if there is no drive at all."""
     chosen = mechanism.drive if drive is None else drive
     if chosen is None:
@@ -95,7 +95,7 @@ def simulate(
     The result's `verdict` says why the motion ended. Raises `InputError` for values out of range and if nothing resists
     an acceleration, `AssemblyError` if the linkage does not rotate fully.
     """
-    drive = drive_of(mechanism, drive)
+    drive = required_drive(mechanism, drive)
     _require_options(duration, turns, steady, tolerance, samples)
     run = _Run(mechanism, linkage, drive, start, duration, tolerance, samples)
     before, passed = math.nan, 0
@@ -199,7 +199,7 @@ class _Run:
             return ended
         stretch = self._stretch(self.way)
         solution, stop = self._integrate(stretch)
-        self.recorder.add(stretch, self.turn, solution)
+        self.recorder.add_solution(stretch, self.turn, solution)
         self.time = float(solution.t[-1])
         self.local, self.speed, *works = (float(value) for value in solution.y[:, -1])
         self.works = np.array(works)
@@ -213,7 +213,7 @@ class _Run:
         return None
 
     def _stretch(self, way: float) -> Span:
-        return self.equation.stretch(self.index, way)
+        return self.equation.stretch_from_breakpoint(self.index, way)
 
     def _state_vector(self) -> Array:
         return np.array([self.local, self.speed, *self.works])
@@ -235,7 +235,7 @@ class _Run:
 
     def _speed_scale(self, speed: float) -> float:
         """Return the reference speed for errors while the crank is slow, rad/s."""
-        pull, resist = abs(float(self.drive.torque(0.0, self.equation.direction))), 0.0
+        pull, resist = abs(float(self.drive.torque_on_crank(0.0, self.equation.direction))), 0.0
         for stretch in self.equation.spans_of_cycle(self.equation.direction):
             terms = stretch.terms_at(np.linspace(stretch.low, stretch.high, 9))
             pull = max(pull, float(np.abs(terms.static).max()))
@@ -245,7 +245,7 @@ class _Run:
     def _integrate(self, stretch: Span) -> tuple[Any, Stop]:
         from scipy.integrate import solve_ivp
 
-        motor, added, direction = self.drive.torque, self.drive.inertia, self.equation.direction
+        motor, added, direction = self.drive.torque_on_crank, self.drive.inertia, self.equation.direction
         slowest, fastest, way, rubs = self.slowest, self.fastest, stretch.way, self.equation.rubs
         edge = stretch.high if way > 0.0 else stretch.low
         angle = np.empty(1)
@@ -270,7 +270,7 @@ class _Run:
             events.append(lambda _time, y: limit - way * y[1])
         for event, sense in zip(events, (1.0, -1.0, -1.0), strict=False):
             event.terminal, event.direction = True, sense
-        energy = float(self.equation.inertia(np.array(self.local)) + added) * self.scale**2
+        energy = float(self.equation.moving_inertia(np.array(self.local)) + added) * self.scale**2
         solution = solve_ivp(
             rate,
             (self.time, self.duration),
@@ -301,12 +301,12 @@ class _Run:
     def _leave_rest(self) -> Verdict | None:
         """Find the direction in which the crank starts from standstill; if it does not start, return the reason."""
         count = len(self.equation.breakpoints)
-        motor = float(self.drive.torque(0.0, self.equation.direction))
+        motor = float(self.drive.torque_on_crank(0.0, self.equation.direction))
         at_edge = abs(self.local - self._stretch(1.0).low) <= NEAREST
         before = (self.index - 1) % count if at_edge else self.index
         push = {}
         for way, index in ((1.0, self.index), (-1.0, before)):
-            stretch = self.equation.stretch(index, way)
+            stretch = self.equation.stretch_from_breakpoint(index, way)
             local = stretch.high if index != self.index else self.local
             static = self._breakaway_torque(stretch, local)
             push[way] = way * (motor - static) - _EPS * (abs(motor) + abs(static))

@@ -225,18 +225,18 @@ class CylinderFriction:
 
     def state_at(self, crank_angle: Array, speed: Array, acceleration: Array) -> FrictionState:
         """Return torque and heat for a motion (n,)."""
-        return self._fill(crank_angle, speed, acceleration, _Motor(np.empty(0), 0.0, 0), by_speed=True)
+        return self._fill_states(crank_angle, speed, acceleration, _Motor(np.empty(0), 0.0, 0), by_speed=True)
 
-    def accelerate(
+    def solve_acceleration(
         self, crank_angle: Array, speed: Array, torque: Array, inertia: float, guess: Array, *, by_speed: bool
     ) -> tuple[Array, FrictionState]:
         """Return the accelerations under a motor torque, and torque and heat of the resulting motion."""
         accelerations, motor = np.array(guess), _Motor(torque, inertia, ITERATIONS)
-        state = self._fill(crank_angle, speed, accelerations, motor, by_speed=by_speed)
+        state = self._fill_states(crank_angle, speed, accelerations, motor, by_speed=by_speed)
         require_inertia_left(crank_angle, state.least + inertia)
         return accelerations, state
 
-    def _fill(
+    def _fill_states(
         self, angle: Array, speed: Array, accelerations: Array, motor: _Motor, *, by_speed: bool
     ) -> FrictionState:
         out = np.empty((6, len(angle)))

@@ -20,7 +20,7 @@ from ..cycle.cycle import Cycle, cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
-from ..quadrature import gauss
+from ..quadrature import gauss_nodes_and_weights
 from .crank_equation import TURN
 
 Function = Callable[[Array], ArrayLike]
@@ -55,7 +55,7 @@ class SpeedOverAngle:
     slope: Function
 
     @classmethod
-    def table(cls, angles: Sequence[float], speeds: Sequence[float]) -> SpeedOverAngle:
+    def from_table(cls, angles: Sequence[float], speeds: Sequence[float]) -> SpeedOverAngle:
         """Return the periodic cubic spline through a table; angles: increasing, rad, spanning less than a turn."""
         at, values = _table_as_arrays("crank angles", angles, speeds)
         if at[-1] - at[0] >= TURN:
@@ -81,7 +81,7 @@ class SpeedOverTime:
     angle: Function | None = None
 
     @classmethod
-    def table(cls, times: Sequence[float], speeds: Sequence[float], *, start: float = 0.0) -> SpeedOverTime:
+    def from_table(cls, times: Sequence[float], speeds: Sequence[float], *, start: float = 0.0) -> SpeedOverTime:
         """Return the cubic spline through a table; times: increasing, s. start: crank angle at the first time, rad."""
         at, values = _table_as_arrays("times", times, speeds)
         from scipy.interpolate import CubicSpline
@@ -110,7 +110,7 @@ def prescribed_over_angle(
     first = _function_values("speed", motion.speed, np.array([start]))[0]
     way = math.copysign(1.0, first)
     angle = start + way * TURN * np.linspace(0.0, turns, max(2, math.ceil(samples * turns)) + 1)
-    nodes, weights = gauss(4)
+    nodes, weights = gauss_nodes_and_weights(4)
     step = np.diff(angle)[:, None]
     inner_speeds = _function_values("speed", motion.speed, (angle[:-1, None] + step * nodes).ravel())
     speed, slope = _function_values("speed", motion.speed, angle), _function_values("slope", motion.slope, angle)

@@ -117,7 +117,7 @@ class Recorder:
         self._linkage = single_rotating_linkage(mechanism, linkage)
         self._parts: list[Array] = []
 
-    def add(self, stretch: Span, turn: int, solution: Any) -> None:
+    def add_solution(self, stretch: Span, turn: int, solution: Any) -> None:
         """Add the solution within a stretch; add its first point only if it is the very first."""
         count = np.ceil(np.abs(np.diff(solution.y[0])) * (self._samples / TURN)).astype(int)
         times = [
@@ -137,9 +137,9 @@ class Recorder:
         terms, added = stretch.terms_at(np.ascontiguousarray(local)), self._drive.inertia
         direction = self._equation.direction
         speed_in_range = np.clip(direction * speed, *speed_range(self._drive))
-        motor = self._drive.torque(direction * speed_in_range, direction)
-        acceleration = moving * (motor - terms.torque(speed, 0.0)) / (terms.inertia + added)
-        torque = terms.torque(speed, acceleration)
+        motor = self._drive.torque_on_crank(direction * speed_in_range, direction)
+        acceleration = moving * (motor - terms.required_torque(speed, 0.0)) / (terms.inertia + added)
+        torque = terms.required_torque(speed, acceleration)
         if self._equation.rubs:
             if moving:
                 motion = np.ascontiguousarray(local), np.ascontiguousarray(speed), motor, added
@@ -159,8 +159,8 @@ class Recorder:
                     slider.slider_position,
                     slider.slider_velocity,
                     slider.slider_acceleration,
-                    0.5 * (self._equation.inertia(local) + added) * speed**2,
-                    self._equation.height_energy(local),
+                    0.5 * (self._equation.moving_inertia(local) + added) * speed**2,
+                    self._equation.gravity_energy(local),
                     motor_work,
                     load_work,
                     heat[0] if heat else np.zeros(len(time)),

@@ -27,7 +27,7 @@ from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import TURN, cycle_turns
 from ..signals.first_of_equal_maxima import angle_in_cycle
-from ..signals.panel_polynomials import Extreme, panels_of, peak_of
+from ..signals.panel_polynomials import Extreme, larger_extreme, resolve_curves
 
 _PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 360
@@ -139,7 +139,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     profile_knots = [start + np.mod(knots - start, TURN) + turn * TURN for turn in range(turns)]
     ends = np.unique(np.concatenate([cuts, *profile_knots, np.linspace(start, end, 1 + turns * _PIECES)]))
     sizes = np.abs(curve_rows(np.linspace(start, end, _SAMPLES))).max(axis=1)
-    panels = panels_of(curve_rows, ends, np.where(sizes > 0.0, sizes, 1.0))
+    panels = resolve_curves(curve_rows, ends, np.where(sizes > 0.0, sizes, 1.0))
     least, greatest = panels.extremes(0)
     period = TURN * panels.mean(_TIME)
     peaks = {name: _larger_magnitude(panels.extremes(3 + row), turns) for row, name in enumerate(_SIZES)}
@@ -164,5 +164,5 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
 
 def _larger_magnitude(extremes: tuple[Extreme, Extreme], turns: int) -> Extreme:
     """Return the larger magnitude of both extremes."""
-    top = peak_of(extremes, turns * TURN)
+    top = larger_extreme(extremes, turns * TURN)
     return Extreme(abs(top.value), angle_in_cycle(top.angle, turns * TURN))

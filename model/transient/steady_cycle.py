@@ -120,17 +120,17 @@ class PeriodicTurn:
         """Return the mean over the crank angle of values at the nodes."""
         return float(np.abs(self.width) @ (values @ WEIGHTS)) / self.equation.period
 
-    def integral(self, values: Array) -> tuple[Array, Array]:
+    def running_integral(self, values: Array) -> tuple[Array, Array]:
         """Return the integral over the crank angle from the start of the turn: at the panels' starts and the nodes."""
         panels = self.width * (values @ WEIGHTS)
         starts = np.concatenate([[0.0], np.cumsum(panels)[:-1]])
         return starts, starts[:, None] + self.width[:, None] * (values @ INTEGRALS.T)
 
-    def zeros(self, values: Array) -> list[tuple[int, float, bool]]:
+    def zero_crossings(self, values: Array) -> list[tuple[int, float, bool]]:
         """Return where values at the nodes cross zero: panel, position from 0 to 1, and whether they rise."""
         from scipy.optimize import brentq
 
-        first, last = self.at_edges(values).T
+        first, last = self.panel_edge_values(values).T
         at, known = np.concatenate([[-1.0], 2.0 * NODES - 1.0, [1.0]]), np.column_stack([first, values, last])
         found = []
         for p, i in np.argwhere(known[:, :-1] * known[:, 1:] < 0.0).tolist():
@@ -138,7 +138,7 @@ class PeriodicTurn:
             found.append((p, 0.5 * (1.0 + float(x)), bool(known[p, i] < 0.0)))
         return found
 
-    def at_edges(self, values: Array) -> Array:
+    def panel_edge_values(self, values: Array) -> Array:
         """Return values at the nodes extrapolated to start and end of each panel, (panels, 2)."""
         edges: Array = values @ FIT.T @ legendre.legvander([-1.0, 1.0], DEGREE).T
         return edges
@@ -154,7 +154,9 @@ class PeriodicTurn:
         t, speed = self.terms, self.way * np.sqrt(2.0 * energy)
         torque, slope = motor(speed)
         total = t.inertia + inertia
-        return (torque - t.torque(speed, 0.0)) / total, ((slope - t.drag) / speed - 2.0 * (t.spin + t.square)) / total
+        return (torque - t.required_torque(speed, 0.0)) / total, (
+            (slope - t.drag) / speed - 2.0 * (t.spin + t.square)
+        ) / total
 
     def energy_slope_and_derivatives(
         self, energy: Array, motor: Torque, inertia: float, added: float
@@ -178,11 +180,11 @@ class PeriodicTurn:
         return rate, by_energy, by_torque
 
     @property
-    def speed_dependent(self) -> bool:
+    def depends_on_speed(self) -> bool:
         """Whether a load, or friction, depends on the motion of the crank."""
-        return self.equation.rubs or self.terms.speed_dependent
+        return self.equation.rubs or self.terms.depends_on_speed
 
-    def friction(self, speed: Array, rate: Array | float) -> Array:
+    def friction_torque(self, speed: Array, rate: Array | float) -> Array:
         """Return the torque at the nodes, N m, that friction adds at speeds, rad/s, and accelerations, rad/s^2."""
         torque = np.zeros(self.angle.shape)
         if not self.equation.rubs:
@@ -191,7 +193,7 @@ class PeriodicTurn:
         for span, panels in self.spans:
             state = span.friction_state(*(values[panels].ravel() for values in (self.angle, speed, rate)))
             torque[panels] = state.torque.reshape(torque[panels].shape)
-        frictionless: Array = self.terms.torque(speed, rate)
+        frictionless: Array = self.terms.required_torque(speed, rate)
         return torque - frictionless
 
     def with_panels_at_contact_changes(self, speed: float) -> PeriodicTurn:
@@ -236,7 +238,7 @@ class PeriodicTurn:
             ):
                 turn, moves = moved, moves - 1
                 continue
-            rough = turn._rough(1.0 / np.sqrt(profile.energy)) | turn._rough(profile.rate)
+            rough = turn._unresolved_panels(1.0 / np.sqrt(profile.energy)) | turn._unresolved_panels(profile.rate)
             if not rough.any():
                 return turn, profile
             if len(turn.width) + rough.sum() > len(self.width) + _MOST:
@@ -246,10 +248,10 @@ class PeriodicTurn:
                     f"panels do not resolve, for example at a crank angle of {at:.6g} deg; smooth the load there, "
                     "or add a flywheel"
                 )
-            turn = turn.cut(turn.low[rough] + 0.5 * turn.width[rough])
+            turn = turn.cut_at_angles(turn.low[rough] + 0.5 * turn.width[rough])
         return None
 
-    def cut(self, angles: Array) -> PeriodicTurn:
+    def cut_at_angles(self, angles: Array) -> PeriodicTurn:
         """Return the same turn with panels that also end at additional crank angles, (n,), rad."""
         cuts = (*self.cuts, *(float(angle) for angle in angles))
         return PeriodicTurn(self.equation, self.dimensions, cuts, self.contacts)
@@ -283,7 +285,7 @@ class PeriodicTurn:
             return None
         return PeriodicTurn(self.equation, self.dimensions, self.cuts, tuple(contacts_found))
 
-    def _rough(self, values: Array) -> Mask:
+    def _unresolved_panels(self, values: Array) -> Mask:
         """Return the panels (panels,) on which neither the values nor their integral are resolved."""
         tail, size, width = last_coefficients_magnitude(values), np.abs(values), np.abs(self.width)
         negligible = tail * width <= _NEGLIGIBLE * float(width @ (size @ WEIGHTS))

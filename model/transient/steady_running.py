@@ -17,7 +17,7 @@ from .balanced_speed import balanced_speed
 from .constant_torque_motion import cut_at_energy_minima, refine_at_energy_minima, turn_by_energy_integral
 from .crank_equation import TURN
 from .crankshaft_equation import equation_of
-from .forward_dynamics import drive_of
+from .forward_dynamics import required_drive
 from .simulated_motion import MotorRun
 from .steady_cycle import Guess, PeriodicTurn, Profile, Torque
 
@@ -60,13 +60,13 @@ class Runner:
         dimensions = (float(linkage.crank), float(linkage.rod), float(linkage.offset))
         self.turn = PeriodicTurn(self.equation, dimensions)
         self.speed = abs(mechanism.speed)
-        self.viscous = self.turn.speed_dependent
+        self.viscous = self.turn.depends_on_speed
         self.works = may_do_work_over_a_turn(replace(mechanism, acceleration=0.0))
 
-    def running_under(self, drive: Drive) -> SteadyRunning:
+    def run_under_drive(self, drive: Drive) -> SteadyRunning:
         """Return the steady running under a motor: see `steady_running`."""
         self.equation.require_inertia(drive.inertia)
-        motor, guess = self._motor(drive), self.balanced_speed(drive)
+        motor, guess = self._motor_torque(drive), self.balanced_speed(drive)
         solved = self.turn.solve_on_fine_panels(motor, drive.inertia, lambda turn: turn.constant_speed_guess(guess))
         if solved is None or not solved[1].memory < 1.0:
             raise InputError(
@@ -101,7 +101,7 @@ class Runner:
         turn, solved = self.turn, None
         for finer in (cut_at_energy_minima, refine_at_energy_minima):
             turn = finer(turn, turn_by_energy_integral(turn, inertia, self.speed).load)
-            solved = turn.solve_on_fine_panels(_no_motor, inertia, guess, mean_speed=self.speed)
+            solved = turn.solve_on_fine_panels(_zero_motor_torque, inertia, guess, mean_speed=self.speed)
             if solved is not None:
                 break
         else:
@@ -112,7 +112,7 @@ class Runner:
         turn, profile = solved
         if not self.works:  # cancelling terms leave rounding errors
             profile = replace(profile, added=0.0)
-        return _steady_result(turn, profile, _no_motor, inertia)
+        return _steady_result(turn, profile, _zero_motor_torque, inertia)
 
     def least_and_greatest_speed(self, inertia: float) -> tuple[float, float]:
         """Return the minimum and maximum speed, rad/s, under the constant torque that maintains the mean speed.
@@ -130,10 +130,10 @@ class Runner:
             if self.viscous or coast.guess is None or not coast.stops:
                 raise
             energy, start, added = coast.guess
-            rate = turn.energy_slope_and_derivative(energy, _no_motor, inertia)[0] + added / (
+            rate = turn.energy_slope_and_derivative(energy, _zero_motor_torque, inertia)[0] + added / (
                 turn.terms.inertia + inertia
             )
-            stopping = _steady_result(turn, Profile(energy, start, rate, added, 1.0), _no_motor, inertia)
+            stopping = _steady_result(turn, Profile(energy, start, rate, added, 1.0), _zero_motor_torque, inertia)
             return 0.0, float(np.abs(stopping.speed).max())
         return float(np.abs(running.speed).min()), float(np.abs(running.speed).max())
 
@@ -143,30 +143,30 @@ class Runner:
         Only a stable speed counts: at a higher speed the loads exceed the motor. Among several, the one closest to the
         mechanism's speed counts, or the lowest if that speed is 0. Raises `InputError` if there is none.
         """
-        return balanced_speed(self.turn, drive, self._motor(drive), self.speed)
+        return balanced_speed(self.turn, drive, self._motor_torque(drive), self.speed)
 
     def energy_range_at_constant_speed(self, speed: float) -> float:
         """Return the range over a turn of the integral of mean T - T at constant speed, J. speed: magnitude, rad/s."""
         turn, pace = self.turn.with_panels_at_contact_changes(speed), np.array(self.turn.way * speed)
-        torque = turn.terms.torque(pace, 0.0) + turn.friction(pace, 0.0)
-        starts, nodes = turn.integral(turn.mean(torque) - torque)
+        torque = turn.terms.required_torque(pace, 0.0) + turn.friction_torque(pace, 0.0)
+        starts, nodes = turn.running_integral(turn.mean(torque) - torque)
         change = float(max(starts.max(), nodes.max()) - min(starts.min(), nodes.min()))
         rounding = _ROUNDING * turn.equation.period * float(np.abs(torque).max())
         return change if change > rounding else 0.0
 
-    def _motor(self, drive: Drive) -> Torque:
+    def _motor_torque(self, drive: Drive) -> Torque:
         """Return the drive's torque; beyond a table it keeps the last value, so that an iteration may go there."""
         way, (slowest, fastest) = self.turn.way, speed_range(drive)
 
         def motor(speed: Array) -> tuple[Array, Array]:
             speed_in_range = way * np.clip(way * speed, slowest, fastest)
-            slope = drive.gear_ratio**2 * drive.torque_law.slope(drive.gear_ratio * way * speed_in_range)
-            return drive.torque(speed_in_range, way), np.where(speed_in_range == speed, slope, 0.0)
+            slope = drive.gear_ratio**2 * drive.torque_law.torque_slope(drive.gear_ratio * way * speed_in_range)
+            return drive.torque_on_crank(speed_in_range, way), np.where(speed_in_range == speed, slope, 0.0)
 
         return motor
 
 
-def _no_motor(speed: Array) -> tuple[Array, Array]:
+def _zero_motor_torque(speed: Array) -> tuple[Array, Array]:
     return np.zeros(np.shape(speed)), np.zeros(np.shape(speed))
 
 
@@ -198,8 +198,8 @@ def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: flo
 
     The first point is repeated at the end, a cycle later.
     """
-    times, node_times = turn.integral(pace)
-    first_rates = turn.at_edges(profile.rate)[:, 0]
+    times, node_times = turn.running_integral(pace)
+    first_rates = turn.panel_edge_values(profile.rate)[:, 0]
     starts = np.stack([turn.low, times, profile.start, first_rates])
     nodes = np.stack([part.ravel() for part in (turn.angle, node_times, profile.energy, profile.rate)])
     extremes = np.array(
@@ -210,7 +210,7 @@ def _panel_points(turn: PeriodicTurn, profile: Profile, pace: Array, period: flo
                 profile.start[p] + turn.value_and_integral(profile.rate, p, place)[1],
                 0.0,
             )
-            for p, place, _ in turn.zeros(profile.rate)
+            for p, place, _ in turn.zero_crossings(profile.rate)
         ]
     ).reshape(-1, 4)
     points = np.concatenate([starts, nodes, extremes.T], axis=1)
@@ -226,4 +226,4 @@ def steady_running(mechanism: Mechanism, linkage: Linkage, drive: Drive | None =
     speed. Raises `InputError` if there is none: the motor is too weak, nothing limits the speed, or the torque table
     ends too soon.
     """
-    return Runner(mechanism, linkage).running_under(drive_of(mechanism, drive))
+    return Runner(mechanism, linkage).run_under_drive(required_drive(mechanism, drive))

@@ -16,7 +16,7 @@ from ..machine.lever_cylinder import buckling_number, piston_areas
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
-from ..machine.raw_numbers_of_designs import LEVER, START, Numbers, raw_numbers_of_designs
+from ..machine.raw_numbers_of_designs import LEVER, START, RawNumbers, raw_machine_numbers
 from ..machine.varying_numbers import number_at
 from ..swing.swing import Swing
 from .peaks import LeverBatch
@@ -30,10 +30,10 @@ _MARGIN = 1e-9
 @memoise_by_batch
 def lever_batch(
     mechanism: Mechanism, designs: Array, /, swing: Swing, *, gradients: bool
-) -> tuple[LeverBatch, Numbers]:
+) -> tuple[LeverBatch, RawNumbers]:
     """Return levers of designs (n, 3 + k), and the raw numbers that these set. gradients: whether to step each."""
     raw, loads = raw_inputs_with_all_features(mechanism)
-    numbers = raw_numbers_of_designs(mechanism, designs, limit=10**9, gradients=gradients)
+    numbers = raw_machine_numbers(mechanism, designs, slot_count=10**9, gradients=gradients)
     inside = np.flatnonzero(numbers.columns < len(raw))
     values = np.ascontiguousarray(numbers.values[:, inside])
     blocks, steps = derived_blocks(raw, loads, numbers.columns[inside], values, steps=gradients)

@@ -17,7 +17,7 @@ from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
 from ..signals.cycle_segments import Segments
 from ..signals.peak_search import find_maxima
-from ..swing.law import NO_TABLE, code_of, corners
+from ..swing.law import NO_TABLE, corner_times, law_code
 from ..swing.swing_types import LeverLaw
 from .curves import CURVES_OF_SWING, CURVES_OF_TURN, Complexes, fill_curves_of_swing, fill_curves_of_turn
 from .states import LeverNumbers
@@ -54,7 +54,7 @@ class LeverBatch:
     @property
     def cuts(self) -> Array:
         """Breakpoints of the curves, which do not move: fractions of the time, or places of `turn_state`."""
-        return np.arange(PIECES + 1.0) if self.of_full_turn else np.array([0.0, *corners(self.law), 1.0])
+        return np.arange(PIECES + 1.0) if self.of_full_turn else np.array([0.0, *corner_times(self.law), 1.0])
 
     @cached_property
     def tables(self) -> tuple[Complexes, ...]:
@@ -77,7 +77,7 @@ class LeverBatch:
         if self.of_full_turn:
             fill_curves_of_turn(table, lever, curve, places, np.ascontiguousarray(probe), found)
         else:
-            law = code_of("slow" if slow else self.law)
+            law = law_code("slow" if slow else self.law)
             fill_curves_of_swing(table, law, NO_TABLE, lever, curve, places, np.ascontiguousarray(probe), found)
         return found
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..kernel.arithmetic import analytic, inverse, root
-from ..swing.law import NO_TABLE, code_of, travel_and_derivatives_at
+from ..swing.law import NO_TABLE, law_code, travel_and_derivatives_at
 from ..swing.swing_types import LeverLaw
 from .lever import Motion, angle_error_at, closing_length, cylinder_length, lever_angle_at, motion_at
 
@@ -104,7 +104,7 @@ def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> Lever
 
     probe: fractions on the same side of the law's corners.
     """
-    return state_in_swing(c, code_of(law), NO_TABLE, share, probe)
+    return state_in_swing(c, law_code(law), NO_TABLE, share, probe)
 
 
 @analytic

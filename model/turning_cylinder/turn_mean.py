@@ -6,7 +6,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
-from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve
+from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve_panels
 from .curves import Complexes
 from .peaks import LeverBatch
 from .turn import PIECES
@@ -30,7 +30,7 @@ def rms_torque(batch: LeverBatch, *, gradients: bool = False) -> tuple[Array, Ar
         np.maximum.at(size, lever, np.abs(curve).max(axis=1))
         return last_coefficients_magnitude(curve) > _ROUGH * size[lever], []
 
-    low, width, lever, piece = resolve(sample, piece, np.ones(len(piece)), lever, piece, deepest=_DEEPEST)
+    low, width, lever, piece = resolve_panels(sample, piece, np.ones(len(piece)), lever, piece, deepest=_DEEPEST)
     places, weights = low[:, None] + width[:, None] * NODES, width[:, None] * WEIGHTS / _TURN
 
     def mean_square(table: Complexes) -> Complexes:

@@ -11,7 +11,7 @@ from typing import Protocol
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.raw_numbers_of_designs import unit_of
+from ...model.machine.raw_numbers_of_designs import unit_of_number
 from ..bounds_over_ranges import CLEAR, KnownBounds, QuantityBounds
 from ..bounds_over_ranges import LengthRanges as Box
 from ..kinds import LENGTH, Kind, kind_in
@@ -150,7 +150,7 @@ class Formulas:
         self._quantities: dict[str, Quantity] = QUANTITIES | {item.name: item for item in custom}
         self._places = {name: place for place, name in enumerate((*DIMENSIONS, *(v.name for v in machine.varying)))}
         self._kinds = dict.fromkeys(DIMENSIONS, LENGTH)
-        self._kinds |= {item.name: kind_of_symbol(unit_of(item.paths[0])) for item in machine.varying}
+        self._kinds |= {item.name: kind_of_symbol(unit_of_number(item.paths[0])) for item in machine.varying}
         self._has_ranges = ranges is not None
         self._intervals = {name: Interval(ends.lower, ends.upper) for name, ends in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}

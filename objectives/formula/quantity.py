@@ -12,7 +12,7 @@ import numpy as np
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.raw_numbers_of_designs import require_width
+from ...model.machine.raw_numbers_of_designs import require_design_columns
 from ...model.machine.varying_numbers import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
@@ -87,7 +87,7 @@ class FormulaQuantity(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the formula for designs (n, 3 + k); see `Quantity`."""
-        require_width(mechanism, dimensions)
+        require_design_columns(mechanism, dimensions)
         part_values = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
         return self.combined(part_values, mechanism, dimensions, gradients=gradients)
 
@@ -125,7 +125,7 @@ class FormulaQuantity(Quantity):
         """Return the formula as the maximum of smooth pieces; see `Quantity`."""
         if self.is_smooth:
             return super().pieces(mechanism, dimensions)
-        require_width(mechanism, dimensions)
+        require_design_columns(mechanism, dimensions)
         n, d = dimensions.shape
         leaves: dict[str, TwoSided] = {}
         for place, part in enumerate(self.parts):

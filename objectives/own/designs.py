@@ -111,7 +111,7 @@ class Designs:
             return self.crank_angle_ratio
         if not ONE_TIMING.is_met(self.mechanism):
             raise InputError(f"time_ratio: {ONE_TIMING.missing}")
-        ratio = scaled_stroke_times(self.mechanism, self.crank, self.rod, self.offset).ratio
+        ratio = scaled_stroke_times(self.mechanism, self.crank, self.rod, self.offset).outward_to_inward_ratio
         return cast(Numbers, np.where(np.real(ratio) >= 1.0, ratio, 1.0 / ratio))
 
     @property
@@ -244,9 +244,9 @@ class Designs:
         if profile is None:
             return mean, self.mechanism.acceleration, 0.0
         at = np.real(angle)
-        ratio: Any = profile.ratio(at)
-        slope: Any = profile.slope(at)
-        curvature = profile.curvature(at)
+        ratio: Any = profile.speed_ratio(at)
+        slope: Any = profile.speed_ratio_slope(at)
+        curvature = profile.speed_ratio_curvature(at)
         if np.iscomplexobj(angle):
             step = 1j * np.imag(angle)
             ratio, slope = ratio + step * slope, slope + step * curvature

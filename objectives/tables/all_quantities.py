@@ -13,7 +13,7 @@ from ...model.kinematics.negligible_offset import offset_without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.loaded_stroke import loaded_stroke
 from ...model.machine.mechanism import Mechanism
-from ...model.signals.averages import average_torque
+from ...model.signals.averages import torque_averages
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
 from ..average_torque import MEAN_TORQUE, RMS_TORQUE
@@ -56,7 +56,7 @@ def analysis_columns(
     linkage.require_full_rotation()
     inner, outer = linkage.dead_centre_angles
     peak_torque, peak_torque_angle = first_peaks(mechanism, Signal.TORQUE, dimensions)
-    averages = average_torque(mechanism, dimensions)
+    averages = torque_averages(mechanism, dimensions)
     varying = [varying_column(item) for item in mechanism.varying]
     columns: dict[str, NDArray[Any]] = {
         "crank_mm": 1e3 * dimensions[:, 0],

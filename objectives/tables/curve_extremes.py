@@ -25,7 +25,7 @@ from ...model.linkage.single_linkage import single_rotating_linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
-from ...model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
+from ...model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
 from ..kinds import Kind
 from ..machine_needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..position_error import POSITION_ERROR, POSITION_ERROR_RSS
@@ -62,8 +62,8 @@ _NEEDS: dict[str, tuple[Need, ...]] = {
 class Extreme:
     """An extreme value of a curve, SI, with crank angle in the cycle, rad, and slider position, m.
 
-    Among equal values, the first counts (`first_greatest`). Angle and position are NaN for a constant curve; all
-    three are NaN for a curve that friction leaves undetermined at some crank angle.
+    Among equal values, the first counts (`index_of_first_maximum`). Angle and position are NaN for a constant curve;
+    all three are NaN for a curve that friction leaves undetermined at some crank angle.
     """
 
     value: float
@@ -214,7 +214,7 @@ def _extremes_at_ends(
             places, heights = _maxima_at_cuts([sign * values[row] for values in samples], pieces)
             away = np.all(np.abs(np.subtract.outer(angles[candidates], places)) > 4.0 * _INSET, axis=1)
             places = np.concatenate([[angle], places, angles[candidates][away]])
-            first = first_greatest(np.concatenate([[value], heights, tops[candidates][away]]), places, period)
+            first = index_of_first_maximum(np.concatenate([[value], heights, tops[candidates][away]]), places, period)
             refined[row] = (sign * value + 0.0, angle_in_cycle(float(places[first]), period))
         ends.append(refined)
     return ends[0], ends[1]

@@ -103,7 +103,7 @@ def columns_of(
     elif mechanism.speed_profile is not None:
         raise InputError(
             "converting times to crank angles needs a constant speed; got a speed profile, "
-            f"{mechanism.speed_profile.text}; give crank angles"
+            f"{mechanism.speed_profile.description}; give crank angles"
         )
     measured = [name for name in columns if columns[name].name not in (CRANK_ANGLE, TIME_OF)]
     if not measured:

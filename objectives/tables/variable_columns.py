@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.raw_numbers_of_designs import unit_of
+from ...model.machine.raw_numbers_of_designs import unit_of_number
 from ...model.machine.varying_numbers import Varying
 from ..kinds import KINDS, LENGTH, DisplayUnit
 
@@ -17,7 +17,7 @@ def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
     The key is the name without a leading "mechanism", with underscores, and the unit: "mechanism.slider.mass" becomes
     slider_mass_kg, "load.1.force" load_1_force_N. A fraction of a dimension has no unit.
     """
-    unit = next(kind.metric for kind in KINDS if kind.unit == unit_of(varying.paths[0]))
+    unit = next(kind.metric for kind in KINDS if kind.unit == unit_of_number(varying.paths[0]))
     name = re.sub("[^a-z0-9]+", "_", varying.name.removeprefix("mechanism.").lower()).strip("_")
     return name + unit.suffix, unit
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.raw_numbers_of_designs import unit_of
+from ...model.machine.raw_numbers_of_designs import unit_of_number
 from ..problem.problem import Problem, require_problem
 from .missing_framework import missing_framework_error
 
@@ -38,7 +38,7 @@ def openmdao_component(problem: Problem, quantities: Sequence[str] | None = None
     names = list(quantities)
     varying = problem.mechanism.varying
     inputs = dict.fromkeys(DIMENSIONS, "m")
-    inputs |= {re.sub(r"[^A-Za-z0-9]+", "_", item.name).strip("_"): unit_of(item.paths[0]) for item in varying}
+    inputs |= {re.sub(r"[^A-Za-z0-9]+", "_", item.name).strip("_"): unit_of_number(item.paths[0]) for item in varying}
     ranges = [problem.crank, problem.rod, problem.offset]
     starts = [0.5 * (ends.lower + ends.upper) for ends in ranges]
     starts += [0.5 * (item.lower + item.upper) for item in varying]

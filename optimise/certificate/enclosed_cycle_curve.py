@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array, Mask
 from ...model.dynamics.speed_ratio import speed_ratio_at, speed_ratio_of
-from ...model.dynamics.torque import Forces, forces
+from ...model.dynamics.torque import Forces, forces_without_friction
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
@@ -58,7 +58,7 @@ def machines_with_separate_peaks(mechanism: Mechanism, kind: Signal) -> tuple[Me
     if kind in SUMS or every is None or len(every.phases) == 1:
         return (mechanism,)
     apart = (
-        Arrangement(phases=(phase,), banks=(every.bank(k),), places=(every.place(k),))
+        Arrangement(phases=(phase,), banks=(every.bank_angle(k),), places=(every.shaft_position(k),))
         for k, phase in enumerate(every.phases)
     )
     return tuple(
@@ -92,7 +92,7 @@ class CycleCurve:
         self.pace = speed_ratio_of(mechanism)
         self.partial = self.watch.strokes != 0 or self.watch.start > 0.0 or self.watch.end < 1.0
         self.jumps = self.watch.split and self.kind not in (Signal.TORQUE, Signal.POWER)
-        self.steps = self.kind.needs_forces and any(load.steps for load in mechanism.with_largest_variables.loads)
+        self.steps = self.kind.needs_forces and any(load.has_steps for load in mechanism.with_largest_variables.loads)
         self.shares = self.partial and self.kind in _ERRORS
 
     def peak_positions(self, designs: Array) -> Array:
@@ -226,7 +226,7 @@ class CycleCurve:
     ) -> tuple[Enclosure, Enclosure]:
         sine, cosine, local, m = place
         load = machine.load(m, d, block, local, outward)
-        f = forces(sine, cosine, m, d, load)
+        f = forces_without_friction(sine, cosine, m, d, load)
         if self.kind not in (Signal.TORQUE, Signal.POWER):
             x, y = read(f, sine, cosine, m, d)
             return x, 0.0 * outward + y

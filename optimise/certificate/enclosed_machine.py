@@ -15,7 +15,7 @@ from ...model.machine.loads.load import Enters
 from ...model.machine.loads.registry import force_of
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Loads
-from ...model.machine.raw_numbers_of_designs import nominal_number, raw_numbers_by_slot
+from ...model.machine.raw_numbers_of_designs import nominal_raw_number, raw_numbers_by_slot
 from .enclosed_gas_force import gas_force
 from .enclosure import UNIT, Enclosure, interval, select
 
@@ -35,7 +35,7 @@ def parameters_over_boxes(mechanism: Mechanism, columns: list[Enclosure]) -> Num
 
 def parameter_lookup(mechanism: Mechanism, numbers: Numbers) -> Callable[[int], Any]:
     """Return a function from slot to machine parameter, enclosed over boxes if designs set it."""
-    return lambda slot: numbers[slot] if slot in numbers else nominal_number(mechanism, slot)
+    return lambda slot: numbers[slot] if slot in numbers else nominal_raw_number(mechanism, slot)
 
 
 def unboundable_load_reason(mechanism: Mechanism) -> str:

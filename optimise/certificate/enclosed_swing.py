@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.dynamics.torque import add_crank_couple, balance_before_pin_force, forces
+from ...model.dynamics.torque import add_crank_couple, balance_before_pin_force, forces_without_friction
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.design import Design
@@ -21,8 +21,8 @@ from ...model.machine.raw_machine_vector import raw_inputs_with_all_features
 from ...model.machine.raw_numbers_of_designs import START
 from ...model.signals.position_error import influences, worst_case
 from ...model.signals.signals import design_motion
-from ...model.swing.end_angles import ends_of, swing_start_column
-from ...model.swing.law import code_of, corners, travel_and_derivatives_at
+from ...model.swing.end_angles import swing_ends, swing_start_column
+from ...model.swing.law import corner_times, law_code, travel_and_derivatives_at
 from ...model.swing.peaks import negated_least_drive_peaks, swing_peaks
 from ...model.swing.slider_pin_force import frictionless_pin_force, pin_distance_from_crank_line
 from ...model.swing.swing import Swing, without_inertia
@@ -71,9 +71,9 @@ class SwingBoxes:
         self.slider = swing.driver == "slider"
         self.per_time = 0.0 if self.swing.duration is None else 1.0 / self.swing.duration
         loads = mechanism.with_largest_variables.loads
-        self.needs_angle = any(load.on_crank or load.turns for load in loads)
-        self.steps = any(load.steps for load in loads)
-        self.corners = corners(self.swing.law, self.swing.table)
+        self.needs_angle = any(load.on_crank or load.has_knots_along_rotation for load in loads)
+        self.steps = any(load.has_steps for load in loads)
+        self.corners = corner_times(self.swing.law, self.swing.law_pieces)
 
     def ends(self, numbers: Numbers, d: Design) -> _Ends:
         """Return both ends of the swing."""
@@ -101,7 +101,7 @@ class SwingBoxes:
         probe: fractions on the same side of a corner in the law. back: 1 on the return stroke.
         """
         direction = 1.0 - 2.0 * back
-        way, way_1, way_2, _ = travel_and_derivatives_at(code_of(self.swing.law), self.swing.table, share, probe)
+        way, way_1, way_2, _ = travel_and_derivatives_at(law_code(self.swing.law), self.swing.law_pieces, share, probe)
         return self.state_at_travel(
             numbers, np.where(back > 0.5, 1.0 - way, way), direction, direction * way_1, direction * way_2
         )
@@ -139,7 +139,7 @@ class SwingBoxes:
         load = self.machine.load(at.m, at.d, at.block, at.angle, at.outward)
         on_crank = self.machine.crank_torque_of_loads(at.m, at.d, at.block, at.angle, at.outward, at.way)
         if not self.slider:
-            torque: Enclosure = forces(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
+            torque: Enclosure = forces_without_friction(at.sine, at.cosine, at.m, at.d, load).torque - on_crank
             return torque
         b = add_crank_couple(balance_before_pin_force(at.sine, at.cosine, at.m, at.d, load), 0.0 - on_crank)
         force: Enclosure = b.pull - frictionless_pin_force(at.sine, at.cosine, at.m, at.d, b)[0]
@@ -260,7 +260,7 @@ class SwingCurve:
 
 def _least_transmission_angle_position(mechanism: Mechanism, swing: Swing, designs: Array) -> Array:
     """Return the fraction of the travel (n,) at the transmission angle's minimum between the ends, 0 if none."""
-    ends = ends_of(mechanism, swing, designs)
+    ends = swing_ends(mechanism, swing, designs)
     r, l, e = designs[:, :3].T
     if swing.driver == "slider":  # where crank and rod have the same angular velocity
         first, last = (motion(np.sin(at), np.cos(at), r, l, e, mechanism.sign).x for at in (ends.start, ends.end))

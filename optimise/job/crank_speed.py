@@ -138,8 +138,8 @@ class CrankSpeedPart(Part):
             )
         way = self.direction or "counter-clockwise"
         profile = None if self.speed_profile is None else self.speed_profile.build()
-        if isinstance(profile, SpeedTable) and _direction_of_speed(profile.mean) != way:
-            table_direction = _direction_of_speed(profile.mean)
+        if isinstance(profile, SpeedTable) and _direction_of_speed(profile.mean_speed) != way:
+            table_direction = _direction_of_speed(profile.mean_speed)
             raise InputError(
                 "speeds of speed_profile must have the sign of the direction, positive counter-clockwise; got "
                 f'{_RPM * profile.speeds[0]:.6g} rpm, {table_direction}, with direction = "{way}"; give direction = '

@@ -43,7 +43,7 @@ def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tup
 def require_nondecreasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
     """Return the points of a load's table in SI; raise an error if one decreases or repeats twice."""
     at: tuple[float, ...] = handler(typed)
-    n = model.out_of_order(at)
+    n = model.first_misplaced_point(at)
     if n is not None:
         raise InputError(model.broken_order_rule(n, at, quote(typed[n]), quote(typed[n - 1])))
     return at

@@ -65,8 +65,8 @@ class SpeedProfilePart(Checked[Profile]):
     def require_mean_speed(self, speed: float) -> None:
         """Raise `InputError` unless the points' mean is the given speed, rad/s."""
         built = self.build()
-        if isinstance(built, SpeedTable) and abs(built.mean - speed) > _TOLERANCE * abs(speed):
-            mean = built.mean * 30.0 / math.pi
+        if isinstance(built, SpeedTable) and abs(built.mean_speed - speed) > _TOLERANCE * abs(speed):
+            mean = built.mean_speed * 30.0 / math.pi
             raise InputError(
                 f"speed must be the mean of speed_profile over the crank angle, {mean:.6g} rpm; got "
                 f'{speed * 30.0 / math.pi:.6g} rpm; give speed = "{mean:.6g} rpm"'

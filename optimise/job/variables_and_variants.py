@@ -19,7 +19,7 @@ from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import SlowStroke
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.raw_numbers_of_designs import unit_of
+from ...model.machine.raw_numbers_of_designs import unit_of_number
 from ...model.machine.swing_start import Start
 from ...model.machine.varying_numbers import Varying
 from ...objectives.catalogue_amount import Amount
@@ -336,7 +336,7 @@ def _require_differentiable(path: str, places: list[str]) -> None:
     """Reject a path to a number of the machine with respect to which there are no derivatives."""
     try:
         for place in places:
-            unit_of(place)
+            unit_of_number(place)
     except InputError:
         raise InputError(
             f"no quantity depends smoothly on {path}, so it cannot vary; make it a choice instead"

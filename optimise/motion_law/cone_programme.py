@@ -94,9 +94,9 @@ class Programme:
         self.ratio = self.energy_unit / self.unit
         n = len(turn.width)
         half = np.repeat(cell_integral_weights(np.array([0.5])), n, axis=0)
-        self.loads = np.sum(turn.weights * turn.terms.load, axis=1) / self.unit
+        self.loads = np.sum(turn.angle_weights * turn.terms.load, axis=1) / self.unit
         self.half_loads = turn.width * np.einsum("ni,ni->n", half, turn.terms.load) / self.unit
-        self.angles = np.stack([turn.low, turn.low + 0.5 * turn.way * turn.width])
+        self.angles = np.stack([turn.cell_start_angles, turn.cell_start_angles + 0.5 * turn.way * turn.width])
         self.inertia = turn.inertia_at(self.angles)
         low, high = limits.energy_limits(self.angles, self.inertia, turn.slider_derivatives(self.angles)[0])
         lifted, lowered = (np.stack([np.maximum(by, np.roll(by, 1)), by]) for by in (margins.least, margins.greatest))

@@ -93,7 +93,7 @@ class LawLimits:
         """Return the cells that start at the start and the end of the window, each with the adjacent cell outside."""
         if self.window is None:
             return []
-        begin, end = (int(turn.locate(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.window_ends)
+        begin, end = (int(turn.locate_in_cells(np.array([mark + self.way * 1e-7]))[0][0]) for mark in self.window_ends)
         return [(begin, (begin - 1) % len(turn.width)), (end, end)]
 
     def greatest_slider_speed(self, crank_angle: Array) -> Array:

@@ -138,10 +138,13 @@ class _Search:
         turn = self.programme.turn
         if not law.node_energies.min() > 0.0:
             return np.full(len(turn.width), math.inf)
-        inertia, energies = self.programme.inertia, np.stack([law.energy(angles) for angles in self.programme.angles])
+        inertia, energies = (
+            self.programme.inertia,
+            np.stack([law.energy_at(angles) for angles in self.programme.angles]),
+        )
         starts, middles = np.sqrt(0.5 * inertia / np.maximum(energies, 1e-300))
         simpson = turn.width * (starts + 4.0 * middles + np.roll(starts, -1)) / 6.0
-        return np.asarray(simpson - np.sum(turn.weights * law.node_slowness, axis=1))
+        return np.asarray(simpson - np.sum(turn.angle_weights * law.node_slowness, axis=1))
 
     def _too_fast(self, solution: Solution) -> bool:
         if self.limits.request.timing != "equal":
@@ -166,7 +169,7 @@ class _Search:
     def _reference_energies(self, slow: Solution | None) -> Array:
         """Return K of a law near the best one: the guess, otherwise a slow one, otherwise constant speed."""
         if self.guess is not None:
-            return np.stack([self.guess.energy(angles) for angles in self.programme.angles])
+            return np.stack([self.guess.energy_at(angles) for angles in self.programme.angles])
         if slow is not None:
             return slow.energies
         return self._constant_speed_energies
@@ -226,7 +229,7 @@ def _law_with_cycle_time(
     if fast is not None:
         other = MotionLaw.made_periodic(turn, fast.torque, float(fast.energy[0]))
         if missing <= 0.0 and other.node_energies.min() > 0.0:
-            return _with_period(lambda share: law.combined(other, share), 0.0, 1.0, cycle_time), 0.0, True
+            return _with_period(lambda share: law.mixed_with(other, share), 0.0, 1.0, cycle_time), 0.0, True
     # A constant added to K changes no torque.
     room = 1e-2 * float(law.node_energies.min())
     near = _with_period(lambda added: replace(law, start_energy=law.start_energy + added), -room, room, cycle_time)

@@ -55,10 +55,10 @@ def lower_bound(turn: LawTurn, limits: LawLimits, aim: Aim, needs: Requirement, 
         return np.asarray(value + torque * (weight * torque + by_torque))
 
     least = _least_over_energy(least_integrand, low, high)
-    total = float(np.sum(turn.weights * (constant + least))) - (0.0 if time is None else pace * time)
+    total = float(np.sum(turn.angle_weights * (constant + least))) - (0.0 if time is None else pace * time)
     if aim == "rms torque":
         return total
-    size = float(np.sum(turn.weights * np.abs(by_torque)))
+    size = float(np.sum(turn.angle_weights * np.abs(by_torque)))
     if aim == "peak torque":
         return total / size if size > 0.0 else 0.0
     return total - torque_limit * size
@@ -78,7 +78,7 @@ def _integrand_coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multi
         hats = 2.0 * np.stack([1.0 - place, place]) / width[:, None, None]  # (n, 2, 16)
         sides = np.maximum(multipliers.sides, 0.0)
         gains = (sides[:, 0] - sides[:, 1]) * ends.by_energy
-        mean = np.einsum("ni,nei,ni->en", turn.weights, hats, limit.by_energy)
+        mean = np.einsum("ni,nei,ni->en", turn.angle_weights, hats, limit.by_energy)
         with np.errstate(divide="ignore", invalid="ignore"):
             factor = np.clip(np.nan_to_num(ends.by_energy / mean, nan=1.0), 0.5, 2.0)
         upper, lower = (np.einsum("en,nei->ni", factor * sides[:, side], hats) for side in range(2))
@@ -88,8 +88,8 @@ def _integrand_coefficients(turn: LawTurn, limits: LawLimits, multipliers: Multi
     for cell, outside in limits.window_cells(turn):
         # K is limited from here on, or up to here: p may jump, but only within the window.
         starts[cell] = p[outside] + (gains[1, outside] if outside != cell else -gains[0, outside])
-    even = (np.roll(starts, -1) - starts - np.sum(turn.weights * by_energy, axis=1)) / width
-    momentum = starts[:, None] + turn.integrals(by_energy) + (even * width)[:, None] * place
+    even = (np.roll(starts, -1) - starts - np.sum(turn.angle_weights * by_energy, axis=1)) / width
+    momentum = starts[:, None] + turn.integrals_to_nodes(by_energy) + (even * width)[:, None] * place
     return by_torque - momentum, np.repeat(-even[:, None], len(place), axis=1), constant + momentum * turn.terms.load
 
 

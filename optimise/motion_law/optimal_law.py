@@ -99,7 +99,7 @@ def optimal_law(
         if len(turn.width) > _MOST_CELLS:
             break
         coarse = np.zeros(len(turn.width), np.bool_) if stage is None else stage.coarse
-        turn = turn.finer(coarse if coarse.any() else np.ones_like(coarse))
+        turn = turn.with_halved_cells(coarse if coarse.any() else np.ones_like(coarse))
     if best is None:
         raise unreachable_limits_error(turn, limits)
     return best

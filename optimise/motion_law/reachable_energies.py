@@ -49,8 +49,8 @@ class Reachable:
         self.low, self.high = limits.energy_limits(turn.angle, turn.terms.inertia, turn.terms.travel)
         cell, node = np.divmod(np.arange(turn.angle.size), turn.angle.shape[1])
         place = NODES[node]
-        before = np.concatenate([[0.0], np.cumsum(np.sum(turn.weights * turn.terms.load, axis=1))[:-1]])
-        self.taken = before[cell] + turn.integral_of(turn.terms.load, cell, place)
+        before = np.concatenate([[0.0], np.cumsum(np.sum(turn.angle_weights * turn.terms.load, axis=1))[:-1]])
+        self.taken = before[cell] + turn.integral_from_cell_start(turn.terms.load, cell, place)
         self.passed = turn.passed[cell] + place * turn.width[cell]
 
     def laws_within(self, torque: float) -> ReachableLaws:
@@ -86,7 +86,7 @@ class Reachable:
         return low
 
     def _time(self, energy: Array) -> float:
-        return float(np.sum(self.turn.weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
+        return float(np.sum(self.turn.angle_weights * np.sqrt(0.5 * self.turn.terms.inertia / energy)))
 
     def _least_energies(self, limit: Array, loss: Array, gain: Array) -> Array:
         """Return the least K above a limit that loses at most `loss` and gains at most `gain`.

@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...model.input_warning import reading_in_both_units, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.linkage_values import numbers
+from ...model.linkage.linkage_values import finite_numbers
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
@@ -147,7 +147,7 @@ class Analysis(Mapping[str, float]):
         """
         if self.swing is not None:
             return swing_table(self.mechanism, self.linkage, self.swing, angles)
-        for angle in () if np.ndim(angles) == 0 else numbers(angles, "a crank angle").real.flat:
+        for angle in () if np.ndim(angles) == 0 else finite_numbers(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
                 doubt = reading_in_both_units("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from numpy.typing import ArrayLike
 
-from ...model.checks import require_kinds, store_as_tuples
+from ...model.checks import require_field_types, store_as_tuples
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
@@ -164,8 +164,8 @@ class Problem:
     def __post_init__(self) -> None:
         store_as_tuples(self, "objectives", "constraints", "own", "choices", "variants", "left_out")
         store_as_tuples(self, "catalogue", "discrete", "warnings")
-        require_kinds(self, _KINDS, _CHANGE)
-        require_kinds(self, _EACH, _CHANGE, item_by_item=True)
+        require_field_types(self, _KINDS, _CHANGE)
+        require_field_types(self, _EACH, _CHANGE, item_by_item=True)
         require_distinct_numbers(self.discrete, [*self.ranges])
         for own in self.variants or (self,):
             require_same_driver(own.mechanism, self.motion)

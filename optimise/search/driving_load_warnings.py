@@ -2,7 +2,7 @@
 
 Over a cycle, the loads on slider and crank do the net work W = integral of F dx + M d theta on the machine. It is
 negative if the machine is driven, and zero for springs, weights and tables over position. It is positive only for
-engines. A job declares an engine by a load that `drives`, such as gas or a helping force, whose work does not count
+engines. A job declares an engine by a load that `may_drive`, such as gas or a helping force, whose work does not count
 here, or by requiring a delivered work of zero or more.
 """
 
@@ -21,7 +21,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.machine.varying_numbers import Varying
 from ...model.machine.work_absorption import loads_may_do_work_over_a_turn, with_loads_alone
-from ...model.signals.averages import average_torque
+from ...model.signals.averages import torque_averages
 from ...model.swing.work import net_work_of_loads
 from ...objectives.energy import DELIVERED_WORK
 from ..problem.job_remark import Change, Remark
@@ -63,13 +63,13 @@ def net_work(problem: Problem, designs: Array, loads: Collection[int] | None = N
     make the required motion.
     """
     if loads is None:
-        loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.drives]
+        loads = [k for k, load in enumerate(problem.mechanism.loads) if not load.may_drive]
     machine = _with_counted_loads(problem.mechanism, loads)
     if problem.motion is not None:
         return net_work_of_loads(machine, problem.motion, designs)
     if not loads_may_do_work_over_a_turn(machine):
         return np.zeros(len(designs))
-    torque = average_torque(with_loads_alone(machine), designs)
+    torque = torque_averages(with_loads_alone(machine), designs)
     mean = np.where(np.abs(torque.mean) > _ROUNDING * torque.rms_over_angle, torque.mean, 0.0)
     return -2.0 * math.pi * cycle_turns(machine) * machine.direction * mean
 
@@ -99,7 +99,7 @@ def _may_be_driven(problem: Problem) -> bool:
         for constraint in problem.constraints
     )
     return not delivers and any(
-        not (load.drives or load.resists) for load in problem.mechanism.with_largest_variables.loads
+        not (load.may_drive or load.never_drives) for load in problem.mechanism.with_largest_variables.loads
     )
 
 
@@ -114,7 +114,9 @@ def _load_warning(parts: Iterable[tuple[Problem, Array]], design: str) -> list[s
         works += work[drives].tolist()
         if not named and drives.any():
             named = _name_driving_loads(part, designs[drives][:1])
-            subject += " that are not declared as driving" if any(load.drives for load in part.mechanism.loads) else ""
+            subject += (
+                " that are not declared as driving" if any(load.may_drive for load in part.mechanism.loads) else ""
+            )
     if not works:
         return []
     extent = f"in every {design}" if len(works) == count else f"in some {design}s"
@@ -136,6 +138,6 @@ def _name_driving_loads(part: Problem, design: Array) -> str:
     names = [
         f"load #{k + 1} ({text})"
         for k, (load, text) in enumerate(zip(part.mechanism.loads, part.mechanism.load_texts, strict=True))
-        if not load.drives and net_work(part, design, [k])[0] > 0.0
+        if not load.may_drive and net_work(part, design, [k])[0] > 0.0
     ]
     return " and ".join(names[:_NAMED])

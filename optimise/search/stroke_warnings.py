@@ -29,7 +29,9 @@ def stroke_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
     """
     if problem.motion is not None:  # forward and return strokes differ only in their drive
         return []
-    if problem.slow_stroke is not None or all(load.drives for load in problem.mechanism.loads):  # this saves sampling
+    if problem.slow_stroke is not None or all(
+        load.may_drive for load in problem.mechanism.loads
+    ):  # this saves sampling
         return _excluded_offset_warnings(problem)
     fast, turning, sides = 0, 0, []
     for part, designs in sampled_designs(problem):

@@ -38,7 +38,7 @@ from ...model.machine.cylinder_machines import require_single_cylinder_at_consta
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...model.optional_packages import import_extra
-from ...model.signals.averages import average
+from ...model.signals.averages import signal_averages
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
@@ -290,7 +290,7 @@ def shaking_peaks_and_means(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     numbers: list[float] = []
     for kind in (Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT):
         peaks, angles = first_peaks(mechanism, kind, _design_row(linkage))
-        mean = average(mechanism, kind, _design_row(linkage))
+        mean = signal_averages(mechanism, kind, _design_row(linkage))
         numbers += [float(peaks[0]), float(angles[0]), float(mean.rms[0])]
     return Shaking(*numbers)
 

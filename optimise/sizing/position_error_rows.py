@@ -12,7 +12,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
-from ...model.tolerance.error_sources import angles_where_error_counts, limits_of_sources, source_influences
+from ...model.tolerance.error_sources import angle_ranges_where_error_counts, limits_of_sources, source_influences
 from ..problem.tolerance_costs import NAMES, Costs
 from .input_words import Kind
 
@@ -34,7 +34,7 @@ class ErrorRows:
         self._chosen = [NAMES.index(name) for name in self.names]
         self._given = limits_of_sources(mechanism, linkage)
         self._given[self._chosen] = 0.0
-        self.start = np.mod(np.concatenate(angles_where_error_counts(mechanism, linkage, count=_START)), _TURN)
+        self.start = np.mod(np.concatenate(angle_ranges_where_error_counts(mechanism, linkage, count=_START)), _TURN)
         self.scale = np.ones(len(self._chosen))
         share = 1.0 / (len(self._chosen) * self.rows(self.start)[0].max(axis=0))
         self.scale = np.minimum(share, np.array([cost.greatest for cost in costs.by_name.values()]) ** self.power)

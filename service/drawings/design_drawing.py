@@ -105,7 +105,7 @@ def _angle_in_swing(swing: Swing, angle: float | None) -> float:
     """Return a crank angle shifted by full revolutions into a swing."""
     if angle is None:
         return 0.5 * (swing.start + swing.end)
-    angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.occurrences(angle + near)]
+    angles = [at for near in (0.0, 1e-9, -1e-9) for at in swing.angles_within(angle + near)]
     if not angles:
         start, end, requested = (math.degrees(at) for at in (swing.start, swing.end, angle))
         raise InputError(

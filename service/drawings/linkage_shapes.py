@@ -6,7 +6,7 @@ import itertools
 import math
 from dataclasses import dataclass, replace
 
-from ...model.cycle.gas_cycle import cylinders
+from ...model.cycle.gas_cycle import cylinder_loads
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar
@@ -79,7 +79,7 @@ def _with_cylinders(mechanism: Mechanism, look: LinkageSizes) -> LinkageSizes:
 
     Bore and clearance are true to scale; the piston length is schematic.
     """
-    gas = [load for _, load in cylinders(mechanism)]
+    gas = [load for _, load in cylinder_loads(mechanism)]
     if not gas:
         return look
     half, barrels = 0.75 * look.slider_size, []

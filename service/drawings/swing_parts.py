@@ -10,7 +10,7 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
-from ...model.swing.swing import Swing, dead_points, require_swing, swing_between_crank_angles
+from ...model.swing.swing import Swing, dead_point_angles, require_swing, swing_between_crank_angles
 from . import layers as on
 from .linkage_shapes import (
     LinkageSizes,
@@ -74,7 +74,7 @@ def swing_sizes(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> SwingSi
     """Return the drawn sizes of a swinging linkage. Raises the errors of `require_swing`."""
     checked = require_swing(mechanism, linkage, swing)
     swing = swing_between_crank_angles(mechanism, checked, swing)
-    turning = [dead_angle for dead in dead_points(checked) for dead_angle in swing.occurrences(dead)]
+    turning = [dead_angle for dead in dead_point_angles(checked) for dead_angle in swing.angles_within(dead)]
     ways = [pin_positions(checked, angle)[1][0] for angle in (swing.start, swing.end, *turning)]
     slider_range = (min(ways), max(ways))
     body = _body_centre(mechanism, checked)
@@ -101,7 +101,7 @@ def _swept_box(linkage: Linkage, swing: Swing, body: Point | None) -> tuple[floa
     """Return the box around the paths of the crank and its body, mm."""
     r = _MM * float(linkage.crank)
     angles = np.linspace(swing.start, swing.end, 181)
-    quarters = [angle for k in range(4) for angle in swing.occurrences(0.5 * math.pi * k)]
+    quarters = [angle for k in range(4) for angle in swing.angles_within(0.5 * math.pi * k)]
     angles = np.concatenate([angles, quarters])
     x, y = [np.zeros(1), r * np.cos(angles)], [np.zeros(1), r * np.sin(angles)]
     if body is not None:

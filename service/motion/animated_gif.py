@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.cycle.gas_cycle import cylinders
-from ...model.cycle.indicator_diagram import indicator
+from ...model.cycle.gas_cycle import cylinder_loads
+from ...model.cycle.indicator_diagram import indicator_diagram
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
@@ -73,7 +73,7 @@ def _turn_scene(mechanism: Mechanism, linkage: Linkage, system: System) -> _Scen
     look, turns = linkage_sizes(mechanism, linkage), cycle_turns(mechanism)
     turn = -1.0 if mechanism.speed < 0.0 else 1.0
     angles = turn * 2.0 * math.pi * np.arange(turns * FRAMES) / FRAMES
-    gas = [indicator(mechanism, linkage, load, angles).pressure for _, load in cylinders(mechanism)]
+    gas = [indicator_diagram(mechanism, linkage, load, angles).pressure for _, load in cylinder_loads(mechanism)]
     frames = []
     for step, angle in enumerate(angles.tolist()):
         pin, slider = pin_positions(linkage, angle)

@@ -11,8 +11,8 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
-from ...model.cycle.gas_cycle import cylinders
-from ...model.cycle.indicator_diagram import indicator
+from ...model.cycle.gas_cycle import cylinder_loads
+from ...model.cycle.indicator_diagram import indicator_diagram
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
@@ -130,13 +130,13 @@ def turn_playback(mechanism: Mechanism, linkage: Linkage, system: System = "metr
 
 def _pressure_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[CurveColumn]:
     """Return the pressure in each cylinder at crank angles, rad."""
-    loads = cylinders(mechanism)
+    loads = cylinder_loads(mechanism)
     return [
         CurveColumn(
             f"pressure_{place + 1}_bar",
             "pressure" if len(loads) == 1 else f"pressure, load {place + 1}",
             "bar",
-            (1e-5 * indicator(mechanism, linkage, load, angles).pressure).tolist(),
+            (1e-5 * indicator_diagram(mechanism, linkage, load, angles).pressure).tolist(),
         )
         for place, load in loads
     ]

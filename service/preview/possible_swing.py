@@ -15,7 +15,7 @@ from ...model.kinematics.position import motion
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import swings_without_dead_point
-from ...model.swing.end_angles import ends_of
+from ...model.swing.end_angles import swing_ends
 from ...model.swing.swing import STARTS, Swing, with_start_of_machine
 from ...model.turning_cylinder.batch import lever_passes
 from ...model.turning_cylinder.machine import lever_sizes
@@ -113,11 +113,11 @@ def _possible_swing(swing: Swing, light: Problem, sample: Screening, unchecked: 
     closes = np.isfinite(sample.violation)
     example = example_design(designs, sample.violation, box[turning])
     basis = designs[good] if good.any() else designs[closes] if closes.any() else box[turning]
-    ends = ends_of(light.mechanism, swing, basis)
+    ends = swing_ends(light.mechanism, swing, basis)
     travel = np.abs(slider_positions(ends.end, sign, basis) - slider_positions(ends.start, sign, basis))
     example_swing = None
     if example is not None:
-        example_ends = ends_of(light.mechanism, swing, example[None])
+        example_ends = swing_ends(light.mechanism, swing, example[None])
         example_swing = replace(
             swing, start=float(example_ends.start[0]), end=float(example_ends.end[0]), stated_for="crank", follows=False
         )

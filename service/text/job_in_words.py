@@ -10,7 +10,7 @@ from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.machine.friction import Friction
 from ...model.machine.links import Bar, Link
-from ...model.machine.loads.load_text import range_text
+from ...model.machine.loads.load_text import join_range_ends
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.machine.strength import Strength
 from ...model.machine.two_turn_machine import cycle_turns
@@ -120,7 +120,7 @@ def _machine_lines(problem: Problem) -> list[str]:
     low, high = (machine_in_words(problem, end) for end in problem.mechanism.at_lower_and_upper_bounds)
     if len(low) != len(high):  # a number that is zero at one end would omit its line
         return machine_in_words(problem, problem.mechanism)
-    return [range_text(lowest, highest) for lowest, highest in zip(low, high, strict=True)]
+    return [join_range_ends(lowest, highest) for lowest, highest in zip(low, high, strict=True)]
 
 
 def machine_in_words(problem: Problem, mechanism: Mechanism) -> list[str]:
@@ -146,7 +146,9 @@ def _speed_lines(problem: Problem, mechanism: Mechanism) -> list[str]:
 def _mechanism_lines(mechanism: Mechanism) -> list[str]:
     lines = []
     if mechanism.speed_profile is not None:
-        lines.append(f"speed over the crank angle: {mechanism.speed_profile.text}; quantities follow this profile")
+        lines.append(
+            f"speed over the crank angle: {mechanism.speed_profile.description}; quantities follow this profile"
+        )
     if mechanism.acceleration:
         lines.append(f"crank acceleration {mechanism.acceleration:.6g} rad/s^2")
     links = ("crank", "rod") if mechanism.lever is None else ("crank",)
@@ -235,7 +237,7 @@ def _friction_lines(friction: Friction) -> list[str]:
     lines = [f"friction in the guide: coefficient {friction.guide:.6g}"] if friction.guide else []
     for name in ("crank_pivot", "crank_pin", "slider_pin"):
         pin = getattr(friction, name)
-        if pin.circle:
+        if pin.friction_circle_radius:
             lines.append(
                 f"friction in the {name.replace('_', ' ')}: radius {1e3 * pin.radius:.6g} mm, "
                 f"coefficient {pin.coefficient:.6g}"

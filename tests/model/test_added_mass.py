@@ -13,7 +13,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.clearance import Clearance
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average
+from slidercrank.model.signals.averages import signal_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.swing.peaks import swing_peaks
@@ -63,7 +63,7 @@ def test_peaks_and_means_are_those_of_a_heavier_slider_but_for_the_frame(signal:
         agree(one.values, other.values, rtol=1e-10, atol=1e-12)
         highest = np.abs(one.values[np.isfinite(one.values)]).max()
         agree(one.gradients, other.gradients, rtol=1e-7, atol=1e-7 * highest)
-        means = [average(machine, signal, designs).mean for machine in (added, heavier)]
+        means = [signal_averages(machine, signal, designs).mean for machine in (added, heavier)]
         agree(means[0], means[1], rtol=1e-9, atol=1e-10)
         without = find_peaks(replace(added, loads=added.loads[:-1]), signal, designs)
         differing += int(not np.allclose(one.values, without.values, rtol=1e-6))
@@ -86,7 +86,7 @@ def test_an_added_mass_of_two_cylinders_counts_in_each(signal: Signal) -> None:
 def test_a_varying_added_mass_has_the_derivative_of_a_varying_slider_mass() -> None:
     designs = random_designs(10, seed=9)
     added, heavier = pairs(1, friction=False)[0]
-    mass = added.loads[-1].numbers()[2]
+    mass = added.loads[-1].numbers_for_kernel()[2]
     one = replace(added, varying=(vary(f"loads.{len(added.loads) - 1}.mass", 0.0, 9.0),))
     other = replace(heavier, varying=(vary("slider_mass", 0.0, 9.0),))
     for signal in (Signal.TORQUE, Signal.GUIDE_FORCE, Signal.REFLECTED_INERTIA):
@@ -105,10 +105,10 @@ def test_the_equation_of_motion_has_the_added_mass_in_its_inertia_and_in_no_load
     for added, heavier in pairs(3):
         equations = [CrankEquation(machine, linkage_of(design, machine.branch)) for machine in (added, heavier)]
         for way in (1.0, -1.0):
-            one, other = (equation.stretch(0, way).terms_at(angles) for equation in equations)
+            one, other = (equation.stretch_from_breakpoint(0, way).terms_at(angles) for equation in equations)
             for name in ("inertia", "spin", "static", "drag", "square", "load"):
                 agree(getattr(one, name), getattr(other, name), rtol=1e-11, atol=1e-12)
-        agree(equations[0].inertia(angles), equations[1].inertia(angles), rtol=1e-13)
+        agree(equations[0].moving_inertia(angles), equations[1].moving_inertia(angles), rtol=1e-13)
 
 
 @pytest.mark.parametrize("signal", [DRIVE, POWER])

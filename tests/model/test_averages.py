@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import MACHINES, SMOOTH, Array, linkage_of, random_designs, random_machine
 from tests.model.quadrature import integrals
@@ -70,7 +70,7 @@ def by_quadrature(machine: Mechanism, design: Array) -> tuple[float, float]:
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_averages_are_those_of_adaptive_quadrature(name: str) -> None:
-    averages = average_torque(MACHINES[name], DESIGNS)
+    averages = torque_averages(MACHINES[name], DESIGNS)
     for design, mean, rms in zip(DESIGNS, averages.mean, averages.rms, strict=True):
         expected_mean, expected_rms = by_quadrature(MACHINES[name], design)
         # The adaptive rule stops at 1e-11 N m an interval; the mean may cancel to far below the RMS value.
@@ -82,7 +82,7 @@ def test_averages_hold_for_random_machines() -> None:
     random = np.random.default_rng(62)
     for design in random_designs(12, seed=63, least_margin=0.01):
         machine = random_machine(random)
-        averages = average_torque(machine, design[None])
+        averages = torque_averages(machine, design[None])
         expected_mean, expected_rms = by_quadrature(machine, design)
         assert averages.mean[0] == pytest.approx(expected_mean, rel=0.0, abs=1e-10 * expected_rms)
         assert averages.rms[0] == pytest.approx(expected_rms, rel=1e-10)
@@ -93,20 +93,20 @@ def test_mean_torque_of_a_constant_force_against_one_stroke_is_its_work() -> Non
     machine = dataclasses.replace(SMOOTH, acceleration=0.0, loads=(StrokeForce(outward=-120.0, inward=0.0),))
     designs = random_designs(500, seed=64)
     work = 120.0 * Linkage(*designs.T).stroke
-    averages = average_torque(machine, designs)
+    averages = torque_averages(machine, designs)
     error = np.abs(averages.mean - work / (2.0 * math.pi)) / averages.rms
     assert error.max() < 1e-11
 
 
 def test_mechanism_at_rest_has_averages_and_gradients_of_zero() -> None:
-    averages = average_torque(Mechanism(), DESIGNS, gradients=True)
+    averages = torque_averages(Mechanism(), DESIGNS, gradients=True)
     for values in (averages.mean, averages.rms, averages.mean_gradients, averages.rms_gradients):
         assert values is not None
         assert np.all(values == 0.0)
 
 
 def test_no_designs_have_no_averages() -> None:
-    assert average_torque(SMOOTH, np.empty((0, 3))).mean.shape == (0,)
+    assert torque_averages(SMOOTH, np.empty((0, 3))).mean.shape == (0,)
 
 
 def near_locking(design: Array, column: int | None = None) -> Array:
@@ -159,8 +159,8 @@ def test_averages_hold_however_near_to_locking(margin: float) -> None:
     for crank, offset in ((0.05, 0.03), (0.06, -0.02), (0.05, 0.0005), (0.02, 0.2)):
         rod = (crank + abs(offset)) / math.cos(math.radians(margin))
         design = np.array([crank, rod, offset])
-        torque = average_torque(HEAVY, design[None], gradients=True)
-        push = average(HEAVY, Signal.SHAKING_FORCE, design[None], gradients=True)
+        torque = torque_averages(HEAVY, design[None], gradients=True)
+        push = signal_averages(HEAVY, Signal.SHAKING_FORCE, design[None], gradients=True)
         _, rms, shaking = near_locking(design)
         assert torque.rms[0] == pytest.approx(rms, rel=1e-10)
         assert push.rms[0] == pytest.approx(shaking, rel=1e-10)
@@ -178,6 +178,6 @@ def test_piecewise_averages_hold_however_near_to_locking() -> None:
     for margin in (0.3, 0.03, 0.001):
         for offset in (0.03, -0.02, 0.0):
             design = np.array([0.05, (0.05 + abs(offset)) / math.cos(math.radians(margin)), offset])
-            averages = average_torque(machine, design[None])
+            averages = torque_averages(machine, design[None])
             work = 120.0 * float(Linkage(*design).stroke)
             assert averages.mean[0] == pytest.approx(work / (2.0 * math.pi), abs=1e-10 * averages.rms[0])

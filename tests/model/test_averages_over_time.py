@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, Profile, SpeedTable
-from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.job import load_job
@@ -113,7 +113,7 @@ class CrankOverTime:
     def _between(self, start: Array, end: Array) -> Array:
         """Return the times from one angle to another, of the same panel each."""
         width = end - start
-        found: Array = 1.0 / self._profile.ratio(start[:, None] + 0.5 * width[:, None] * (1.0 + NODES)) @ WEIGHTS
+        found: Array = 1.0 / self._profile.speed_ratio(start[:, None] + 0.5 * width[:, None] * (1.0 + NODES)) @ WEIGHTS
         return found * 0.5 * width / self._speed
 
     def _time_of(self, angles: Array) -> Array:
@@ -127,7 +127,7 @@ class CrankOverTime:
         start, late = self._angles[place], time - self._times[place]
         found: Array = start + late * (self._angles[place + 1] - start) / (self._times[place + 1] - self._times[place])
         for _ in range(3):
-            found = found + (late - self._between(start, found)) * self._speed * self._profile.ratio(found)
+            found = found + (late - self._between(start, found)) * self._speed * self._profile.speed_ratio(found)
         return found
 
     def times(self, angles: Array) -> Array:
@@ -141,8 +141,8 @@ def over_time(case: Case, curve: Callable[[Array, Array, Array], Array]) -> Arra
 
     def squares(time: Array) -> Array:
         theta = turning.angle(time)
-        ratio = profile.ratio(theta)
-        return np.asarray(curve(theta, speed * ratio, speed**2 * ratio * profile.slope(theta)) ** 2)
+        ratio = profile.speed_ratio(theta)
+        return np.asarray(curve(theta, speed * ratio, speed**2 * ratio * profile.speed_ratio_slope(theta)) ** 2)
 
     kinks = turning.times(breakpoints_of(case))
     panels = (300 if case.machine.friction != Friction() else 40) * case.turns  # kinks from friction have to be found
@@ -255,7 +255,7 @@ def test_crank_angles_over_time_solve_their_differential_equation(seed: int) -> 
     angle, angles = 0.0, [0.0]
     for start, end in pairwise(times):
         solved = solve_ivp(
-            lambda _, y: case.machine.speed * case.profile.ratio(y),
+            lambda _, y: case.machine.speed * case.profile.speed_ratio(y),
             (start, end),
             [angle],
             method="DOP853",
@@ -275,7 +275,7 @@ def test_rms_torque_along_a_profile_is_over_time(seed: int) -> None:
     """Both sides resolve the torque to some 1e-12 of its greatest value."""
     case = random_case(seed)
     wanted = torque_over_time(case)
-    assert average_torque(case.machine, case.design[None]).rms[0] == pytest.approx(wanted, rel=1e-9)
+    assert torque_averages(case.machine, case.design[None]).rms[0] == pytest.approx(wanted, rel=1e-9)
     linkage = linkage_of(case.design, case.machine.branch)
     if case.machine.arrangement is not None:
         assert multi_cylinder_cycle(case.machine, linkage).rms == pytest.approx(wanted, rel=1e-9)
@@ -289,7 +289,7 @@ def test_rms_shaking_along_a_profile_is_over_time(seed: int) -> None:
     case = Case(replace(case.machine, friction=Friction(), loads=()), case.design, 1)
     design, wanted = case.design[None], shaking_over_time(case)
     for kind, rms in zip((Signal.SHAKING_FORCE, Signal.SHAKING_MOMENT), wanted, strict=True):
-        assert average(case.machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-9)
+        assert signal_averages(case.machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-9)
     if case.machine.arrangement is not None:
         whole = multi_cylinder_cycle(case.machine, linkage_of(case.design, case.machine.branch))
         assert (whole.rms_shaking_force, whole.rms_shaking_moment) == pytest.approx(wanted, rel=1e-9)
@@ -302,5 +302,5 @@ def test_a_feeder_at_2400_rpm_heats_its_motor_by_the_time_it_takes(
     """Over the crank angle these would be 96.80 and 49.10 N m."""
     machine = load_job(pytestconfig.rootpath / "runs/feeder.toml").mechanism
     machine = replace(machine, speed_profile=Harmonics(cosines=(cosine,)))
-    assert average_torque(machine, FEEDER).rms[0] == pytest.approx(rms, abs=0.005)
+    assert torque_averages(machine, FEEDER).rms[0] == pytest.approx(rms, abs=0.005)
     assert speed_profile_cycle(machine, linkage_of(FEEDER[0])).rms_torque == pytest.approx(rms, abs=0.005)

@@ -169,7 +169,7 @@ def test_a_bouncing_journal_rebounds_as_the_law_says(law: Any, restitution: floa
     run = Integrator(
         system, block, loads, clearance.hysteresis, 1e-6, 1e-11, np.array([0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0])
     )
-    run.advance(0.012 / restitution, outward=True)
+    run.integrate_until(0.012 / restitution, outward=True)
     speeds = np.array(run.trace.impact_speeds)
     assert len(speeds) >= 2
     assert speeds[0] == pytest.approx(0.5, rel=1e-9)
@@ -185,7 +185,7 @@ def test_slow_impacts_lose_less_as_hunt_and_crossley_found() -> None:
     system, block, loads = build_system(machine, Linkage(0.14, 0.31, 0.0), clearance)
     start = np.array([0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.0])
     run = Integrator(system, block, loads, clearance.hysteresis, 0.1, 1e-11, start)
-    run.advance(0.5, outward=True)
+    run.integrate_until(0.5, outward=True)
     assert run.trace.impact_speeds[1] == pytest.approx(0.01 * rebound(0.16), rel=1e-7)
 
 
@@ -217,7 +217,7 @@ def test_energy_never_grows_while_the_crank_is_held_still(joint: Joint, friction
     """Gravity alone moves the rod and the slider; every contact takes energy, friction too."""
     clearance = replace(PIN, joint=joint, friction=friction, restitution=0.6)
     run = integrator(replace(SIEVE, speed=0.0), clearance, np.array([2e-4, 0.0, 0.4, 0.3, 0.0, 0.0, 0.0]), 1e-9)
-    run.advance(0.03, outward=True)
+    run.integrate_until(0.03, outward=True)
     _, states, out = seen(run)
     total = out[7] + out[8] + out[9]
     size = float(np.ptp(out[7]))
@@ -234,7 +234,7 @@ def test_free_flight_keeps_momentum_and_energy() -> None:
     machine = replace(SIEVE, gravity=(0.0, 0.0))
     clearance = replace(PIN, radius=5e-3)
     run = integrator(machine, clearance, np.array([0.0, 0.0, 0.2, -0.1, 0.0, 0.0, 0.0]))
-    run.advance(0.004, outward=True)
+    run.integrate_until(0.004, outward=True)
     assert not run.trace.impact_times
     times, states, out = seen(run)
     r, l, e, w = 0.14, 0.31, -0.06, machine.speed

@@ -134,7 +134,7 @@ def test_a_joint_that_is_always_pressed_carries_the_force_of_the_ideal_joint() -
     machine = replace(sieve(100.0), loads=(StrokeForce(outward=800.0, inward=800.0), Viscous(coefficient=200.0)))
     clearance = replace(SOFT, radius=2e-4, restitution=0.1, slow_impact=1e-3)
     run = simulate(machine, LINKAGE, clearance, cycles=1, discard=0, tolerance=1e-6)
-    settled = run.times > 0.3 * run.period
+    settled = run.times > 0.3 * run.turn_time
     assert run.in_contact[settled].all()
     ideal = cycle(machine, LINKAGE, np.mod(run.crank_angle[settled], 2.0 * math.pi))
     force = np.hypot(ideal.crank_pin_x, ideal.crank_pin_y)
@@ -152,9 +152,9 @@ def test_a_run_tells_its_progress_and_can_be_cancelled() -> None:
         sieve(300.0), LINKAGE, SOFT, cycles=5, discard=1, progress=told.append, cancelled=lambda: len(told) == 2
     )
     assert [(entry.cycle, entry.cycles) for entry in told] == [(1, 5), (2, 5)]
-    assert told[1].impacts == np.count_nonzero(run.impact_times <= 2.0 * run.period) > 0
+    assert told[1].impacts == np.count_nonzero(run.impact_times <= 2.0 * run.turn_time) > 0
     assert (run.status, run.cycles) == ("cancelled", 2)
-    assert run.times[-1] == pytest.approx(2.0 * run.period, rel=1e-12)
+    assert run.times[-1] == pytest.approx(2.0 * run.turn_time, rel=1e-12)
     summary = summarise(run)
     assert summary.turns == 1
     assert summary.peak_acceleration.uncertainty is None
@@ -164,7 +164,7 @@ def test_a_run_that_is_cancelled_within_the_first_turn_keeps_what_it_has() -> No
     asked = iter([False, True])
     run = simulate(sieve(300.0), LINKAGE, SOFT, cycles=3, discard=0, cancelled=lambda: next(asked))
     assert (run.status, run.cycles) == ("cancelled", 0)
-    assert 0.0 < run.times[-1] < run.period
+    assert 0.0 < run.times[-1] < run.turn_time
     with pytest.raises(InputError, match="complete turn"):
         summarise(run)
 

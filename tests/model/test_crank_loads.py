@@ -19,11 +19,11 @@ from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.machine.work_absorption import may_do_work_over_a_turn
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.swing.forces import swing_curves
@@ -38,7 +38,7 @@ DESIGNS = np.array([[0.05, 0.2, 0.03], [0.08, 0.25, -0.1], [0.06, 0.19, 0.128]])
 RUBBING = Friction(
     guide=0.1, crank_pivot=Pin(radius=0.01, coefficient=0.1), crank_pin=Pin(radius=0.01, coefficient=0.1)
 )
-TABLE = CrankTable(angles=(0.4, 1.1, 2.5, 5.0), forces=(0.0, -30.0, 12.0, 5.0))
+TABLE = CrankTorqueTable(angles=(0.4, 1.1, 2.5, 5.0), forces=(0.0, -30.0, 12.0, 5.0))
 TURN = 2.0 * math.pi
 
 
@@ -62,7 +62,7 @@ def test_torque_peaks_and_means_are_those_of_virtual_work(machine: Mechanism) ->
                 peak = find_peaks(own, kind, design[None]).values[0, 0]
                 swept = float(np.abs(curve).max())
                 assert swept * (1.0 - 1e-9) <= peak <= swept * (1.0 + 2e-3)
-            averages = average_torque(own, design[None])
+            averages = torque_averages(own, design[None])
             assert averages.mean[0] == pytest.approx(found.torque.mean(), abs=2e-3 * abs(averages.rms[0]))
             assert averages.rms[0] == pytest.approx(math.sqrt(np.mean(found.torque**2)), rel=2e-3)
 
@@ -78,7 +78,7 @@ def test_a_constant_torque_is_as_an_inertia_at_constant_acceleration(friction: F
     assert first.gradients is not None
     assert second.gradients is not None
     assert np.abs(first.gradients[:, 0] - second.gradients[:, 0]).max() <= 1e-10 * np.abs(first.gradients[:, 0]).max()
-    one, two = (average_torque(machine, DESIGNS, gradients=True) for machine in (heavy, pulled))
+    one, two = (torque_averages(machine, DESIGNS, gradients=True) for machine in (heavy, pulled))
     assert one.mean == pytest.approx(two.mean, rel=1e-11)
     assert one.rms_gradients is not None
     assert two.rms_gradients is not None
@@ -104,9 +104,9 @@ def test_the_mean_torque_moves_with_a_torque_that_varies_by_minus_itself() -> No
         Varying(name=name, sets=((f"loads.{at}.{name}", 1.0),), lower=low, upper=9.0) for name, low in paths
     )
     designs = np.hstack([DESIGNS, np.tile([3.0, 2.0], (3, 1))])
-    found = average_torque(replace(own, varying=varying), designs, gradients=True)
+    found = torque_averages(replace(own, varying=varying), designs, gradients=True)
     assert found.mean_gradients is not None
-    assert found.mean == pytest.approx(average_torque(own, DESIGNS).mean, rel=1e-13)
+    assert found.mean == pytest.approx(torque_averages(own, DESIGNS).mean, rel=1e-13)
     assert found.mean_gradients[:, 3] == pytest.approx(-1.0, rel=1e-12)
     assert found.mean_gradients[:, 4] == pytest.approx(1.0, rel=1e-12)  # counter-clockwise
 
@@ -114,20 +114,20 @@ def test_the_mean_torque_moves_with_a_torque_that_varies_by_minus_itself() -> No
 def test_work_over_a_turn() -> None:
     """A table of no mean torque takes exactly zero energy; a resistance takes 2 pi of it."""
     still = replace(STROKES, acceleration=0.0, loads=())
-    even = CrankTable(angles=(0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi), forces=(0.0, 7.0, 0.0, -7.0))
+    even = CrankTorqueTable(angles=(0.0, 0.5 * math.pi, math.pi, 1.5 * math.pi), forces=(0.0, 7.0, 0.0, -7.0))
     assert not may_do_work_over_a_turn(loaded(still, even))
-    assert average_torque(loaded(still, even), DESIGNS).mean.tolist() == [0.0, 0.0, 0.0]
+    assert torque_averages(loaded(still, even), DESIGNS).mean.tolist() == [0.0, 0.0, 0.0]
     for load in (TABLE, CrankTorque(torque=1.0), CrankTorque(resistance=1.0)):
         assert may_do_work_over_a_turn(loaded(still, load))
     own = loaded(still, CrankTorque(resistance=4.0), TABLE)
     found = cycle_energies(replace(own, friction=RUBBING), Linkage(*DESIGNS[0]))
-    table = TABLE.turn_work(moving=True)[CrankTable]
+    table = TABLE.turn_work_by_key(moving=True)[CrankTorqueTable]
     assert found.useful == pytest.approx(4.0 * TURN + math.fsum(table), rel=1e-12)  # it turns clockwise
     assert found.input == pytest.approx(found.useful + found.heat, rel=1e-12)
 
 
 def test_a_table_of_two_turns_that_repeats_is_that_of_one() -> None:
-    twice = CrankTable(
+    twice = CrankTorqueTable(
         angles=(*TABLE.angles, *(angle + TURN for angle in TABLE.angles)), forces=2 * TABLE.forces, cycle="720 deg"
     )
     one, two = loaded(SMOOTH, TABLE), loaded(SMOOTH, twice)
@@ -173,7 +173,7 @@ def test_job_tables_say_them() -> None:
     tables: list[dict[str, Any]] = [{"crank_torque": "-50 N m"}, {"crank_resistance": "5 N m"}, table]
     loads = parse_job(JOB | {"load": tables}).mechanism.loads
     assert loads[:2] == (CrankTorque(torque=-50.0), CrankTorque(resistance=5.0))
-    assert loads[2] == CrankTable(angles=(0.0, 0.5 * math.pi), forces=(-20.0, 0.0), datum="outer dead centre")
+    assert loads[2] == CrankTorqueTable(angles=(0.0, 0.5 * math.pi), forces=(-20.0, 0.0), datum="outer dead centre")
 
 
 @pytest.mark.parametrize(

@@ -31,5 +31,5 @@ def test_the_speed_is_that_of_its_profile_and_one_on_the_mean(profile: Harmonics
     pace = speed_ratio_of(Mechanism(speed=10.0, speed_profile=profile))
     theta = np.linspace(0.0, 2.0 * np.pi, 3000, endpoint=False)
     held = [speed_ratio_at(angle + 2.0 * np.pi * turn, pace)[0] for turn in (-1, 0, 2) for angle in theta.tolist()]
-    np.testing.assert_allclose(held, np.tile(profile.ratio(theta), 3), rtol=1e-12)
+    np.testing.assert_allclose(held, np.tile(profile.speed_ratio(theta), 3), rtol=1e-12)
     assert np.mean(held) == pytest.approx(1.0, rel=1e-6)  # of a cubic spline, whose third derivatives jump at knots

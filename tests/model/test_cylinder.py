@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.steady_running import Runner
@@ -122,7 +122,7 @@ def test_the_mean_torque_is_the_closed_work_of_the_indicator_diagram(seed: int) 
     (load,) = machine.loads
     assert isinstance(load, Cylinder)
     stroke = Linkage(*design[0]).stroke
-    mean = average_torque(machine, design).mean[0] * 2.0 * math.pi * machine.direction
+    mean = torque_averages(machine, design).mean[0] * 2.0 * math.pi * machine.direction
     wanted = indicated(load, float(stroke))
     assert -mean == pytest.approx(wanted, rel=1e-10, abs=1e-12 * load.high * load.area * float(stroke))
     assert QUANTITIES["indicated_work"].evaluate(machine, design).values[0] == pytest.approx(
@@ -172,7 +172,7 @@ def test_with_friction_the_mean_torque_is_the_integral_between_breakpoints() -> 
         width, middle = 0.5 * np.diff(ends)[:, None], 0.5 * (ends[1:] + ends[:-1])[:, None]
         torque = cycle(machine, linkage, (middle + width * nodes).ravel()).torque.reshape(-1, 60)
         wanted = float((torque @ weights) @ width[:, 0]) / (2.0 * math.pi)
-        assert average_torque(machine, design).mean[0] == pytest.approx(wanted, rel=1e-11)
+        assert torque_averages(machine, design).mean[0] == pytest.approx(wanted, rel=1e-11)
         works = [QUANTITIES[name].evaluate(machine, design).values[0] for name in ("delivered_work", "indicated_work")]
         assert works[0] < works[1] < 0.0
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.linkage.dimension_variation import vary
+from slidercrank.model.linkage.dimension_variation import motion_variations
 from slidercrank.model.linkage.linkage import Linkage
 
 # J. Gupta, "Offset-Slider Crank Mechanism", course report ME748: crank 140 -> 150 mm, rod 310 -> 320 mm.
@@ -18,7 +18,9 @@ TURN = np.linspace(0.0, 2.0 * math.pi, 181)
 
 
 def test_each_change_is_made_alone() -> None:
-    found = vary(SIEVE, [("crank", 0.15), ("rod", 0.32), ("offset", 0.0)], TURN, speed=SPEED, acceleration=3.0)
+    found = motion_variations(
+        SIEVE, [("crank", 0.15), ("rod", 0.32), ("offset", 0.0)], TURN, speed=SPEED, acceleration=3.0
+    )
     others = (Linkage(0.15, 0.31, 0.06), Linkage(0.14, 0.32, 0.06), Linkage(0.14, 0.31, 0.0))
     for variation, linkage in zip(found.varied, others, strict=True):
         expected = linkage.at(TURN, speed=SPEED, acceleration=3.0)
@@ -28,7 +30,7 @@ def test_each_change_is_made_alone() -> None:
 
 def test_small_variation_is_the_first_order_influence() -> None:
     step = 1e-6
-    found = vary(SIEVE, [("crank", 0.14 + step), ("rod", 0.31 + step), ("offset", 0.06 + step)], TURN)
+    found = motion_variations(SIEVE, [("crank", 0.14 + step), ("rod", 0.31 + step), ("offset", 0.06 + step)], TURN)
     i = SIEVE.error_influences(TURN)
     for variation, influence in zip(found.varied, (i.crank, i.rod, i.offset), strict=True):
         moved = variation.motion.slider_position - found.nominal.slider_position
@@ -37,7 +39,9 @@ def test_small_variation_is_the_first_order_influence() -> None:
 
 
 def test_longer_crank_of_case_two_lengthens_the_stroke_and_a_longer_rod_hardly_does() -> None:
-    found = vary(SIEVE, [("crank", 0.15), ("rod", 0.32)], np.linspace(0.0, 2.0 * math.pi, 20001), speed=SPEED)
+    found = motion_variations(
+        SIEVE, [("crank", 0.15), ("rod", 0.32)], np.linspace(0.0, 2.0 * math.pi, 20001), speed=SPEED
+    )
     strokes = [np.ptp(motion.slider_position) for motion in (found.nominal, *(v.motion for v in found.varied))]
     exact = [SIEVE.stroke, Linkage(0.15, 0.31, 0.06).stroke, Linkage(0.14, 0.32, 0.06).stroke]
     np.testing.assert_allclose(strokes, exact, rtol=1e-7)
@@ -49,10 +53,10 @@ def test_longer_crank_of_case_two_lengthens_the_stroke_and_a_longer_rod_hardly_d
 
 def test_wrong_changes_are_refused() -> None:
     with pytest.raises(InputError, match="a dimension must be one of crank, rod, offset; got 'speed'"):
-        vary(SIEVE, [("speed", 1.0)], TURN)  # type: ignore[list-item]
+        motion_variations(SIEVE, [("speed", 1.0)], TURN)  # type: ignore[list-item]
     with pytest.raises(InputError, match="must be finite"):
-        vary(SIEVE, [("crank", math.nan)], TURN)
+        motion_variations(SIEVE, [("crank", math.nan)], TURN)
     with pytest.raises(InputError, match="one linkage is needed"):
-        vary(Linkage([0.1, 0.2], 0.5), [("crank", 0.15)], TURN)
+        motion_variations(Linkage([0.1, 0.2], 0.5), [("crank", 0.15)], TURN)
     with pytest.raises(AssemblyError, match="rod must exceed"):
-        vary(SIEVE, [("crank", 0.3)], TURN)
+        motion_variations(SIEVE, [("crank", 0.3)], TURN)

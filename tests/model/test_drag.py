@@ -18,7 +18,7 @@ from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.steady_running import Runner
@@ -72,7 +72,7 @@ def test_the_torque_is_that_of_virtual_work() -> None:
 
 
 def test_the_mean_torque_is_what_drag_dissipates() -> None:
-    found = average_torque(BARE, DESIGNS).mean
+    found = torque_averages(BARE, DESIGNS).mean
     for value, design in zip(found, DESIGNS, strict=True):
         assert value * 2.0 * math.pi == pytest.approx(dissipated(design, 35.0, 20.0), rel=1e-9)
 

@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
@@ -136,7 +136,7 @@ def test_mean_torque_without_loads_is_zero() -> None:
     for part in np.split(designs, 50):
         machine = dataclasses.replace(random_machine(random, loads=False), acceleration=0.0)
         peak = find_peaks(machine, Signal.TORQUE, part, limit=1).values[:, 0]
-        mean = average_torque(machine, part).mean
+        mean = torque_averages(machine, part).mean
         assert np.max(np.abs(mean) / peak) < 1e-12
 
 
@@ -148,7 +148,7 @@ def test_mean_torque_against_springs_is_zero() -> None:
         loads=(Spring(stiffness=900.0), Spring(stiffness=500.0, free_position=0.02, datum="outer dead centre")),
     )
     peak = find_peaks(machine, Signal.TORQUE, designs, limit=1).values[:, 0]
-    assert np.max(np.abs(average_torque(machine, designs).mean) / peak) < 1e-12
+    assert np.max(np.abs(torque_averages(machine, designs).mean) / peak) < 1e-12
 
 
 def test_static_equilibrium_of_the_centred_linkage() -> None:

@@ -14,7 +14,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.loads.engine import Engine
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.transient.forward_dynamics import State, simulate
 from slidercrank.model.transient.steady_running import Runner
 from slidercrank.objectives.registry import QUANTITIES
@@ -61,7 +61,7 @@ def test_the_delivered_work_is_that_of_the_two_polytropes(seed: int) -> None:
     wanted = gained - spent
     assert QUANTITIES["indicated_work"].evaluate(machine, design).values[0] == pytest.approx(wanted, rel=1e-12)
     assert QUANTITIES["delivered_work"].evaluate(machine, design).values[0] == pytest.approx(wanted, rel=1e-10)
-    assert average_torque(machine, design).mean[0] * machine.speed < 0.0
+    assert torque_averages(machine, design).mean[0] * machine.speed < 0.0
 
 
 def test_the_gas_reaches_its_peak_pressure_after_the_top_and_the_intake_pressure_before_compression() -> None:

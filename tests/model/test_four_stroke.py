@@ -11,13 +11,13 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.gas_cycle import gas_cycle_number
-from slidercrank.model.cycle.indicator_diagram import indicator
+from slidercrank.model.cycle.indicator_diagram import indicator_diagram
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.registry import QUANTITIES
@@ -80,7 +80,7 @@ def test_the_work_is_that_of_two_polytropes_and_two_strokes_at_constant_pressure
     assert found["delivered_work"] == pytest.approx(whole, rel=1e-10)
     mean = QUANTITIES["mean_effective_pressure"].evaluate(machine, design).values[0]
     assert mean == pytest.approx(whole / swept, rel=1e-12)
-    assert average_torque(machine, design).mean[0] * machine.speed * whole < 0.0
+    assert torque_averages(machine, design).mean[0] * machine.speed * whole < 0.0
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
@@ -105,7 +105,7 @@ def test_the_strokes_follow_each_other(way: float, head: str) -> None:
     assert start == 0 or pressures[0] == pytest.approx(1.1e5)
     order = wanted if start == 0 else [*wanted[4:], *wanted[:4]]
     assert pressures == pytest.approx(order, rel=1e-6)
-    assert indicator(machine, linkage, load, angles).pressure == pytest.approx(order, rel=1e-6)
+    assert indicator_diagram(machine, linkage, load, angles).pressure == pytest.approx(order, rel=1e-6)
 
 
 def test_peaks_are_those_of_a_sweep_over_both_turns_and_gradients_those_of_differences() -> None:

@@ -19,7 +19,7 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.fast_torque_and_error import is_supported
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -63,9 +63,9 @@ def residual(u: Array, machine: Mechanism, at: dict[str, Any]) -> Array:
     turn = math.copysign(1.0, machine.speed)
     spin_rod = at["rod_1"] * machine.speed
     spin_pin = (at["rod_1"] - 1.0) * machine.speed
-    on_rod_at_a = -f.crank_pin.circle * math.hypot(ax, ay) * np.sign(spin_pin)
-    on_rod_at_b = -f.slider_pin.circle * math.hypot(bx, by) * np.sign(spin_rod)
-    on_crank_at_o = -f.crank_pivot.circle * math.hypot(px, py) * turn
+    on_rod_at_a = -f.crank_pin.friction_circle_radius * math.hypot(ax, ay) * np.sign(spin_pin)
+    on_rod_at_b = -f.slider_pin.friction_circle_radius * math.hypot(bx, by) * np.sign(spin_rod)
+    on_crank_at_o = -f.crank_pivot.friction_circle_radius * math.hypot(px, py) * turn
     (cx, cy, cm), (rx, ry, rm), (sx, sy, _) = at["crank"], at["rod"], at["slider"]
     (kx, ky), (x, e) = at["pin"], at["slider_at"]
     return np.array(
@@ -158,7 +158,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
             assert peaks[1].gradients is not None
             size = np.abs(peaks[0].gradients).max()
             np.testing.assert_allclose(peaks[1].gradients, peaks[0].gradients, rtol=0, atol=1e-9 * size)
-        averages = [average_torque(each, design[None]) for each in (plain, rubbed)]
+        averages = [torque_averages(each, design[None]) for each in (plain, rubbed)]
         np.testing.assert_allclose(averages[1].mean, averages[0].mean, rtol=0, atol=1e-12 * averages[0].rms[0])
         np.testing.assert_allclose(averages[1].rms, averages[0].rms, rtol=1e-12)
 
@@ -231,7 +231,7 @@ def test_input_less_useful_work_is_the_friction_heat() -> None:
         assert abs(e.input - e.useful - e.stored - e.heat) < 1e-12 * size
         assert min(e.guide_heat, e.crank_pivot_heat, e.crank_pin_heat, e.slider_pin_heat) > 0.0
         # The mean torque comes from other panels and with signs held within segments.
-        mean = float(average_torque(machine, design[None]).mean[0])
+        mean = float(torque_averages(machine, design[None]).mean[0])
         assert 2.0 * math.pi * mean * math.copysign(1.0, machine.speed) == pytest.approx(
             e.input, rel=0, abs=1e-10 * size
         )
@@ -260,7 +260,7 @@ def test_rms_torque_is_that_of_adaptive_quadrature() -> None:
             return np.asarray(cycle(machine, linkage, theta).torque[None] ** 2)
 
         expected = math.sqrt(integrals(square, cuts)[0] / (2.0 * math.pi))
-        assert average_torque(machine, design[None]).rms[0] == pytest.approx(expected, rel=1e-10)
+        assert torque_averages(machine, design[None]).rms[0] == pytest.approx(expected, rel=1e-10)
 
 
 def test_machine_with_friction_is_not_screened() -> None:

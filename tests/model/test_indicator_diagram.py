@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator_diagram import indicator, valve_events
+from slidercrank.model.cycle.indicator_diagram import indicator_diagram, valve_events
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.test_cylinder import random_case, turning
@@ -22,7 +22,7 @@ def test_the_diagram_encloses_the_indicated_work_and_gives_the_load(seed: int) -
     assert isinstance(load, Cylinder)
     linkage = turning(machine, design)
     theta = np.linspace(0.0, 2.0 * math.pi, 20_001)
-    found = indicator(machine, linkage, load, theta)
+    found = indicator_diagram(machine, linkage, load, theta)
     area = 0.5 * np.sum((found.pressure[1:] + found.pressure[:-1]) * np.diff(found.volume)) * machine.direction
     wanted = QUANTITIES["indicated_work"].evaluate(machine, design).values[0]
     assert area == pytest.approx(wanted, abs=1e-6 * load.high * np.ptp(found.volume))
@@ -30,7 +30,7 @@ def test_the_diagram_encloses_the_indicated_work_and_gives_the_load(seed: int) -
     assert np.ptp(found.volume) == pytest.approx(swept, rel=1e-6)
     sign = -1.0 if load.head == "outer dead centre" else 1.0
     inside = np.random.default_rng(seed).uniform(0.0, 2.0 * math.pi, 200)
-    pressure = indicator(machine, linkage, load, inside).pressure
+    pressure = indicator_diagram(machine, linkage, load, inside).pressure
     push = sign * load.area * (pressure - load.back_pressure)
     assert cycle(machine, linkage, inside).load == pytest.approx(push, rel=1e-9, abs=1e-9 * load.high * load.area)
 

@@ -15,7 +15,7 @@ from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average
+from slidercrank.model.signals.averages import signal_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.bodies import bodies
@@ -95,7 +95,7 @@ def test_peaks_and_root_mean_squares_are_those_of_the_curves() -> None:
             peak = find_peaks(machine, kind, design[None], limit=1).values[0, 0]
             # A sample is at most 1.6e-4 rad from the peak; margins from 5 % curve by less than 1e2 of the peak.
             assert curve.max() * (1.0 - 1e-12) <= peak <= curve.max() * (1.0 + 1e-5)
-            rms = average(machine, kind, design[None]).rms[0]
+            rms = signal_averages(machine, kind, design[None]).rms[0]
             assert rms == pytest.approx(math.sqrt(np.mean(curve**2)), rel=1e-11)
 
 
@@ -135,5 +135,5 @@ def test_reflected_inertia_is_twice_the_kinetic_energy_at_unit_speed() -> None:
         dense = shaking_curves(machine, linkage, np.linspace(0.0, 2.0 * math.pi, 20_001)[:-1])
         peak = find_peaks(machine, Signal.REFLECTED_INERTIA, design[None], limit=1).values[0, 0]
         assert peak == pytest.approx(dense.reflected_inertia.max(), rel=1e-6)
-        mean = average(machine, Signal.REFLECTED_INERTIA, design[None]).mean[0]
+        mean = signal_averages(machine, Signal.REFLECTED_INERTIA, design[None]).mean[0]
         assert mean == pytest.approx(dense.reflected_inertia.mean(), rel=1e-12)

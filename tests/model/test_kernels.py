@@ -26,11 +26,16 @@ from slidercrank.model.errors import SlidercrankError
 from slidercrank.model.kernel import compile_all, compiler, disk_cache
 from slidercrank.model.kernel.arithmetic import arcsine
 from slidercrank.model.kernel.compile_all import compile_missing
-from slidercrank.model.kernel.disk_cache import KernelSource, keep, read, report_progress
+from slidercrank.model.kernel.disk_cache import (
+    KernelSource,
+    read_machine_code,
+    report_compilation_progress,
+    store_machine_code,
+)
 from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.kernel_digest import kernel_digest
-from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load
+from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load_entry_point
 from slidercrank.model.kinematics import closed_forms
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -104,12 +109,12 @@ def test_progress_stays_on_one_line_of_a_notebook(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
-    report_progress("1 of 2 done")
+    report_compilation_progress("1 of 2 done")
     assert caplog.messages == ["1 of 2 done"]
     monkeypatch.setitem(sys.modules, "ipykernel", ModuleType("ipykernel"))
     capsys.readouterr()
     for text in ("0 of 2 done, now long_name", "1 of 2 done"):
-        report_progress(text)
+        report_compilation_progress(text)
     first, second = capsys.readouterr().err.split("\r")[1:]
     assert (first.rstrip(), second.rstrip()) == ("0 of 2 done, now long_name", "1 of 2 done")
     assert len(first) == len(second)
@@ -136,7 +141,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     begun: list[Path] = []
     compiled: list[str] = []
     needed = [of_source(PLAIN.format(**SAME | {"c": float(number)})) for number in range(3)]
-    tasks = [compile_all._task(each, tmp_path) for each in needed]
+    tasks = [compile_all._task_of_kernel(each, tmp_path) for each in needed]
 
     def compiles(wanted: KernelSource) -> MachineCode:
         compiled.append(wanted.name)
@@ -145,14 +150,14 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     monkeypatch.setattr(KernelSource, "compile", compiles)
     monkeypatch.setattr(disk_cache, "kernel_folder", lambda: tmp_path)
     monkeypatch.setattr(disk_cache, "compile_in_processes", lambda *given: begun.append(given[2]))
-    monkeypatch.setattr(compile_all, "_tasks", lambda *_: tasks)
+    monkeypatch.setattr(compile_all, "_tasks_of_packages", lambda *_: tasks)
     write = Path.write_bytes
 
     def full(file: Path, content: bytes) -> int:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(Path, "write_bytes", full)
-    assert [disk_cache.machine_code(each.source()) for each in needed] == [code] * 3
+    assert [disk_cache.load_or_compile(each.compilation_source()) for each in needed] == [code] * 3
     assert len(begun) == 1
     assert len(compiled) == 3
     compile_missing(tmp_path, "")
@@ -160,7 +165,7 @@ def test_on_a_full_disk_a_process_compiles_what_it_needs_and_no_other_is_started
     monkeypatch.setattr(Path, "write_bytes", write)
     compile_missing(tmp_path, "")
     assert len(compiled) == 7
-    assert [disk_cache.machine_code(each.source()) for each in needed] == [code] * 3
+    assert [disk_cache.load_or_compile(each.compilation_source()) for each in needed] == [code] * 3
     assert len(compiled) == 7
 
 
@@ -198,20 +203,20 @@ os._exit(0)
 @pytest.mark.parametrize("harm", ["cut", "a bit turned", "no head", "empty"])
 def test_a_damaged_file_counts_as_none(harm: str, tmp_path: Path) -> None:
     file = tmp_path / "some.kernel"
-    keep(file, MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256))))
-    assert read(file) == MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256)))
+    store_machine_code(file, MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256))))
+    assert read_machine_code(file) == MachineCode("name", ("ptr", "i64"), ("sin",), bytes(range(256)))
     whole = file.read_bytes()
     turned = whole[:-7] + bytes([whole[-7] ^ 4]) + whole[-6:]
     file.write_bytes({"cut": whole[:-1], "a bit turned": turned, "no head": whole[20:], "empty": b""}[harm])
-    assert read(file) is None
+    assert read_machine_code(file) is None
 
 
 def test_of_earlier_machine_codes_the_last_ones_stay(tmp_path: Path) -> None:
     for number in range(12):
         file = tmp_path / f"module.kernel.{number:02d}"
-        keep(file, MachineCode("name", (), (), b"code"))
+        store_machine_code(file, MachineCode("name", (), (), b"code"))
         os.utime(file, (number, number))
-    keep(tmp_path / "module.other.00", MachineCode("name", (), (), b"code"))
+    store_machine_code(tmp_path / "module.other.00", MachineCode("name", (), (), b"code"))
     assert sorted(file.name for file in tmp_path.glob("module.kernel.*"))[-1] == "module.kernel.11"
     assert len(list(tmp_path.glob("module.kernel.*"))) == disk_cache._STATES
     assert len(list(tmp_path.glob("*.unfinished"))) == 0
@@ -219,12 +224,12 @@ def test_of_earlier_machine_codes_the_last_ones_stay(tmp_path: Path) -> None:
 
 def test_a_function_that_is_not_there_is_said_and_not_called() -> None:
     with pytest.raises(SlidercrankError, match="no_such_function"):
-        load(MachineCode("name", (), ("sin", "no_such_function"), b""), [])
+        load_entry_point(MachineCode("name", (), ("sin", "no_such_function"), b""), [])
 
 
 def test_a_kernel_that_takes_other_arguments_is_said_and_not_called() -> None:
     with pytest.raises(SlidercrankError, match="must take the types that it declares"):
-        load(MachineCode("name", ("i64", "i64"), (), b""), [Leaf("double"), Leaf("i64")])
+        load_entry_point(MachineCode("name", ("i64", "i64"), (), b""), [Leaf("double"), Leaf("i64")])
 
 
 def of_source(source: str) -> Kernel:
@@ -287,13 +292,13 @@ def f(x: float) -> float:
 @pytest.mark.parametrize("body", ["return np.zeros(3) + x", "a = np.zeros(3)\n    return a, x"])
 def test_a_formula_that_makes_an_array_is_refused(body: str) -> None:
     with pytest.raises(numba.TypingError, match="returning of array passed into the function"):
-        of_source(MAKES.format(body=body)).source().compile()
+        of_source(MAKES.format(body=body)).compilation_source().compile()
 
 
 def test_a_formula_that_hands_an_array_on_is_refused() -> None:
     found = of_source(MAKES.format(body="return x").replace("x: float", "x: Row"))
     with pytest.raises(TypeError, match="must not return an array; g does"):
-        found.source().compile()
+        found.compilation_source().compile()
 
 
 def test_digests_do_not_depend_on_the_process() -> None:
@@ -363,7 +368,7 @@ def test_the_peaks_of_a_machine_are_those_of_the_functions_in_python(monkeypatch
 
 @pytest.mark.slow
 def test_formulas_that_are_only_linked_give_the_same_numbers(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("slidercrank.model.kernel.kernel.machine_code", lambda wanted, modules: wanted.compile())
+    monkeypatch.setattr("slidercrank.model.kernel.kernel.load_or_compile", lambda wanted, modules: wanted.compile())
     designs = random_designs(200, seed=4)
     assert isinstance(closed_forms._fill_values_and_gradients, Kernel)
     found = []
@@ -426,7 +431,7 @@ def f(x: float, j: int) -> float:
 def test_a_formula_is_compiled_once_whoever_calls_it_with_a_variable_or_a_number() -> None:
     found = of_source(ONCE)
     with event.install_recorder("numba:run_pass") as recorder:
-        found.source().compile()
+        found.compilation_source().compile()
     passes = [each.data for _, each in recorder.buffer if each.is_start]
     assert sorted(each["qualname"] for each in passes if each["name"].startswith("native_lowering")) == ["f", "g", "h"]
 
@@ -436,7 +441,7 @@ def test_the_frames_of_the_compiler_do_not_fetch_memory_at_every_call() -> None:
         if depth:
             return faults(depth - 1)
         before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-        of_source(ONCE).source().compile()
+        of_source(ONCE).compilation_source().compile()
         return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
 
     faults(0)  # what numba fetches once

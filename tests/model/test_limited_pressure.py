@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator_diagram import burning_end_angle, indicator
+from slidercrank.model.cycle.indicator_diagram import burning_end_angle, indicator_diagram
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke, LimitedPressure
@@ -109,12 +109,12 @@ def test_burning_ends_where_the_volume_says_and_cuts_the_cycle_there(seed: int) 
     area, top = load.area * (1.0 if load.head == "inner dead centre" else -1.0), swept(load, design)
     wanted = top * (load.clearance + load.burning_share)
     around = end + machine.direction * np.array([-1e-6, 0.0, 1e-6, 1e-4])
-    found = indicator(machine, linkage, load, around)
+    found = indicator_diagram(machine, linkage, load, around)
     assert found.volume[1] == pytest.approx(wanted, rel=1e-9)
     assert found.pressure[:2] == pytest.approx([load.high, load.high], rel=1e-12)
     assert found.pressure[3] < found.pressure[2] < load.high
     angles = np.random.default_rng(seed).uniform(0.0, 4.0 * math.pi, 100)
-    pressures = indicator(machine, linkage, load, angles).pressure
+    pressures = indicator_diagram(machine, linkage, load, angles).pressure
     push = cycle(machine, linkage, angles).load
     assert push == pytest.approx(area * (pressures - load.back_pressure), abs=1e-9 * load.high * load.area)
     if load.cycle_turns == 1:
@@ -190,7 +190,7 @@ def test_without_a_rise_of_pressure_it_has_the_efficiency_of_the_diesel_cycle(se
 def test_the_first_turn_of_four_strokes_burns_as_two_strokes_do() -> None:
     four, two = engine(cycle="720 deg"), engine()
     assert isinstance(four, FourStroke)
-    assert four.on_turn(1) == two
+    assert four.load_on_turn(1) == two
     assert "over 3.855 % of the stroke" in four.text
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -71,7 +71,7 @@ OUTWARD: Final = "outward stroke"
             "50 N m clockwise on the crank, helps clockwise and resists counter-clockwise rotation",
         ),
         (
-            CrankTable(angles=(0.0, np.pi), forces=(20.0, -5.0)),
+            CrankTorqueTable(angles=(0.0, np.pi), forces=(20.0, -5.0)),
             "5 N m clockwise to 20 N m counter-clockwise on the crank, helps or resists depending on the crank angle, "
             "from 0 to 180 deg of crank angle; periodic over 360 deg",
         ),
@@ -142,21 +142,21 @@ def test_the_effect_of_random_loads_is_the_sign_of_their_power_in_each_stroke_of
         noise = 1e-9 * np.abs(power).max()
         for stroke, during in (("outward", outward), ("inward", ~outward)):
             gives, takes = (power[during] > noise).any(), (power[during] < -noise).any()
-            found = re.search(rf"({_VERBS}) (?:both strokes|the {stroke} stroke)", load.effect)
+            found = re.search(rf"({_VERBS}) (?:both strokes|the {stroke} stroke)", load.effect_text)
             if found is None and load.possible_stroke_forces is None:  # by direction, below, or a spring
                 continue
             said = found[1] if found else ""
             assert not gives or "helps" in said, load.text
             assert not takes or "resists" in said, load.text
             counted[said] = counted.get(said, 0) + 1
-        if "helps outward and resists inward motion" in load.effect:
+        if "helps outward and resists inward motion" in load.effect_text:
             assert (force >= 0.0).all()
             assert force.any()
-        if "helps inward and resists outward motion" in load.effect:
+        if "helps inward and resists outward motion" in load.effect_text:
             assert (force <= 0.0).all()
             assert force.any()
         gross = np.abs(power).sum()
-        if "no net work" in load.effect:
+        if "no net work" in load.effect_text:
             assert abs(power.sum()) <= 2e-3 * gross
         if isinstance(load, PositionTable) and force.any():
             _check_range(load, position, force, outward, stroke_ends(design))
@@ -165,9 +165,9 @@ def test_the_effect_of_random_loads_is_the_sign_of_their_power_in_each_stroke_of
 
 def _check_range(load: PositionTable, position: Any, force: Any, outward: Any, ends: tuple[Any, Any]) -> None:
     """Assert that the range and what holds beyond it, as the sentence has them, are those of the force."""
-    found = re.fullmatch(r"(?:from|between|within) (?P<range>.*); (?P<beyond>.*?) beyond", load.range)
-    assert found is not None, load.range
-    datum = next(name for name in ("crank pivot", "inner dead centre", "outer dead centre") if name in load.range)
+    found = re.fullmatch(r"(?:from|between|within) (?P<range>.*); (?P<beyond>.*?) beyond", load.range_text)
+    assert found is not None, load.range_text
+    datum = next(name for name in ("crank pivot", "inner dead centre", "outer dead centre") if name in load.range_text)
     counted = {
         "crank pivot": position,
         "inner dead centre": position - ends[0],

@@ -17,7 +17,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import linkage_of, random_designs, random_friction, random_machine
@@ -66,7 +66,7 @@ def test_the_whole_is_the_sum_of_single_runs(seed: int) -> None:
         turned = (own.force_x + 1j * own.force_y) * np.exp(1j * bank)
         force += np.stack([turned.real, turned.imag])
         torque[1] += own.moment
-        mean += average_torque(alone, np.array([[linkage.crank, linkage.rod, linkage.offset]])).mean[0]
+        mean += torque_averages(alone, np.array([[linkage.crank, linkage.rod, linkage.offset]])).mean[0]
     size = np.abs(torque[0]).max()
     assert multi_cylinder_curves(machine, linkage, theta).torque == pytest.approx(at, rel=1e-12, abs=1e-12 * size)
     found = multi_cylinder_cycle(machine, linkage)
@@ -94,7 +94,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
     found = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.7,))), linkage)
     machine = single_cylinder(machine)
     peak = find_peaks(machine, Signal.TORQUE, design, limit=1)
-    averages = average_torque(machine, design)
+    averages = torque_averages(machine, design)
     assert abs(found.peak.value) == pytest.approx(peak.values[0, 0], rel=1e-10)
     assert math.remainder(found.peak.angle + 0.7 - peak.angles[0, 0], TURN) == pytest.approx(0.0, abs=1e-6)
     assert found.mean == pytest.approx(averages.mean[0], rel=1e-10, abs=1e-10 * averages.rms[0])
@@ -104,7 +104,7 @@ def test_one_cylinder_is_the_machine_alone(seed: int) -> None:
         (Signal.SHAKING_MOMENT, found.shaking_moment.value, found.rms_shaking_moment),
     ):
         assert value == pytest.approx(find_peaks(machine, kind, design, limit=1).values[0, 0], rel=1e-10)
-        assert rms == pytest.approx(average(machine, kind, design).rms[0], rel=1e-10)
+        assert rms == pytest.approx(signal_averages(machine, kind, design).rms[0], rel=1e-10)
 
 
 def test_textbook_engines_balance() -> None:

@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.fast_torque_and_error import screened_maxima
 from slidercrank.model.signals.peaks import STORED_PEAKS, find_peaks
 from slidercrank.model.signals.signals import Signal
@@ -350,4 +350,4 @@ def test_designs_that_do_not_turn_have_no_peaks_and_no_averages(design: tuple[fl
     with pytest.raises(AssemblyError, match=message):
         screened_maxima(SMOOTH, (Signal.TORQUE,), designs)
     with pytest.raises(AssemblyError, match=message):
-        average_torque(SMOOTH, designs)
+        torque_averages(SMOOTH, designs)

@@ -18,7 +18,7 @@ from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.crank_equation import CrankEquation
@@ -64,7 +64,7 @@ def test_angles_count_from_the_dead_centre_in_the_sense_of_rotation(seed: int) -
 def test_gradients_of_peaks_and_means_follow_the_datum(seed: int) -> None:
     machine, table, designs = random_case(seed)
     machine = replace(machine, loads=(replace(table, during="cycle"),))
-    averages = average_torque(machine, designs, gradients=True)
+    averages = torque_averages(machine, designs, gradients=True)
     peaks = find_peaks(machine, Signal.TORQUE, designs, gradients=True)
     assert averages.mean_gradients is not None
     assert peaks.gradients is not None
@@ -72,7 +72,7 @@ def test_gradients_of_peaks_and_means_follow_the_datum(seed: int) -> None:
     for column in range(3):
         step = 1e-7 * np.eye(3)[column]
         ends = [designs + step, designs - step]
-        means = [average_torque(machine, end).mean for end in ends]
+        means = [torque_averages(machine, end).mean for end in ends]
         slope = (means[0] - means[1]) / 2e-7
         assert np.abs(averages.mean_gradients[:, column] - slope).max() <= 1e-5 * size.max()
         tops = [find_peaks(machine, Signal.TORQUE, end).values[:, 0] for end in ends]

@@ -10,14 +10,14 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.efficiency import cycle_energies
-from slidercrank.model.cycle.locked_angles import locking_verdict, states_at
+from slidercrank.model.cycle.locked_angles import locking_states, locking_verdict
 from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from tests.model.cases import Array, random_designs, random_friction, random_machine
@@ -43,7 +43,7 @@ def test_guide_locks_where_the_transmission_angle_is_below_the_angle_of_friction
         machine = Mechanism(speed=speed, loads=(RESISTS,), friction=Friction(guide=coefficient), branch=branch)
         angle = linkage.at(theta).transmission_angle
         expected = angle <= math.atan(coefficient)
-        np.testing.assert_array_equal(states_at(machine, linkage, theta) == "locks", expected)
+        np.testing.assert_array_equal(locking_states(machine, linkage, theta) == "locks", expected)
         np.testing.assert_array_equal(np.isnan(cycle(machine, linkage, theta).torque), expected)
         found = locking_verdict(machine, linkage)
         assert found.locks == bool(float(linkage.least_transmission_angle) <= math.atan(coefficient))
@@ -51,13 +51,13 @@ def test_guide_locks_where_the_transmission_angle_is_below_the_angle_of_friction
             assert float(linkage.at(end).transmission_angle) == pytest.approx(math.atan(coefficient), rel=1e-9)
         assert found.holds == (1.0 if found.locks else None)
         driven = dataclasses.replace(machine, loads=(DRIVES,))
-        np.testing.assert_array_equal(states_at(driven, linkage, theta) == "may jam", expected)
+        np.testing.assert_array_equal(locking_states(driven, linkage, theta) == "may jam", expected)
 
 
 def test_pins_add_the_angle_of_their_friction_circles() -> None:
     """Where pins and guide act together the rod's force leans by asin((rho_A + rho_B) / l) more."""
     r, l, e = DESIGN
-    circles = PINS.crank_pin.circle + PINS.slider_pin.circle
+    circles = PINS.crank_pin.friction_circle_radius + PINS.slider_pin.friction_circle_radius
     expected = math.acos((r + e) / l) - math.atan(0.4) - math.asin(circles / l)
     assert margin(PINS, DESIGN) == pytest.approx(expected, rel=1e-14)
     machine = Mechanism(speed=1.0, loads=(RESISTS,), friction=PINS)
@@ -65,7 +65,7 @@ def test_pins_add_the_angle_of_their_friction_circles() -> None:
     # Before 270 deg the rod swings one way, after it the other: the slider pin's circle helps, then hinders.
     before, after = (Linkage(*DESIGN).at(end) for end in span)
     lean = math.atan(0.4)
-    difference = (PINS.crank_pin.circle - PINS.slider_pin.circle) / l
+    difference = (PINS.crank_pin.friction_circle_radius - PINS.slider_pin.friction_circle_radius) / l
     assert float(before.transmission_angle) == pytest.approx(lean + math.asin(difference), rel=1e-9)
     assert float(after.transmission_angle) == pytest.approx(lean + math.asin(circles / l), rel=1e-9)
 
@@ -116,14 +116,14 @@ def test_nothing_is_returned_of_a_design_that_locks() -> None:
         assert np.all(np.isnan(found.angles))
         assert found.gradients is not None
         assert np.all(found.gradients == 0.0)
-    averages = average_torque(machine, DESIGN[None], gradients=True)
+    averages = torque_averages(machine, DESIGN[None], gradients=True)
     assert np.isnan(averages.mean[0])
     assert averages.rms[0] == math.inf
     with pytest.raises(InputError, match=r"self-locking margin must be more than zero; got -.* deg; lengthen the rod"):
         cycle_energies(machine, Linkage(*DESIGN))
     theta = np.linspace(0.0, 2.0 * math.pi, 3600)
     curves = cycle(machine, Linkage(*DESIGN), theta)
-    held = states_at(machine, Linkage(*DESIGN), theta) != "drives"
+    held = locking_states(machine, Linkage(*DESIGN), theta) != "drives"
     assert held.any()
     for name in ("torque", "guide", "pivot_x", "crank_pin_y", "slider_pin_x"):
         assert np.all(np.isnan(getattr(curves, name)[held]))

@@ -16,11 +16,11 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.signals.turn_work import LOAD, turn_work
@@ -101,7 +101,7 @@ def over_angle(seed: int) -> Case:
         places = apart(at, width)
         places[0], places[-1] = places[0] + 0.5 * width, places[-1] - 0.5 * width
         if seed // 2 % 2:
-            return CrankTable(angles=tuple(places), forces=tuple(0.1 * forces), **more)
+            return CrankTorqueTable(angles=tuple(places), forces=tuple(0.1 * forces), **more)
         return AngleTable(angles=tuple(places), forces=tuple(forces), during=STROKES[seed // 3 % 3], **more)  # type: ignore[arg-type]
 
     return Case(replace(machine, loads=(table(0.0),)), linkage, table, turns)
@@ -200,7 +200,7 @@ def test_peak_mean_and_rms_torque_of_a_table_with_steps_are_those_of_an_own_inte
     peak, mean, rms = numbers(case)
     found = find_peaks(case.machine, Signal.TORQUE, case.design, limit=1).values[0, 0]
     assert peak * (1.0 - 1e-7) <= found <= peak * (1.0 + 1e-6)
-    averages = average_torque(case.machine, case.design)
+    averages = torque_averages(case.machine, case.design)
     assert averages.mean[0] == pytest.approx(mean, abs=1e-9 * rms)
     assert averages.rms[0] == pytest.approx(rms, rel=1e-9)
 
@@ -216,12 +216,12 @@ def test_derivatives_of_a_table_with_steps_are_differences_of_neighbours(case: C
             find_peaks(case.machine, Signal.TORQUE, design, limit=1, gradients=True).gradients,
         ),
         (
-            lambda at: average_torque(case.machine, at).mean[0],
-            average_torque(case.machine, design, gradients=True).mean_gradients,
+            lambda at: torque_averages(case.machine, at).mean[0],
+            torque_averages(case.machine, design, gradients=True).mean_gradients,
         ),
         (
-            lambda at: average_torque(case.machine, at).rms[0],
-            average_torque(case.machine, design, gradients=True).rms_gradients,
+            lambda at: torque_averages(case.machine, at).rms[0],
+            torque_averages(case.machine, design, gradients=True).rms_gradients,
         ),
         (
             lambda at: turn_work(case.machine, at).mean[0, LOAD],
@@ -229,7 +229,7 @@ def test_derivatives_of_a_table_with_steps_are_differences_of_neighbours(case: C
         ),
     ):
         expected = slopes(read, design)
-        size = np.abs(expected).max() + average_torque(case.machine, design).rms[0] / design[0, 1]
+        size = np.abs(expected).max() + torque_averages(case.machine, design).rms[0] / design[0, 1]
         assert np.asarray(own_slopes).reshape(-1, 3)[0] == pytest.approx(expected, abs=1e-5 * size)
 
 
@@ -253,10 +253,10 @@ def test_a_step_is_the_limit_of_ever_steeper_ramps_with_friction_too(seed: int) 
 def test_means_with_friction_move_with_a_step_as_differences_say(seed: int) -> None:
     case = over_position(seed)
     machine = replace(case.machine, friction=random_friction(np.random.default_rng(seed)))
-    found = average_torque(machine, case.design, gradients=True)
+    found = torque_averages(machine, case.design, gradients=True)
     size = found.rms[0] / case.design[0, 1]
     for own_slopes, row in ((found.mean_gradients, 0), (found.rms_gradients, 2)):
-        expected = slopes(lambda at, row=row: average_torque(machine, at).values[row, 0], case.design)  # type: ignore[misc]
+        expected = slopes(lambda at, row=row: torque_averages(machine, at).values[row, 0], case.design)  # type: ignore[misc]
         assert np.asarray(own_slopes)[0] == pytest.approx(expected, abs=1e-5 * (size + np.abs(expected).max()))
 
 
@@ -287,7 +287,7 @@ def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
     table = PositionTable(
         positions=(0.016, 0.020, 0.020), forces=(0.0, -6e5, 0.0), datum="outer dead centre", during="outward stroke"
     )
-    assert table.steps
+    assert table.has_steps
     machine = Mechanism(speed=1.0, loads=(table,))
     linkage = Linkage(0.06, 0.3, 0.0)
     angle = brentq(lambda theta: 0.36 - float(linkage.at(theta).slider_position) - 0.020, -1.5, -0.1)
@@ -309,7 +309,7 @@ def test_a_shear_that_ends_in_a_step_has_its_peak_just_before() -> None:
             "recurs 360 deg later; got three points there",
         ),
         (
-            lambda: CrankTable(angles=(0.0, TURN, TURN), forces=(0.0, 1.0, 2.0)),
+            lambda: CrankTorqueTable(angles=(0.0, TURN, TURN), forces=(0.0, 1.0, 2.0)),
             "recurs 360 deg later; got three points there",
         ),
     ],
@@ -324,7 +324,7 @@ def test_a_table_that_ends_where_it_begins_a_cycle_later_closes_or_steps_there()
     closed = AngleTable(angles=(0.5, 2.0, 0.5 + TURN), forces=(5.0, 1.0, 5.0))
     stepped = AngleTable(angles=(0.5, 2.0, 0.5 + TURN), forces=(5.0, 1.0, 1.0))
     assert open_ended.knots() == closed.knots()
-    assert (open_ended.steps, closed.steps, stepped.steps) == (False, False, True)
+    assert (open_ended.has_steps, closed.has_steps, stepped.has_steps) == (False, False, True)
     machine = Mechanism(speed=1.0, loads=(stepped,))
     beside = cycle(machine, Linkage(0.03, 0.1, 0.0), np.array([0.5 - 1e-9, 0.5 + 1e-9])).load
     assert beside == pytest.approx([1.0, 5.0], abs=1e-7)
@@ -349,13 +349,13 @@ def test_every_table_of_a_job_may_step(table: dict[str, Any]) -> None:
         "objectives": {"peak_torque": "minimise"},
     }
     machine = parse_job(job).mechanism
-    assert machine.loads[0].steps
+    assert machine.loads[0].has_steps
     peak = find_peaks(machine, Signal.TORQUE, np.array([[0.04, 0.15, 0.0]]), limit=1, gradients=True)
     assert np.isfinite(peak.values).all()
     assert np.isfinite(np.asarray(peak.gradients)).all()
 
 
-@pytest.mark.parametrize("kind", [AngleTable, CrankTable])
+@pytest.mark.parametrize("kind", [AngleTable, CrankTorqueTable])
 def test_a_table_of_two_turns_with_all_points_in_one_of_them(kind: Any) -> None:
     chance = np.random.default_rng(37)
     for _ in range(200):
@@ -365,7 +365,7 @@ def test_a_table_of_two_turns_with_all_points_in_one_of_them(kind: Any) -> None:
         names = {"forces": tuple(values)}
         table = kind(angles=tuple(angles), cycle="720 deg", **names)
         for turn in (1, 2):
-            at, forces = table.on_turn(turn).knots()
+            at, forces = table.load_on_turn(turn).knots()
             where = np.linspace(0.0, TURN, 97)
             expected = np.interp(
                 np.mod(where + TURN * (turn - 1) - angles[0], 2.0 * TURN),

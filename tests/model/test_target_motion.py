@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.model.kinematics.target_motion import Freedom, Measure, TargetMotion, fit
+from slidercrank.model.kinematics.target_motion import Freedom, Measure, TargetMotion, fit_target_motion
 from slidercrank.model.linkage.linkage import Linkage
 from tests.model.cases import Array, random_designs
 
@@ -40,7 +40,7 @@ def measured(design: Array, branch: float, phase: Array, shift: Freedom, measure
 @pytest.mark.parametrize("shift", ["fixed", "free"])
 @pytest.mark.parametrize("measure", ["greatest", "rms"])
 def test_no_phase_of_a_dense_scan_is_better(branch: float, shift: Freedom, measure: Measure) -> None:
-    found = fit(target("free", shift), branch, measure, DESIGNS)
+    found = fit_target_motion(target("free", shift), branch, measure, DESIGNS)
     phases = np.linspace(-np.pi, np.pi, 4001)
     for n, design in enumerate(DESIGNS):
         scanned = measured(design, branch, phases, shift, measure)
@@ -53,7 +53,7 @@ def test_no_phase_of_a_dense_scan_is_better(branch: float, shift: Freedom, measu
 
 @pytest.mark.parametrize("measure", ["greatest", "rms"])
 def test_fixed_phase_and_shift_are_none(measure: Measure) -> None:
-    found = fit(target(), 1.0, measure, DESIGNS)
+    found = fit_target_motion(target(), 1.0, measure, DESIGNS)
     assert np.all(found.phase == 0.0)
     assert np.all(found.shift == 0.0)
     for n, design in enumerate(DESIGNS):
@@ -66,7 +66,7 @@ def test_motion_of_a_linkage_turned_and_moved_is_recognised(measure: Measure) ->
     for crank, rod, offset in DESIGNS[:10]:
         linkage = Linkage(crank, rod, offset)
         positions = linkage.at(ANGLES + 0.7).slider_position - 0.03
-        found = fit(target("free", "free", positions), 1.0, measure, np.array([[crank, rod, offset]]))
+        found = fit_target_motion(target("free", "free", positions), 1.0, measure, np.array([[crank, rod, offset]]))
         assert found.values[0] < 1e-14
         assert math.remainder(found.phase[0] - 0.7, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-7)
         assert found.shift[0] == pytest.approx(-0.03, abs=1e-8)
@@ -75,16 +75,16 @@ def test_motion_of_a_linkage_turned_and_moved_is_recognised(measure: Measure) ->
 def test_crossed_branch_counts_distances_outward() -> None:
     crank, rod, offset = DESIGNS[0]
     positions = -Linkage(crank, rod, offset, "crossed").at(ANGLES).slider_position
-    assert fit(target(positions=positions), -1.0, "greatest", DESIGNS[:1]).values[0] < 1e-15
+    assert fit_target_motion(target(positions=positions), -1.0, "greatest", DESIGNS[:1]).values[0] < 1e-15
 
 
 def test_freedom_never_makes_it_worse() -> None:
     measures: tuple[Measure, ...] = ("greatest", "rms")
     for measure in measures:
-        fixed = fit(target(), 1.0, measure, DESIGNS).values
-        turned = fit(target(phase="free"), 1.0, measure, DESIGNS).values
-        moved = fit(target(shift="free"), 1.0, measure, DESIGNS).values
-        both = fit(target("free", "free"), 1.0, measure, DESIGNS).values
+        fixed = fit_target_motion(target(), 1.0, measure, DESIGNS).values
+        turned = fit_target_motion(target(phase="free"), 1.0, measure, DESIGNS).values
+        moved = fit_target_motion(target(shift="free"), 1.0, measure, DESIGNS).values
+        both = fit_target_motion(target("free", "free"), 1.0, measure, DESIGNS).values
         slack = 1.0 + 1e-12
         assert np.all(turned <= fixed * slack)
         assert np.all(moved <= fixed * slack)
@@ -112,4 +112,4 @@ def test_wrong_words_and_linkages_that_do_not_turn_are_refused() -> None:
     with pytest.raises(InputError, match="phase of a target motion must be 'fixed' or 'free'; got 'loose'"):
         target("loose")  # type: ignore[arg-type]
     with pytest.raises(AssemblyError, match="for full rotation"):
-        fit(target(), 1.0, "rms", np.array([[0.1, 0.1, 0.05]]))
+        fit_target_motion(target(), 1.0, "rms", np.array([[0.1, 0.1, 0.05]]))

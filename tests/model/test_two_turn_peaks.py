@@ -20,7 +20,7 @@ from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.two_turn_machine import machines_of_both_turns
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.objectives.registry import QUANTITIES
@@ -72,8 +72,8 @@ def test_the_load_is_that_of_the_table_over_two_turns(seed: int) -> None:
 def test_peaks_and_means_are_those_of_both_turns(seed: int) -> None:
     machine, _, designs = random_case(seed)
     peaks = find_peaks(machine, Signal.TORQUE, designs)
-    averages = average_torque(machine, designs)
-    ends = [average_torque(half, designs) for half in machines_of_both_turns(machine)]
+    averages = torque_averages(machine, designs)
+    ends = [torque_averages(half, designs) for half in machines_of_both_turns(machine)]
     tops = [find_peaks(half, Signal.TORQUE, designs).values[:, 0] for half in machines_of_both_turns(machine)]
     assert peaks.values[:, 0] == pytest.approx(np.maximum(*tops), rel=1e-15)
     assert averages.mean == pytest.approx(0.5 * (ends[0].mean + ends[1].mean), rel=1e-12, abs=1e-12)
@@ -161,7 +161,7 @@ def test_four_cylinders_of_four_strokes_fire_one_after_the_other() -> None:
     phases = tuple(math.radians(angle) for angle in (0, 180, 360, 540))
     four = replace(machine, arrangement=Arrangement(phases=phases, places=(0.0, 0.1, 0.2, 0.3)))
     found = multi_cylinder_cycle(four, linkage)
-    assert found.mean == pytest.approx(4.0 * average_torque(machine, np.array([[0.03, 0.11, 0.0]])).mean[0], rel=1e-10)
+    assert found.mean == pytest.approx(4.0 * torque_averages(machine, np.array([[0.03, 0.11, 0.0]])).mean[0], rel=1e-10)
     spectrum = np.abs(np.fft.rfft(sum(cycle(machine, linkage, DENSE + phase).torque for phase in phases)))
     assert spectrum[[1, 2, 3]] == pytest.approx(0.0, abs=1e-9 * spectrum[4])
 
@@ -176,4 +176,4 @@ def test_impossible_cycles_are_refused() -> None:
         for datum in ("inner dead centre", "outer dead centre")
     ]
     with pytest.raises(InputError, match="one datum; got inner dead centre and outer dead centre"):
-        average_torque(Mechanism(speed=1.0, loads=tuple(tables)), np.array([[0.03, 0.1, 0.0]]))
+        torque_averages(Mechanism(speed=1.0, loads=tuple(tables)), np.array([[0.03, 0.1, 0.0]]))

@@ -17,7 +17,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.machine.work_absorption import may_do_work_over_a_turn
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from tests.model.cases import SMOOTH, random_designs
 from tests.model.virtual_work import drive_torque
 
@@ -56,7 +56,7 @@ def test_loads_that_store_what_they_take_do_no_work_over_a_turn(loads: tuple[Loa
     assert not may_do_work_over_a_turn(machine)
     mean, size = mean_and_size(machine)
     assert mean < 1e-6 * size
-    found = average_torque(machine, random_designs(20, seed=8, least_margin=0.1), gradients=True)
+    found = torque_averages(machine, random_designs(20, seed=8, least_margin=0.1), gradients=True)
     assert not found.mean.any()
     assert found.mean_gradients is not None
     assert not found.mean_gradients.any()
@@ -67,7 +67,7 @@ def test_loads_that_store_what_they_take_do_no_work_over_a_turn(loads: tuple[Loa
 def test_loads_that_do_not_give_it_back_work(loads: tuple[Load, ...]) -> None:
     machine = replace(BARE, loads=loads)
     assert may_do_work_over_a_turn(machine)
-    assert average_torque(machine, random_designs(20, seed=8, least_margin=0.1)).mean.all()
+    assert torque_averages(machine, random_designs(20, seed=8, least_margin=0.1)).mean.all()
 
 
 def test_friction_and_acceleration_work_and_a_crank_at_rest_moves_no_damper() -> None:

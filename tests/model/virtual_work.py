@@ -19,7 +19,7 @@ from slidercrank.model.machine.links import Bar, Link
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import During, Load
 from slidercrank.model.machine.loads.position_table import PositionTable
@@ -154,7 +154,7 @@ def crank_torque(mechanism: Mechanism, theta: Any) -> Any:
     """Return the sum of the torques of loads on the crank, N m, tables from zero crank angle."""
     total = 0.0 * np.asarray(theta)
     for load in mechanism.loads:
-        if isinstance(load, CrankTable):
+        if isinstance(load, CrankTorqueTable):
             total = total + np.interp(theta, load.angles, load.forces, period=2.0 * math.pi)
         elif isinstance(load, CrankTorque):
             against = load.resistance * math.copysign(1.0, mechanism.speed)

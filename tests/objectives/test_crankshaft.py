@@ -20,7 +20,7 @@ from slidercrank.model.machine.cylinder_machines import member_machines, single_
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.averages import average
+from slidercrank.model.signals.averages import signal_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
@@ -72,7 +72,7 @@ def test_peaks_and_averages_of_the_whole_are_those_of_polynomials_through_its_su
     ):
         assert find_peaks(machine, kind, design, limit=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
         if rms is not None:
-            assert average(machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-12)
+            assert signal_averages(machine, kind, design).rms[0] == pytest.approx(rms, rel=1e-12)
     mean = QUANTITIES["mean_torque"].evaluate(machine, design).values[0]
     assert mean == pytest.approx(whole.mean, rel=1e-10, abs=1e-12 * whole.rms)
     assert QUANTITIES["torque_fluctuation"].evaluate(machine, design).values[0] == pytest.approx(whole.fluctuation)
@@ -86,7 +86,7 @@ def test_peaks_along_a_profile_are_those_of_its_curves(seed: int) -> None:
     for name, kind in MOVING.items():
         wanted = found.peaks[name].value
         assert find_peaks(machine, kind, design, limit=1).values[0, 0] == pytest.approx(wanted, rel=1e-12)
-    averages = average(machine, Signal.TORQUE, design)
+    averages = signal_averages(machine, Signal.TORQUE, design)
     assert averages.rms[0] == pytest.approx(found.rms_torque, rel=1e-12)
     assert averages.mean[0] == pytest.approx(found.mean_torque, rel=1e-10, abs=1e-12 * found.rms_torque)
     power = QUANTITIES["mean_power"].evaluate(machine, design).values[0]
@@ -194,7 +194,9 @@ def test_four_strokes_in_line_are_a_dense_sweep_of_their_sum() -> None:
     assert found.values[0, 0] == pytest.approx(np.abs(torque).max(), rel=1e-6)
     at = multi_cylinder_curves(machine, linkage, found.angles[0] + np.array([-1e-9, 1e-9])).torque
     assert np.abs(at).max() == pytest.approx(found.values[0, 0], rel=1e-6)
-    assert average(machine, Signal.TORQUE, design).rms[0] == pytest.approx(math.sqrt(np.mean(torque**2)), rel=1e-5)
+    assert signal_averages(machine, Signal.TORQUE, design).rms[0] == pytest.approx(
+        math.sqrt(np.mean(torque**2)), rel=1e-5
+    )
 
 
 def test_works_and_volumes_are_those_of_all_cylinders_and_ratios_those_of_one() -> None:

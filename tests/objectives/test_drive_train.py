@@ -16,7 +16,7 @@ from slidercrank.model.machine.drive import ConstantTorque, Drive
 from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.model.machine.varying_numbers import Varying
@@ -63,8 +63,11 @@ class HandMade:
     def torque_and_speed(self, theta: Array) -> tuple[Array, Array]:
         """Return torque, N m, and speed, rad/s, of the motor in its direction of rotation."""
         machine, drive = self.case.machine, self.drive
-        ratio = self.case.profile.ratio(theta)
-        speed, acceleration = machine.speed * ratio, machine.speed**2 * ratio * self.case.profile.slope(theta)
+        ratio = self.case.profile.speed_ratio(theta)
+        speed, acceleration = (
+            machine.speed * ratio,
+            machine.speed**2 * ratio * self.case.profile.speed_ratio_slope(theta),
+        )
         torque = np.sum(
             [
                 torque_of_one(one, self.case.design, theta + lead, speed, acceleration)
@@ -244,7 +247,7 @@ def test_a_peak_on_the_kink_of_the_gear_moves_with_it() -> None:
     ratio, slope, bend = 1.0 + 0.3 * math.cos(1.0), -0.3 * math.sin(1.0), -0.3 * math.cos(1.0)
     fall = rotor * 400.0 * (slope**2 + ratio * bend)  # of the rotor's torque at 20 rad/s, N m/rad
     rise = -fall * LOSSY.gear_ratio
-    loads = (CrankTable(angles=(1.0, 2.0), forces=(0.5 * rise, -0.5 * rise)), CrankTorque())
+    loads = (CrankTorqueTable(angles=(1.0, 2.0), forces=(0.5 * rise, -0.5 * rise)), CrankTorque())
     torque = Varying(name="torque", sets=(("loads.1.torque", 1.0),), lower=-0.1, upper=0.1)
     machine = Mechanism(
         speed=20.0,

@@ -31,7 +31,7 @@ TURN = 2.0 * math.pi
 def flow_at(machine: Mechanism, design: Array, angles: Array) -> Array:
     """Return the volume that all pumps deliver per crank angle at crank angles of the shaft, m^3/rad."""
     linkage, whole, shaft = linkage_of(design, machine.branch), np.zeros(angles.shape), machine.arrangement
-    for lead in (0.0,) if shaft is None else map(shaft.lead, range(len(shaft.phases))):
+    for lead in (0.0,) if shaft is None else map(shaft.lead_over_slider_line, range(len(shaft.phases))):
         rate = linkage.at(angles + lead, speed=1.0).slider_velocity * machine.sign * machine.direction
         for load in machine.loads:
             assert isinstance(load, Compressor)
@@ -127,7 +127,7 @@ def test_flow_along_a_speed_profile_has_the_turns_over_time() -> None:
     even = Mechanism(speed=20.0, loads=(PUMP,))
     uneven = replace(even, speed_profile=profile)
     angles = np.linspace(0.0, TURN, 4097)[:-1]
-    time = np.mean(1.0 / profile.ratio(angles))
+    time = np.mean(1.0 / profile.speed_ratio(angles))
     found, plain = (FLOW.evaluate(machine, DESIGNS).values for machine in (uneven, even))
     np.testing.assert_allclose(found, plain / time, rtol=1e-12)
     assert FLOW_RIPPLE.undefined_because([uneven]) is not None

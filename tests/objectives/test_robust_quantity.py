@@ -110,7 +110,7 @@ def test_percentile_of_the_stroke_is_that_of_the_monte_carlo_simulation(shape: s
     spreads = Spreads(crank=dimension, rod=dimension, offset=dimension)
     for row, (crank, rod, offset) in enumerate(DESIGNS):
         reach = limits_of_sources(COARSE, Linkage(crank, rod, offset))
-        drawn = spreads.draw(reach, count, np.random.default_rng([5, row]))
+        drawn = spreads.draw_errors(reach, count, np.random.default_rng([5, row]))
         stroke = np.sort(Linkage(crank + drawn.crank, rod + drawn.rod, offset + drawn.offset).stroke)
         for side, share in (("high", 0.99), ("low", 0.01)):
             found = of("stroke", side, shape=shape).evaluate(COARSE, DESIGNS).values[row]  # type: ignore[arg-type]

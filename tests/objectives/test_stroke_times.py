@@ -201,7 +201,7 @@ def test_cylinders_along_a_profile_have_times_of_their_own() -> None:
         found = scaled_stroke_times(both, *FEEDER.T, cylinder=cylinder)
         assert found.outward[0] / abs(machine.speed) == pytest.approx(wanted["outward_stroke_time"], rel=1e-9)
     for name, over in (("outward_to_inward_time_ratio", 1.0), ("inward_to_outward_time_ratio", -1.0)):
-        each = [scaled_stroke_times(both, *FEEDER.T, cylinder=k).ratio[0] ** over for k in range(2)]
+        each = [scaled_stroke_times(both, *FEEDER.T, cylinder=k).outward_to_inward_ratio[0] ** over for k in range(2)]
         assert abs(each[0] - each[1]) > 0.01
         assert value(name, both, FEEDER) == pytest.approx(min(each), rel=1e-14)
     for name in ("time_ratio", *TIMES):

@@ -12,7 +12,7 @@ from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
@@ -140,7 +140,7 @@ def test_gradients_are_those_of_extrapolated_differences(friction: bool) -> None
 
 PIN = Pin(radius=0.1, coefficient=0.5)
 ANGLES, FORCES = tuple(np.radians([60.0, 90.0, 120.0]).tolist()), (0.0, 100.0, 0.0)
-TORQUE, FORCE = CrankTable(angles=ANGLES, forces=FORCES), AngleTable(angles=ANGLES, forces=FORCES)
+TORQUE, FORCE = CrankTorqueTable(angles=ANGLES, forces=FORCES), AngleTable(angles=ANGLES, forces=FORCES)
 JUMPS = [  # the rod turns back at 90 deg; it overtakes the crank where the slider passes the pivot, 2.25 rad
     (TORQUE, Swing(start=np.radians(60.0), end=np.radians(120.0), driver="slider"), [1.0, 2.0, -0.3]),
     (TORQUE, Swing(start=np.radians(120.0), end=np.radians(60.0), driver="slider"), [1.0, 2.0, 0.3]),

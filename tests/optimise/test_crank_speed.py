@@ -45,7 +45,7 @@ def turn_seconds(machine: Mechanism) -> float:
         return 2.0 * math.pi / abs(machine.speed)
 
     def slowness(theta: float) -> float:
-        return 1.0 / abs(machine.speed * float(profile.ratio(np.array([theta]))[0]))
+        return 1.0 / abs(machine.speed * float(profile.speed_ratio(np.array([theta]))[0]))
 
     knots = [0.0, *profile.knots, 2.0 * math.pi]
     return sum(quad(slowness, low, high, epsabs=0.0, epsrel=1e-12)[0] for low, high in pairwise(knots))

@@ -13,7 +13,7 @@ import pytest
 
 from slidercrank.model.errors import InputWarning
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
@@ -79,7 +79,7 @@ def random_machine(random: np.random.Generator) -> Mechanism:
         loads.append(CrankTorque(torque=random.uniform(-5.0, 5.0), resistance=random.uniform(0.0, 2.0)))
     if random.random() < 0.3:
         torques = tuple(random.uniform(-9.0, 9.0, 3).tolist())
-        loads.append(CrankTable(angles=tuple(np.sort(random.uniform(0.0, 6.0, 3)).tolist()), forces=torques))
+        loads.append(CrankTorqueTable(angles=tuple(np.sort(random.uniform(0.0, 6.0, 3)).tolist()), forces=torques))
     branch = random.choice(["open", "crossed"]).item()
     return Mechanism(speed=float(random.choice([-9.0, 9.0])), branch=branch, loads=tuple(loads))
 
@@ -116,7 +116,7 @@ def test_the_net_work_of_random_loads_is_the_integral_over_a_swing_and_back() ->
             replace(each, datum="crank pivot") if isinstance(each, PositionTable | Spring) else each
             for each in turning.loads
             if not isinstance(
-                each, Viscous | Drag | CrankTable
+                each, Viscous | Drag | CrankTorqueTable
             )  # the swing is slow; tables are tried as loads on the slider
         ]
         machine = Mechanism(speed=0.0, branch=turning.branch, loads=tuple(loads))

@@ -54,7 +54,7 @@ def test_a_part_of_a_stroke_is_a_table_from_the_dead_centre_where_it_begins_or_e
     asked = problem({key: stroke, "over": over})
     (load,) = asked.mechanism.loads
     assert load == PositionTable(
-        positions=(0.0, 0.06, 0.06), forces=(force, force, 0.0), datum=datum, during=stroke, drives=key == "helps"
+        positions=(0.0, 0.06, 0.06), forces=(force, force, 0.0), datum=datum, during=stroke, may_drive=key == "helps"
     )
     sign = 1.0 if key == "helps" else -1.0
     work = net_work(asked, np.array([[0.05, 0.3, 0.02], [0.02, 0.3, 0.0]]), [0])
@@ -64,8 +64,8 @@ def test_a_part_of_a_stroke_is_a_table_from_the_dead_centre_where_it_begins_or_e
 @pytest.mark.parametrize(
     ("load", "wanted"),
     [
-        ({"helps": "outward stroke"}, StrokeForce(outward=350.0, inward=0.0, drives=True)),
-        ({"helps": "motion", "over": "whole stroke"}, StrokeForce(outward=350.0, inward=-350.0, drives=True)),
+        ({"helps": "outward stroke"}, StrokeForce(outward=350.0, inward=0.0, may_drive=True)),
+        ({"helps": "motion", "over": "whole stroke"}, StrokeForce(outward=350.0, inward=-350.0, may_drive=True)),
         ({"opposes": "motion"}, StrokeForce(outward=-350.0, inward=350.0)),
         ({"opposes": "inward stroke", "over": "Whole Stroke"}, StrokeForce(outward=0.0, inward=350.0)),
     ],

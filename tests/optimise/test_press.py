@@ -57,7 +57,7 @@ def test_a_press_slowed_while_it_presses_needs_a_stronger_gearmotor() -> None:
     slowed = replace(even, mechanism=replace(PRESS.mechanism, speed_profile=profile))
     curves = slowed.analyse(design[0]).cycle(20_000).iloc[:-1]
     theta, torque = curves["crank_angle_rad"].to_numpy(), curves["torque_Nm"].to_numpy()
-    time = 1.0 / profile.ratio(theta)
+    time = 1.0 / profile.speed_ratio(theta)
     over_time, over_angle = (math.sqrt(np.average(torque**2, weights=each)) for each in (time, np.ones(len(time))))
     found = slowed.evaluate(design, ["rms_torque"])[0, 0]
     assert found == pytest.approx(over_time, rel=1e-4)  # the load turns sharply between samples

@@ -39,7 +39,7 @@ def outward_to_inward(problem: Problem, designs: Any, count: int = 200_001) -> l
     assert profile is not None
     ends = problem.mechanism.direction * 2.0 * np.pi * np.arange(count) / (count - 1)
     sign = 1.0 if problem.mechanism.branch == "open" else -1.0
-    time, found = 1.0 / profile.ratio(0.5 * (ends[1:] + ends[:-1])), []
+    time, found = 1.0 / profile.speed_ratio(0.5 * (ends[1:] + ends[:-1])), []
     for crank, rod, offset in np.asarray(designs)[:, :3]:
         x = np.abs(crank * np.cos(ends) + sign * np.sqrt(rod**2 - (offset - crank * np.sin(ends)) ** 2))
         out = np.diff(x) > 0.0

@@ -10,7 +10,7 @@ import pytest
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.closure import swings_without_dead_point
-from slidercrank.model.swing.end_angles import ends_of, greatest_pin_distance
+from slidercrank.model.swing.end_angles import greatest_pin_distance, swing_ends
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_types import Side
 from slidercrank.optimise.problem.problem import Problem
@@ -80,7 +80,7 @@ def test_equalities_of_a_swing_hold_to_rounding_and_miss_no_design(of: str, free
                 tried = sheet.dimensions(random.random((60, len(sheet.free))))
                 tried = tried[np.isfinite(tried).all(axis=1)]
                 tried = tried[swings_without_dead_point(own.mechanism, own.motion or swing, tried)]
-                ends = ends_of(own.mechanism, own.motion or swing, tried)
+                ends = swing_ends(own.mechanism, own.motion or swing, tried)
                 tried = tried[
                     greatest_pin_distance(tried, [ends.start, ends.end]) < 0.995 * tried[:, 1]
                 ]  # else it opens: no digits

@@ -17,7 +17,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
-from slidercrank.model.signals.averages import average, average_torque
+from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes
@@ -111,13 +111,13 @@ def _cycle() -> dict[str, float]:
         "peak torque": torque,
         "peak torque at crank angle": angle,
         "peak torque per mm of rod": 1e-3 * float(slopes[0, 0, 1]),
-        "RMS torque over time": float(average_torque(MACHINE, _DESIGN).rms[0]),
+        "RMS torque over time": float(torque_averages(MACHINE, _DESIGN).rms[0]),
         "peak torque, mass of 1.05 kg on the slider alone": peak(
             Signal.TORQUE, Mechanism(speed=251.0, slider_mass=1.05)
         )[0],
         "peak power": 1e-3 * peak(Signal.POWER)[0],
         "peak shaking force": peak(Signal.SHAKING_FORCE)[0],
-        "RMS shaking force over time": float(average(MACHINE, Signal.SHAKING_FORCE, _DESIGN).rms[0]),
+        "RMS shaking force over time": float(signal_averages(MACHINE, Signal.SHAKING_FORCE, _DESIGN).rms[0]),
     }
 
 
@@ -131,7 +131,7 @@ def _errors() -> dict[str, float]:
         "influence of the offset": float(influences.offset),
         "influence of the crank angle": 1e3 * float(influences.crank_angle) * math.radians(1.0),
         "position error, worst case": 1e3 * float(first.worst_case[0]),
-        "position error, exact worst case": 1e3 * float(exact.size[0]),
+        "position error, exact worst case": 1e3 * float(exact.largest_magnitude[0]),
         "bound on the first-order error": 1e3 * float(first.remainder[0]),
         "position error, root-sum-square": 1e3 * float(first.root_sum_square[0]),
         "worst case, greatest over the cycle": 1e3

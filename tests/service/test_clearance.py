@@ -66,16 +66,18 @@ def test_numbers_are_those_of_the_summary(run: ClearanceRun) -> None:
 
 def test_peaks_of_the_summary_are_peaks_of_the_motion(run: ClearanceRun) -> None:
     """Turn by turn, with the ideal peak from a dense sweep of the ideal acceleration."""
-    turn = np.floor(run.times / run.period * (1.0 + 1e-12))
+    turn = np.floor(run.times / run.turn_time * (1.0 + 1e-12))
     peaks = [np.abs(run.slider_acceleration[turn == k]).max() for k in (1, 2, 3)]
     summary = summarise(run)
     assert summary.peak_acceleration.value == pytest.approx(np.mean(peaks), rel=1e-12)
     sweep = LINKAGE.at(np.linspace(0.0, 2.0 * math.pi, 20001), speed=MACHINE.speed)
     ideal = np.abs(sweep.slider_acceleration).max()
     assert summary.acceleration_ratio.value == pytest.approx(np.mean(peaks) / ideal, rel=1e-6)
-    impacts = np.count_nonzero(run.impact_times > run.period) / 3.0
+    impacts = np.count_nonzero(run.impact_times > run.turn_time) / 3.0
     assert summary.impacts.value == pytest.approx(impacts)
-    touching = np.sum(np.diff(run.times) * run.in_contact[:-1] * (run.times[:-1] >= run.period)) / (3.0 * run.period)
+    touching = np.sum(np.diff(run.times) * run.in_contact[:-1] * (run.times[:-1] >= run.turn_time)) / (
+        3.0 * run.turn_time
+    )
     assert summary.contact_share.value == pytest.approx(touching, abs=1e-3)
 
 
@@ -110,7 +112,7 @@ def test_ideal_joints_are_refused() -> None:
 def test_curves_are_the_last_turn_of_the_motion(run: ClearanceRun) -> None:
     curves = loose_joint_curves(run)
     assert (curves.angles[0], curves.angles[-1]) == pytest.approx((0.0, 360.0), abs=1e-9)
-    last = run.times >= 3.0 * run.period * (1.0 - 1e-12)
+    last = run.times >= 3.0 * run.turn_time * (1.0 - 1e-12)
     np.testing.assert_allclose(curves.curves[LENGTH], run.slider_position[last])
     np.testing.assert_allclose(curves.curves[SPEED], run.slider_velocity[last])
     np.testing.assert_allclose(curves.curves[ACCELERATION], run.slider_acceleration[last])

@@ -14,7 +14,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
+from slidercrank.model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
 from slidercrank.objectives.tables.all_quantities import analysis_columns
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves
@@ -86,11 +86,11 @@ def test_the_figure_of_the_curves_marks_the_first_of_equal_peaks() -> None:
 def test_the_first_of_equal_values_is_that_of_the_least_angle_and_zero_is_zero_but_for_rounding() -> None:
     values = np.array([[3.0, 1.0, 3.0 * (1.0 - 1e-12)], [2.0, 2.0 + 1e-6, 2.0], [np.inf, np.nan, np.nan]])
     angles = np.array([[5.0, 0.1, 2.0], [0.5, 1.0, 1.5], [np.nan, np.nan, np.nan]])
-    assert first_greatest(values, angles, TURN).tolist() == [2, 1, 0]
+    assert index_of_first_maximum(values, angles, TURN).tolist() == [2, 1, 0]
     # A sample beside a flat top is as high but for rounding, and is not the peak.
-    assert first_greatest(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
+    assert index_of_first_maximum(np.array([1.0 - 1e-12, 1.0]), np.array([1.0, 1.0001]), TURN) == 1
     # At zero from below.
-    assert first_greatest(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
+    assert index_of_first_maximum(np.array([1.0, 1.0]), np.array([3.0, TURN - 1e-9]), TURN) == 1
     assert [angle_in_cycle(angle, TURN) for angle in (TURN - 1e-9, 1.0, TURN + 1.0)] == [0.0, 1.0, pytest.approx(1.0)]
 
 

@@ -61,7 +61,7 @@ def test_speeds_come_from_a_file(over: str, pytestconfig: pytest.Config, tmp_pat
     machine = load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)).mechanism
     assert machine.speed_profile is not None
     at = np.linspace(0.0, 6.0, 30)
-    assert machine.speed_profile.ratio(at) == pytest.approx(1.0 + 0.05 * np.cos(at), abs=2e-6)
+    assert machine.speed_profile.speed_ratio(at) == pytest.approx(1.0 + 0.05 * np.cos(at), abs=2e-6)
 
 
 def _recorded(folder: Path, times: np.ndarray, speeds: np.ndarray, digits: int = 12) -> None:
@@ -84,7 +84,7 @@ def test_a_record_of_one_turn_is_one_though_its_numbers_are_rounded(
         assert isinstance(profile, SpeedTable)
         assert len(profile.angles) == 40  # the last point is the first, a turn later
         assert np.diff(profile.angles) == pytest.approx(math.radians(9.0), abs=math.radians(0.04))  # as the last step
-        assert profile.ratio(np.linspace(0.0, 6.0, 30)) == pytest.approx(1.0, abs=1e-12)
+        assert profile.speed_ratio(np.linspace(0.0, 6.0, 30)) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_a_record_of_one_turn_at_an_uneven_speed_has_its_profile(pytestconfig: pytest.Config, tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_a_record_of_one_turn_at_an_uneven_speed_has_its_profile(pytestconfig: p
     profile = load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
     assert len(profile.angles) == 60
-    assert profile.ratio(theta) == pytest.approx(1.0 + 0.05 * np.cos(theta), abs=1e-4)
+    assert profile.speed_ratio(theta) == pytest.approx(1.0 + 0.05 * np.cos(theta), abs=1e-4)
 
 
 def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest.Config, tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest
     _recorded(tmp_path, times, speeds)
     profile = load_job(job).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
-    assert profile.ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
+    assert profile.speed_ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
 
 
 @pytest.mark.slow
@@ -136,8 +136,8 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
 
 
 def test_one_harmonic_is_told_as_one() -> None:
-    assert Harmonics(cosines=(0.05,)).text == "1 harmonic of the crank angle"
-    assert Harmonics(sines=(0.0, 0.05)).text == "2 harmonics of the crank angle"
+    assert Harmonics(cosines=(0.05,)).description == "1 harmonic of the crank angle"
+    assert Harmonics(sines=(0.0, 0.05)).description == "2 harmonics of the crank angle"
 
 
 @pytest.mark.parametrize(

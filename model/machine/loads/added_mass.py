@@ -28,7 +28,7 @@ class AddedMass(Load):
     def __post_init__(self) -> None:
         require_numbers(self, "mass", least=0.0, unit="kg")
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return the mass, after unit factors."""
         return (1.0, 1.0, self.mass, 0.0)
 
@@ -38,12 +38,12 @@ class AddedMass(Load):
         return True
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The mass."""
         return f"added mass, {self.mass:.6g} kg"
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """It opposes acceleration."""
         return "resists acceleration of the slider; does no net work over a cycle"
 

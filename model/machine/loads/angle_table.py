@@ -28,7 +28,7 @@ from .load import (
     has_step,
     increasing_points_entry,
     load_builder,
-    require_table,
+    require_valid_table,
     require_word,
 )
 from .load_text import SLIDES, effect_by_direction, force_magnitude_text, range_of_angles, without_zeros_before_steps
@@ -55,7 +55,7 @@ class AngleTable(Load):
     datum: AngleDatum = "zero crank angle"
     cycle: CycleAngle = "360 deg"
     turn: int = 0
-    drives: bool = False
+    may_drive: bool = False
 
     enters: ClassVar = Enters.ANGLE_TABLE
     sizes: ClassVar = ("forces",)
@@ -63,7 +63,7 @@ class AngleTable(Load):
 
     def __post_init__(self) -> None:
         store_as_tuples(self, "angles", "forces")
-        require_table("angles", self.angles, self.forces, values=self.tabulated[0])
+        require_valid_table("angles", self.angles, self.forces, values=self.tabulated[0])
         require_word("during", self.during, During)
         require_word("datum", self.datum, AngleDatum)
         require_word("cycle", self.cycle, CycleAngle)
@@ -74,7 +74,7 @@ class AngleTable(Load):
                 f"angles of a periodic table must span at most {self.cycle}; got {math.degrees(span):.6g} deg; "
                 + ("give at most two turns" if two_turns else 'for a cycle of two turns, set cycle = "720 deg"')
             )
-        if self._closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
+        if self._is_closed and (self.angles[1] == self.angles[0] or self.angles[-2] == self.angles[-1]):
             raise InputError(
                 "a periodic table may have at most two points at one angle, and its first angle recurs "
                 f"{self.cycle} later; got three points there, from {math.degrees(self.angles[0]):.6g} deg to "
@@ -82,7 +82,7 @@ class AngleTable(Load):
             )
 
     @property
-    def _closed(self) -> bool:
+    def _is_closed(self) -> bool:
         """Whether the last point is the first one a cycle later."""
         return self.angles[-1] - self.angles[0] >= self._period - _ROUNDING
 
@@ -95,11 +95,11 @@ class AngleTable(Load):
         """Two for a cycle of 720 deg, unless the table belongs to one of its turns."""
         return 2 if self.cycle == "720 deg" and not self.turn else 1
 
-    def on_turn(self, turn: int) -> Load:
+    def load_on_turn(self, turn: int) -> Load:
         """Return the table of turn 1 or 2 alone, or itself if all turns are alike."""
         return replace(self, turn=turn) if self.cycle_turns > 1 else self
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return unit factors for the strokes in which the force acts."""
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
@@ -108,12 +108,12 @@ class AngleTable(Load):
 
         A table for one of two turns has both ends.
         """
-        inner = len(self.angles) - self._closed
+        inner = len(self.angles) - self._is_closed
         at = (*self.angles[:inner], self.angles[0] + self._period)
-        forces = (*self.forces[:inner], self.forces[-1 if self._closed else 0])
-        return self._of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
+        forces = (*self.forces[:inner], self.forces[-1 if self._is_closed else 0])
+        return self._knots_of_turn(np.array(at), np.array(forces)) if self.turn else (at, forces)
 
-    def _of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
+    def _knots_of_turn(self, at: Array, forces: Array) -> tuple[Sequence[float], Sequence[float]]:
         """Return the knots for one of two turns, from 0 to a turn, with the interior forces at its ends."""
         begin = _TURN * (self.turn - 1)
         shift = self._period * math.floor((begin - at[0]) / self._period) - begin
@@ -129,21 +129,21 @@ class AngleTable(Load):
         last = forces[high] if at[high] <= _TURN + _ROUNDING else np.interp(_TURN, at, forces)
         return [0.0, *at[is_inner].tolist(), _TURN], [float(first), *forces[is_inner].tolist(), float(last)]
 
-    def _force(self, angle: Any) -> Any:
+    def _force_at(self, angle: Any) -> Any:
         at, forces = replace(self, turn=0).knots()
         return np.interp(at[0] + np.mod(angle - at[0], self._period), at, forces)
 
     @property
-    def steps(self) -> bool:
+    def has_steps(self) -> bool:
         """Whether the force steps at any angle."""
-        return has_step(self.angles) or (self._closed and self.forces[-1] != self.forces[0])
+        return has_step(self.angles) or (self._is_closed and self.forces[-1] != self.forces[0])
 
     @property
-    def turns(self) -> bool:
+    def has_knots_along_rotation(self) -> bool:
         """Whether the angles are counted from a dead centre."""
         return self.datum != "zero crank angle"
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return one, unless the force is constant over the cycle."""
         forces = set(self.knots()[1])
         constant = forces == {0.0} or (self.during == "cycle" and len(forces) == 1)
@@ -154,16 +154,16 @@ class AngleTable(Load):
         if self.during == ("inward stroke" if passage.outward else "outward stroke"):
             return 0.0
         angle = passage.angle
-        if self.turns:
+        if self.has_knots_along_rotation:
             step = angle[:, 1:2] - angle[:, :1]
             starts = (self.datum == "inner dead centre") == passage.outward
             angle = np.sign(step) * (angle - (angle[:, :1] - 0.5 * step if starts else angle[:, -1:] + 0.5 * step))
         if self.cycle_turns > 1:  # work per turn, averaged over both
-            return 0.5 * passage.work(self._force(angle) + self._force(angle + _TURN))
-        return passage.work(self._force(angle))
+            return 0.5 * passage.work_of_force(self._force_at(angle) + self._force_at(angle + _TURN))
+        return passage.work_of_force(self._force_at(angle))
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The minimum and maximum force."""
         return force_magnitude_text(without_zeros_before_steps(self.angles, self.forces))
 
@@ -175,25 +175,25 @@ class AngleTable(Load):
         return (self.forces, (0.0,)) if self.during == "outward stroke" else ((0.0,), self.forces)
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """Effect on its stroke or, over the whole cycle, on motion in either direction."""
         return (
             effect_by_direction(self.forces, SLIDES, "motion")
             if self.possible_stroke_forces is None
-            else super().effect
+            else super().effect_text
         )
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """The ends of the table, and its cycle."""
         return range_of_angles(self.angles, self.datum, self.cycle)
 
 
-def _of_pressures(
+def _table_of_pressures(
     pressure_angles: tuple[float, ...], head: Head, cycle: CycleAngle, during: During, **pressures: Any
 ) -> AngleTable:
     forces = piston_forces(pressure_angles, head=head, **pressures)
-    return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during, drives=True)
+    return AngleTable(angles=pressure_angles, forces=forces, datum=head, cycle=cycle, during=during, may_drive=True)
 
 
 AngleTable.tables = (
@@ -235,7 +235,7 @@ AngleTable.tables = (
             DURING,
         ),
         {"pressure_angles": ["0 deg", "180 deg"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
-        _of_pressures,
+        _table_of_pressures,
         motion="turn",
     ),
 )

@@ -38,17 +38,17 @@ class Compressor(Cylinder):
                 )
 
     @property
-    def resists(self) -> bool:
+    def never_drives(self) -> bool:
         """True."""
         return True
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """It takes work."""
         return "takes net work over a cycle"
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """Pressures, exponents and size."""
         machine = "pump" if self.compression_exponent == 0.0 else "compressor"
         exponents = (
@@ -56,10 +56,11 @@ class Compressor(Cylinder):
             if self.compression_exponent == 0.0
             else f", exponents {self.compression_exponent:.6g} and {self.expansion_exponent:.6g}"
         )
-        return f"{machine} from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar{exponents}, {self.size_text}"
+        pressures = f"from {1e-5 * self.low:.6g} to {1e-5 * self.high:.6g} bar"
+        return f"{machine} {pressures}{exponents}, {self.bore_and_clearance_text}"
 
 
-def _built(
+def _compressor_of_table(
     suction: float,
     discharge: float,
     medium: Medium,
@@ -95,7 +96,7 @@ Compressor.tables = (
             BACK_PRESSURE,
         ),
         {"bore": "70 mm", "suction": "1 bar", "discharge": "8 bar", "clearance": 0.05},
-        _built,
+        _compressor_of_table,
         motion="turn",
     ),
 )

@@ -41,7 +41,7 @@ class CrankTorque(Load):
         require_numbers(self, "resistance", phrase="the {} of the crank", least=0.0, unit="N m")
         require_numbers(self, "crank_stiffness", phrase="the stiffness of a spring on the crank", least=0.0)
 
-    def numbers(self) -> tuple[float, ...]:
+    def numbers_for_kernel(self) -> tuple[float, ...]:
         """Return the numbers in `slots`, after unit factors."""
         return (1.0, 1.0, self.torque, self.resistance, self.crank_stiffness, self.free_angle)
 
@@ -50,27 +50,27 @@ class CrankTorque(Load):
         """Whether it has a spring."""
         return self.crank_stiffness != 0.0
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return the constant torque and the torque against the motion."""
         return {(CrankTorque, "torque"): (self.torque,), (CrankTorque, "resistance"): (self.resistance,)}
 
     @property
-    def resists(self) -> bool:
+    def never_drives(self) -> bool:
         """Whether there is no constant torque."""
         return not self.torque
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The torques and the spring."""
-        return "; ".join(size for size, _ in self._parts) or "no torque on the crank"
+        return "; ".join(size for size, _ in self._magnitudes_and_effects) or "no torque on the crank"
 
     @property
     def text(self) -> str:
         """Each torque and the spring, with its effect."""
-        return "; ".join(f"{size}, {effect}" for size, effect in self._parts) or self.size
+        return "; ".join(f"{size}, {effect}" for size, effect in self._magnitudes_and_effects) or self.magnitude_text
 
     @property
-    def _parts(self) -> list[tuple[str, str]]:
+    def _magnitudes_and_effects(self) -> list[tuple[str, str]]:
         """Magnitudes and effects of the torques and the spring."""
         parts = []
         if self.torque:

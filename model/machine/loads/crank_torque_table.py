@@ -13,7 +13,7 @@ from .load_text import TURNS, effect_by_direction, force_magnitude_text
 
 
 @dataclass(frozen=True, kw_only=True)
-class CrankTable(AngleTable):
+class CrankTorqueTable(AngleTable):
     """A torque on the crank tabulated over the crank angle, interpolated linearly and periodically.
 
     forces: torques, N m, positive counter-clockwise. The other fields are those of `AngleTable`; it acts throughout the
@@ -23,32 +23,32 @@ class CrankTable(AngleTable):
     on_crank: ClassVar = True
     tabulated: ClassVar = ("torques", "N m")
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return unit factors for both strokes."""
         return (1.0, 1.0, 0.0, 0.0)
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return the work between knots, which cancels if the mean torque is zero."""
         angles, torques = self.knots()
         pairs = zip(pairwise(angles), pairwise(torques), strict=True)
-        return {CrankTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
+        return {CrankTorqueTable: tuple(0.5 * (b - a) * (first + second) for (a, b), (first, second) in pairs)}
 
     def stroke_work(self, passage: Passage) -> Any:
         """Return zero, because it loads neither stroke."""
         return 0.0
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The minimum and maximum torque."""
         return f"{force_magnitude_text(self.forces, 'N m', TURNS)} on the crank"
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """Effect on rotation in either direction."""
         return effect_by_direction(self.forces, TURNS, "rotation")
 
 
-CrankTable.tables = (
+CrankTorqueTable.tables = (
     Table(
         "torque_angles",
         "CrankTorqueTableLoad",
@@ -70,6 +70,6 @@ CrankTable.tables = (
             CYCLE,
         ),
         {"torque_angles": ["0 deg", "180 deg"], "torques": ["0 N m", "-20 N m"]},
-        load_builder(CrankTable, torque_angles="angles", torques="forces", measured_from="datum"),
+        load_builder(CrankTorqueTable, torque_angles="angles", torques="forces", measured_from="datum"),
     ),
 )

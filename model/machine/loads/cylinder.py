@@ -101,7 +101,7 @@ class Cylinder(Load):
         """Area of the piston, m^2."""
         return piston_area(self.bore, self.piston_rod)
 
-    def numbers(self) -> tuple[float, ...]:
+    def numbers_for_kernel(self) -> tuple[float, ...]:
         """Return unit factors, then the numbers in `slots`."""
         return (1.0, 1.0, *(getattr(self, name) for name in Cylinder.slots))
 
@@ -118,7 +118,7 @@ class Cylinder(Load):
         z, sign = (outer - at, -1.0) if self.head == "outer dead centre" else (at - inner, 1.0)
         expanding = passage.outward == (sign > 0.0)
         pressure = self.pressure(np.asarray(z), stroke, expanding=expanding)
-        return passage.work(sign * self.area * (pressure - self.back_pressure))
+        return passage.work_of_force(sign * self.area * (pressure - self.back_pressure))
 
     def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
         """Return the pressure, Pa, when the piston is z from its top, m; broadcasts."""
@@ -131,7 +131,7 @@ class Cylinder(Load):
             return np.fmin(self.high, self.low * ((h + stroke) / (h + z)) ** self.compression_exponent)
 
     @property
-    def size_text(self) -> str:
+    def bore_and_clearance_text(self) -> str:
         """A short description of bore, clearance and head."""
         parts = [f"bore {1e3 * self.bore:.6g} mm"]
         parts += [f"piston rod {1e3 * self.piston_rod:.6g} mm"] if self.piston_rod else []

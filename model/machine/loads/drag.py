@@ -12,7 +12,7 @@ from .load import Enters, Entry, Load, Table
 
 
 @analytic
-def _force(position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
+def _drag_force(position: Any, velocity: Any, way: Any, first: Any, second: Any) -> Any:
     return -first * way * velocity * velocity
 
 
@@ -26,7 +26,7 @@ class Drag(Load):
     drag: float
 
     enters: ClassVar = Enters.FORMULA
-    formula: ClassVar = _force
+    formula: ClassVar = _drag_force
     speed_power: ClassVar = 2
     sizes: ClassVar = ("drag",)
     slots: ClassVar = {"drag": (2, "N s^2/m^2")}
@@ -34,7 +34,7 @@ class Drag(Load):
     def __post_init__(self) -> None:
         require_numbers(self, "drag")
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return the coefficient, after unit factors."""
         return (1.0, 1.0, self.drag, 0.0)
 
@@ -44,7 +44,7 @@ class Drag(Load):
         return True
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The coefficient."""
         return f"drag, {self.drag:.6g} N s^2/m^2"
 
@@ -54,7 +54,7 @@ class Drag(Load):
         return (-self.drag,), (self.drag,)
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """Dependence on the speed."""
         return "proportional to the square of the speed"
 

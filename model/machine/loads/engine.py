@@ -54,14 +54,14 @@ class Engine(Cylinder):
     _raised: ClassVar = "peak pressure"
 
     def _require_burning(self) -> None:
-        if not self.high > self.compressed:
+        if not self.high > self.compression_pressure:
             raise InputError(
-                f"the peak pressure must exceed that of compression alone, {1e-5 * self.compressed:.6g} bar; got "
-                f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
+                f"the peak pressure must exceed that of compression alone, {1e-5 * self.compression_pressure:.6g} bar; "
+                f"got {1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
             )
 
     @property
-    def compressed(self) -> float:
+    def compression_pressure(self) -> float:
         """Pressure at the end of compression, Pa."""
         return float(self.low * (1.0 + 1.0 / self.clearance) ** self.compression_exponent)
 
@@ -71,19 +71,19 @@ class Engine(Cylinder):
         return float(self.high / (1.0 + 1.0 / self.clearance) ** self.expansion_exponent)
 
     @property
-    def drives(self) -> bool:
+    def may_drive(self) -> bool:
         """True."""
         return True
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """It gives work."""
         return "gives more work in expansion than it takes in compression"
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """Pressures, exponents and size."""
-        return f"two-stroke engine cycle {self._gas_text}, {self.size_text}"
+        return f"two-stroke engine cycle {self._gas_text}, {self.bore_and_clearance_text}"
 
     @property
     def _gas_text(self) -> str:
@@ -110,15 +110,16 @@ class LimitedPressure(Engine):
     def _require_burning(self) -> None:
         require_numbers(self, "heat", phrase="the {}", above=0.0, unit="J/m^3")
         require_numbers(self, "heat_capacity_ratio", phrase="the heat capacity ratio", above=1.0)
-        if not self.high >= self.compressed:
+        if not self.high >= self.compression_pressure:
             raise InputError(
-                f"the peak pressure must not be below that of compression alone, {1e-5 * self.compressed:.6g} bar; got "
-                f"{1e-5 * self.high:.6g} bar; raise it, or lower the compression ratio or the intake pressure"
+                f"the peak pressure must not be below that of compression alone, "
+                f"{1e-5 * self.compression_pressure:.6g} bar; got {1e-5 * self.high:.6g} bar; raise it, or lower the "
+                "compression ratio or the intake pressure"
             )
         k, share = self.heat_capacity_ratio, self.burning_share
-        instant_heat = (self.high - self.compressed) * self.clearance / (k - 1.0)
+        instant_heat = (self.high - self.compression_pressure) * self.clearance / (k - 1.0)
         if share < 0.0:
-            reached = self.compressed + self.heat * (k - 1.0) / self.clearance
+            reached = self.compression_pressure + self.heat * (k - 1.0) / self.clearance
             raise InputError(
                 f"the heat must reach the peak pressure of {1e-5 * self.high:.6g} bar, which takes "
                 f"{1e-6 * instant_heat:.6g} MJ/m^3; got {1e-6 * self.heat:.6g} MJ/m^3, which reaches "
@@ -143,9 +144,9 @@ class LimitedPressure(Engine):
         burnt = self.clearance + self.burning_share
         return float(self.high * (burnt / (1.0 + self.clearance)) ** self.expansion_exponent)
 
-    def numbers(self) -> tuple[float, ...]:
+    def numbers_for_kernel(self) -> tuple[float, ...]:
         """Return the numbers of a cylinder, plus heat and heat capacity ratio."""
-        return (*super().numbers(), self.heat, self.heat_capacity_ratio)
+        return (*super().numbers_for_kernel(), self.heat, self.heat_capacity_ratio)
 
     def pressure(self, z: Any, stroke: Any, *, expanding: bool) -> Any:
         """Return the pressure, Pa, when the piston is z from its top, m; broadcasts."""
@@ -190,7 +191,7 @@ class FourStroke(Engine):
         """The dead centre away from the head."""
         return "inner dead centre" if self.head == "outer dead centre" else "outer dead centre"
 
-    def on_turn(self, turn: int) -> Load:
+    def load_on_turn(self, turn: int) -> Load:
         """Return the two-stroke cycle of turn 1, or the gas exchange of turn 2, at constant pressure in each stroke."""
         if turn == 1:
             return self.working(**{field.name: getattr(self, field.name) for field in fields(self.working)})
@@ -207,12 +208,13 @@ class FourStroke(Engine):
 
     def stroke_work(self, passage: Passage) -> Any:
         """Return the mean work over both turns."""
-        return 0.5 * (self.on_turn(1).stroke_work(passage) + self.on_turn(2).stroke_work(passage))
+        return 0.5 * (self.load_on_turn(1).stroke_work(passage) + self.load_on_turn(2).stroke_work(passage))
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """Pressures, exponents and size."""
-        return f"four-stroke engine cycle {self._gas_text}, exhaust at {1e-5 * self.exhaust:.6g} bar, {self.size_text}"
+        exhaust = f"exhaust at {1e-5 * self.exhaust:.6g} bar"
+        return f"four-stroke engine cycle {self._gas_text}, {exhaust}, {self.bore_and_clearance_text}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -223,7 +225,7 @@ class FourStrokeLimitedPressure(FourStroke, LimitedPressure):
     working: ClassVar = LimitedPressure
 
 
-def _built(
+def _engine_of_table(
     cycle: CycleAngle,
     exhaust: float,
     back_pressure: float,
@@ -314,7 +316,7 @@ Engine.tables = (
             BACK_PRESSURE,
         ),
         {"bore": "70 mm", "compression_ratio": 8.0, "intake": "1 bar", "peak_pressure": "40 bar"},
-        _built,
+        _engine_of_table,
         motion="turn",
     ),
 )

@@ -58,7 +58,7 @@ class Passage(NamedTuple):
     angle: Array
     distance: Array
 
-    def work(self, force: Any) -> Array:
+    def work_of_force(self, force: Any) -> Array:
         """Return the work (n,), J, of a force given in the middle of each step, N outward."""
         return np.asarray(np.sum(force * np.diff(self.distance, axis=1), axis=1))
 
@@ -152,7 +152,7 @@ class Load:
     slots: ClassVar[Mapping[str, tuple[int, str]]] = {}
     tables: ClassVar[tuple[Table, ...]]
 
-    def numbers(self) -> tuple[float, ...]:
+    def numbers_for_kernel(self) -> tuple[float, ...]:
         """Return factors for the outward and the inward stroke, and the load's own two numbers; more for a cylinder."""
         raise NotImplementedError
 
@@ -169,12 +169,12 @@ class Load:
         return (), ()
 
     @property
-    def steps(self) -> bool:
+    def has_steps(self) -> bool:
         """Whether the table steps: a force that jumps while the slider moves."""
         return False
 
     @property
-    def turns(self) -> bool:
+    def has_knots_along_rotation(self) -> bool:
         """Whether the knots are crank angles counted in the sense of rotation."""
         return False
 
@@ -188,7 +188,7 @@ class Load:
         """Number of crank turns after which the load repeats."""
         return 1
 
-    def on_turn(self, turn: int) -> Load:
+    def load_on_turn(self, turn: int) -> Load:
         """Return the load in turn 1 or 2 alone, for a cycle of two turns."""
         return self
 
@@ -198,7 +198,7 @@ class Load:
         return str(getattr(self, "datum", "zero crank angle"))
 
     def name_of_number_on_turn(self, name: str, turn: int) -> str | None:
-        """Return the name that one of its numbers has in `on_turn`; None if that turn does not have it."""
+        """Return the name that one of its numbers has in `load_on_turn`; None if that turn does not have it."""
         return name
 
     @property
@@ -207,17 +207,17 @@ class Load:
         return False
 
     @property
-    def inertial(self) -> bool:
+    def is_moving_mass(self) -> bool:
         """Whether it is a mass that moves with the slider."""
         return self.enters is Enters.ADDED_MASS
 
     @property
     def has_stroke_dependent_formula(self) -> bool:
         """Whether the force has different formulas in the two strokes."""
-        first, second = self.numbers()[:2]
+        first, second = self.numbers_for_kernel()[:2]
         return first != second
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return magnitudes of the work over a turn by key; works under one key may cancel.
 
         moving: whether the crank turns; at rest, speed-dependent loads are zero.
@@ -233,12 +233,12 @@ class Load:
         return 0.0
 
     @property
-    def drives(self) -> bool:
+    def may_drive(self) -> bool:
         """Whether the load may by definition drive the machine: gas, or a force that helps a stroke."""
         return False
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """Its magnitude and sign as a short text."""
         raise NotImplementedError
 
@@ -251,7 +251,7 @@ class Load:
         return None
 
     @property
-    def resists(self) -> bool:
+    def never_drives(self) -> bool:
         """Whether it certainly does no net work on the machine over a cycle."""
         if self.possible_stroke_forces is None:
             return self.is_conservative
@@ -259,20 +259,20 @@ class Load:
         return self.is_conservative or (max(outward) <= 0.0 and min(inward) >= 0.0)
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """Effect on the strokes, and whether the net work over a cycle is zero."""
         parts = [] if self.possible_stroke_forces is None else [effect_in_strokes(*self.possible_stroke_forces)]
         return ", ".join([*parts, "no net work over a cycle"] if self.is_conservative and self.acts else parts)
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """Range in which it acts."""
         return ""
 
     @property
     def text(self) -> str:
         """The load in a sentence: magnitude and sign, effect, range."""
-        return ", ".join(filter(None, (self.size, self.effect, self.range)))
+        return ", ".join(filter(None, (self.magnitude_text, self.effect_text, self.range_text)))
 
 
 def _word_list(names: set[str]) -> str:
@@ -302,7 +302,7 @@ def require_word(name: str, value: object, words: object) -> None:
         raise InputError(f"{name} must be {' or '.join(map(repr, get_args(words)))}; got {value!r}")
 
 
-def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *, values: str = "forces") -> None:
+def require_valid_table(argument: str, at: Sequence[float], forces: Sequence[float], *, values: str = "forces") -> None:
     """Raise `InputError` for a table that decreases, has three points at one location or fewer than two in total.
 
     The numbers must be finite. argument, values: names of both columns, for the message.
@@ -313,12 +313,12 @@ def require_table(argument: str, at: Sequence[float], forces: Sequence[float], *
             f"{len(forces)} {values}"
         )
     require_all_finite(f"a table of {argument} and {values}", (*at, *forces), "throughout")
-    n = out_of_order(at)
+    n = first_misplaced_point(at)
     if n is not None:
         raise InputError(f"{argument} of a table {broken_order_rule(n, at, f'{at[n]:g}', f'{at[n - 1]:g}')}")
 
 
-def out_of_order(at: Sequence[float]) -> int | None:
+def first_misplaced_point(at: Sequence[float]) -> int | None:
     """Return the index of the first point that lies below its predecessor or is the third at one location.
 
     None if there is no such point.

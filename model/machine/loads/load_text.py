@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]\d+)?")
 _SEPARATORS = re.compile(r"([ ,;()]+)")
 
 
-def range_text(low: str, high: str) -> str:
+def join_range_ends(low: str, high: str) -> str:
     """Return one text for both ends of a range: "200 to 400 N" if only numbers differ.
 
     Texts that differ otherwise are shown side by side.

@@ -24,7 +24,7 @@ from .load import (
     has_step,
     increasing_points_entry,
     load_builder,
-    require_table,
+    require_valid_table,
     require_word,
 )
 from .load_text import force_magnitude_text, range_of_positions, without_zeros_before_steps
@@ -42,14 +42,14 @@ class PositionTable(Load):
     forces: tuple[float, ...]
     datum: Datum = "crank pivot"
     during: During = "cycle"
-    drives: bool = False
+    may_drive: bool = False
 
     enters: ClassVar = Enters.POSITION_TABLE
     sizes: ClassVar = ("forces",)
 
     def __post_init__(self) -> None:
         store_as_tuples(self, "positions", "forces")
-        require_table("positions", self.positions, self.forces)
+        require_valid_table("positions", self.positions, self.forces)
         require_word("datum", self.datum, Datum)
         require_word("during", self.during, During)
         if self.datum != "crank pivot" and self.positions[-1] <= 0.0:
@@ -59,7 +59,7 @@ class PositionTable(Load):
                 "the last force would ever act; reverse the signs"
             )
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return unit factors for the strokes in which the force acts."""
         return (float(self.during != "inward stroke"), float(self.during != "outward stroke"), 0.0, 0.0)
 
@@ -68,7 +68,7 @@ class PositionTable(Load):
         return self.positions, self.forces
 
     @property
-    def steps(self) -> bool:
+    def has_steps(self) -> bool:
         """Whether the force steps at any position."""
         return has_step(self.positions)
 
@@ -77,7 +77,7 @@ class PositionTable(Load):
         """Whether the force acts in both strokes."""
         return self.during == "cycle"
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return one for a table in one stroke, which the same table in the other stroke cancels."""
         if self.during == "cycle":
             return {}
@@ -92,28 +92,30 @@ class PositionTable(Load):
             at = at - distance.min(axis=1, keepdims=True)
         elif self.datum == "outer dead centre":
             at = distance.max(axis=1, keepdims=True) - at
-        return passage.work(np.interp(at, self.positions, self.forces))
+        return passage.work_of_force(np.interp(at, self.positions, self.forces))
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The minimum and maximum force."""
         return force_magnitude_text(without_zeros_before_steps(self.positions, self.forces))
 
     @property
     def possible_stroke_forces(self) -> tuple[Sequence[float], Sequence[float]]:
         """The forces in the strokes in which they act."""
-        outward, inward = self.numbers()[:2]
+        outward, inward = self.numbers_for_kernel()[:2]
         return [outward * force for force in self.forces], [inward * force for force in self.forces]
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """The ends of the table, and the force beyond them."""
         return range_of_positions(self.positions, self.forces, self.datum, self.during)
 
 
-def _of_pressures(pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any) -> PositionTable:
+def _table_of_pressures(
+    pressure_positions: tuple[float, ...], head: Head, during: During, **pressures: Any
+) -> PositionTable:
     forces = piston_forces(pressure_positions, head=head, **pressures)
-    return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during, drives=True)
+    return PositionTable(positions=pressure_positions, forces=forces, datum=head, during=during, may_drive=True)
 
 
 PositionTable.tables = (
@@ -150,7 +152,7 @@ PositionTable.tables = (
             DURING,
         ),
         {"pressure_positions": ["0 mm", "50 mm"], "bore": "70 mm", "pressures": ["8 bar", "1 bar"]},
-        _of_pressures,
+        _table_of_pressures,
         motion="turn",
     ),
 )

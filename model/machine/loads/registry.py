@@ -25,7 +25,7 @@ def load_classes() -> tuple[type[Load], ...]:
     return tuple(sorted(dict.fromkeys(declared), key=lambda kind: kind.enters))
 
 
-def code_of(kind: type[Load]) -> int:
+def kernel_code_of_load(kind: type[Load]) -> int:
     """Return the number that identifies a kind of load in kernels."""
     return load_classes().index(kind) if kind.enters == Enters.FORMULA else int(kind.enters)
 
@@ -42,7 +42,7 @@ def _combined_formula() -> Any:
 
     for kind in load_classes():
         if kind.formula is not None:
-            chosen = _choose_formula(code_of(kind), kind.formula, chosen)
+            chosen = _choose_formula(kernel_code_of_load(kind), kind.formula, chosen)
     return chosen
 
 

@@ -30,7 +30,7 @@ class Spring(Load):
         require_numbers(self, "stiffness", "free_position")
         require_word("datum", self.datum, Datum)
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return stiffness and free position, after unit factors."""
         return (1.0, 1.0, self.stiffness, self.free_position)
 
@@ -40,12 +40,12 @@ class Spring(Load):
         return True
 
     @property
-    def effect(self) -> str:
+    def effect_text(self) -> str:
         """Effect on motion away from its free position, and back."""
         return spring_effect(self.stiffness)
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """Stiffness and free position."""
         return f"spring {self.stiffness:.6g} N/m, free at {1e3 * self.free_position:.6g} mm from the {self.datum}"
 

@@ -23,7 +23,7 @@ class StrokeForce(Load):
 
     outward: float
     inward: float
-    drives: bool = False
+    may_drive: bool = False
 
     enters: ClassVar = Enters.STROKE_FORCE
     sizes: ClassVar = ("outward", "inward")
@@ -32,7 +32,7 @@ class StrokeForce(Load):
     def __post_init__(self) -> None:
         require_numbers(self, "outward", "inward")
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return the forces in the two strokes."""
         return (self.outward, self.inward, 0.0, 0.0)
 
@@ -41,16 +41,16 @@ class StrokeForce(Load):
         """Whether both strokes have the same force."""
         return self.outward == self.inward
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return the force in the outward stroke and the negated force in the inward stroke."""
         return {StrokeForce: (self.outward, -self.inward)}
 
     def stroke_work(self, passage: Passage) -> Any:
         """Return the force times the stroke."""
-        return passage.work(self.outward if passage.outward else self.inward)
+        return passage.work_of_force(self.outward if passage.outward else self.inward)
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The forces, without direction if they are equal along the motion."""
         if self.outward == -self.inward:
             return f"{abs(self.outward):.6g} N"
@@ -63,7 +63,7 @@ class StrokeForce(Load):
         return (self.outward,), (self.inward,)
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """The whole of a stroke."""
         return "throughout"
 
@@ -76,7 +76,7 @@ def _force_along_motion(force: float, stroke: str, part: StrokePart, *, drives: 
     outward = 0.0 if stroke == "inward stroke" else force
     inward = 0.0 if stroke == "outward stroke" else -force
     if part.part == "whole":
-        return StrokeForce(outward=outward, inward=inward, drives=drives)
+        return StrokeForce(outward=outward, inward=inward, may_drive=drives)
     if stroke == "motion":
         raise InputError(
             f"a load on the {part.part} part of a stroke must name one stroke; got motion, which means both; name "
@@ -89,7 +89,7 @@ def _force_along_motion(force: float, stroke: str, part: StrokePart, *, drives: 
         forces=(size, size, 0.0),
         datum="outer dead centre" if from_outer else "inner dead centre",
         during="outward stroke" if stroke == "outward stroke" else "inward stroke",
-        drives=drives,
+        may_drive=drives,
     )
 
 

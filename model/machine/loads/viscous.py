@@ -24,16 +24,16 @@ class Viscous(Load):
     def __post_init__(self) -> None:
         require_numbers(self, "coefficient")
 
-    def numbers(self) -> tuple[float, float, float, float]:
+    def numbers_for_kernel(self) -> tuple[float, float, float, float]:
         """Return the coefficient, after unit factors."""
         return (1.0, 1.0, self.coefficient, 0.0)
 
-    def turn_work(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
+    def turn_work_by_key(self, *, moving: bool) -> Mapping[Hashable, tuple[float, ...]]:
         """Return the coefficient."""
         return {Viscous: (self.coefficient,)} if moving else {}
 
     @property
-    def size(self) -> str:
+    def magnitude_text(self) -> str:
         """The coefficient."""
         return f"viscous, {self.coefficient:.6g} N s/m"
 
@@ -43,7 +43,7 @@ class Viscous(Load):
         return (-self.coefficient,), (self.coefficient,)
 
     @property
-    def range(self) -> str:
+    def range_text(self) -> str:
         """Dependence on the speed."""
         return "proportional to the speed"
 

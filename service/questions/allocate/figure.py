@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.tolerance.error_sources import SOURCES, angles_where_error_counts
+from ....model.tolerance.error_sources import SOURCES, angle_ranges_where_error_counts
 from ....model.tolerance.first_order import FirstOrder, first_order_position_errors
 from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
@@ -56,7 +56,8 @@ def allocation_curves(allocation: Allocation, linkage: Linkage, costs: Costs, be
     contributes = now.contributions.max(axis=1) > 0.0
     was = costs_of_tolerances(costs, linkage, before)
     spans = [
-        (float(np.degrees(part[0])), float(np.degrees(part[-1]))) for part in angles_where_error_counts(before, linkage)
+        (float(np.degrees(part[0])), float(np.degrees(part[-1])))
+        for part in angle_ranges_where_error_counts(before, linkage)
     ]
     return AllocationCurves(
         np.degrees(theta),

@@ -14,7 +14,7 @@ from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Counterweight
 from ....model.machine.mechanism import Mechanism
-from ....model.signals.averages import average
+from ....model.signals.averages import signal_averages
 from ....model.signals.signals import Signal
 from ....objectives.kinds import FORCE, TORQUE
 from ....objectives.machine_needs import MOTION
@@ -80,7 +80,7 @@ class _Shaking(NamedTuple):
 
 
 def _shaking_of(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shaking:
-    rms = average(mechanism, signal, lengths_row(linkage)).rms[0]
+    rms = signal_averages(mechanism, signal, lengths_row(linkage)).rms[0]
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 

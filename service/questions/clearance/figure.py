@@ -54,12 +54,12 @@ def loose_joint_curves(run: ClearanceRun) -> LooseCurves:
     """Return the curves of the last revolution of a run. Raises `InputError` if there is no complete revolution."""
     if run.cycles < 1:
         raise InputError("a figure needs a complete turn of the crank; got none; simulate longer")
-    start = (run.cycles - 1) * run.period
-    last = (run.times >= start * (1.0 - 1e-12)) & (run.times <= (start + run.period) * (1.0 + 1e-12))
+    start = (run.cycles - 1) * run.turn_time
+    last = (run.times >= start * (1.0 - 1e-12)) & (run.times <= (start + run.turn_time) * (1.0 + 1e-12))
     loose = (run.slider_position, run.slider_velocity, run.slider_acceleration)
     ideal = (run.ideal_position, run.ideal_velocity, run.ideal_acceleration)
     return LooseCurves(
-        360.0 * (run.times[last] - start) / run.period,
+        360.0 * (run.times[last] - start) / run.turn_time,
         {kind: values[last] for kind, values in zip(_TITLES, loose, strict=True)},
         {kind: values[last] for kind, values in zip(_TITLES, ideal, strict=True)},
         run.contact_force[last],

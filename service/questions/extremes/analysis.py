@@ -129,7 +129,7 @@ def _stroke_numbers(mechanism: Mechanism, linkage: Linkage, velocity: CurveExtre
     record: dict[str, Any] = {
         **strokes,
         "angle_ratio": angles["outward"] / angles["inward"],
-        "duration_ratio": None if times is None else float(times.ratio),
+        "duration_ratio": None if times is None else float(times.outward_to_inward_ratio),
     }
     if velocity is None:
         return record

@@ -75,7 +75,7 @@ def _fluctuation_without_flywheel(
         if drive is None:
             least, greatest = runner.least_and_greatest_speed(0.0)
             return ((greatest - least) / runner.speed, least), None
-        running = runner.running_under(replace(drive, flywheel=0.0))
+        running = runner.run_under_drive(replace(drive, flywheel=0.0))
         return (running.fluctuation, float(abs(running.speed).min())), None
     except InputError as error:
         return None, str(error)
@@ -143,7 +143,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
         try:
             if mechanism.drive is None:
                 return runner.under_constant_torque(flywheel)
-            return runner.running_under(replace(mechanism.drive, flywheel=flywheel))
+            return runner.run_under_drive(replace(mechanism.drive, flywheel=flywheel))
         except InputError:
             return None
 
@@ -155,8 +155,8 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCT
     if design.inertia:
         chosen = np.array([design.inertia]), np.array([design.running.fluctuation])
         lines.append(Line("", *chosen, points=True))
-    turns = [("with flywheel" if design.needed else "without flywheel", design.running, 0)]
-    small = run(0.5 * design.inertia) if design.needed else None
+    turns = [("with flywheel" if design.is_needed else "without flywheel", design.running, 0)]
+    small = run(0.5 * design.inertia) if design.is_needed else None
     if small is not None:
         turns.append(("with half the inertia", small, FAINT))
     speeds = []

@@ -16,7 +16,7 @@ from ....model.machine.cylinder_machines import is_treated_as_shaft, single_cyli
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import cycle_turns
-from ....model.signals.averages import average_torque
+from ....model.signals.averages import torque_averages
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind
 from ...figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
@@ -88,12 +88,12 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     has_several, mechanism = is_treated_as_shaft(mechanism), single_cylinder(mechanism)
     friction, locking = mechanism.friction, locking_verdict(mechanism, linkage)
     smooth = replace(mechanism, friction=Friction())
-    pins = (friction.crank_pin.circle + friction.slider_pin.circle) / float(linkage.rod)
+    pins = (friction.crank_pin.friction_circle_radius + friction.slider_pin.friction_circle_radius) / float(linkage.rod)
     torque, smooth_torque = (
         finite_or_none(peak(machine, Signal.TORQUE, linkage).value) for machine in (mechanism, smooth)
     )
     mean, smooth_mean = (
-        finite_or_none(average_torque(machine, lengths_row(linkage)).mean[0]) for machine in (mechanism, smooth)
+        finite_or_none(torque_averages(machine, lengths_row(linkage)).mean[0]) for machine in (mechanism, smooth)
     )
     guide, smooth_guide = (
         finite_or_none(peak(machine, Signal.GUIDE_FORCE, linkage).value) for machine in (mechanism, smooth)

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.gas_cycle import cylinders
-from ....model.cycle.indicator_diagram import burning_end_angle, indicator, valve_events
+from ....model.cycle.gas_cycle import cylinder_loads
+from ....model.cycle.indicator_diagram import burning_end_angle, indicator_diagram, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.loads.cylinder import Cylinder
@@ -46,7 +46,7 @@ class Indicator(Record):
 
 
 def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
-    loads = cylinders(mechanism)
+    loads = cylinder_loads(mechanism)
     if not loads:
         raise InputError(
             "an indicator diagram needs a cylinder; this job has none; add to the job for example "
@@ -63,7 +63,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     """
     records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
-        curve = indicator(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
+        curve = indicator_diagram(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
         least, greatest = float(curve.volume.min()), float(curve.volume.max())
@@ -108,7 +108,7 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
         events = [angle for angle in ends if angle is not None]
         theta = sampled_turn(np.array(linkage.dead_centre_angles), events, turns=cycle_turns(mechanism))
-        curve = indicator(mechanism, linkage, load, theta)
+        curve = indicator_diagram(mechanism, linkage, load, theta)
         # Closed curve: the diagram ends where it began.
         volume, pressure = (np.append(values, values[0]) for values in (curve.volume, curve.pressure))
         name = f"load {place + 1}"

@@ -14,7 +14,7 @@ from ....model.linkage.crank_angles_from_slider import CrankSolution
 from ....model.linkage.inverse_kinematics import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
-from ....model.swing.swing import Swing, dead_points, require_swing, swing_between_crank_angles
+from ....model.swing.swing import Swing, dead_point_angles, require_swing, swing_between_crank_angles
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
@@ -80,7 +80,7 @@ def numbers(
         solutions = _solutions_in_swing(every, swing)
         ends = f"from {_degrees(swing.start)} to {_degrees(swing.end)} deg"
         if not solutions:
-            reversals = (angle for dead in dead_points(swinging) for angle in swing.occurrences(dead))
+            reversals = (angle for dead in dead_point_angles(swinging) for angle in swing.angles_within(dead))
             angles = (swing.start, swing.end, *reversals)
             places = sorted(1e3 * float(swinging.at(angle).slider_position) for angle in angles)
             raise AssemblyError(
@@ -119,7 +119,7 @@ def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> t
     """Return the solutions within a swing between crank angles, with angles in its range."""
     within_swing = []
     for solution in solutions:
-        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.occurrences(solution.crank_angle + near)]
+        angles = [at for near in (0.0, _NEAR, -_NEAR) for at in swing.angles_within(solution.crank_angle + near)]
         within_swing += [replace(solution, crank_angle=angles[0])] if angles else []
     return tuple(sorted(within_swing, key=lambda solution: solution.crank_angle))
 

@@ -75,7 +75,7 @@ def compute_shared_options(
 def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: Any) -> LawNumbers:
     """Return a law ready for JSON, evaluated like any speed profile."""
     law, request = optimum.law, optimum.limits.request
-    judged = speed_profile_cycle(law.turn.machine, linkage, law.motion)
+    judged = speed_profile_cycle(law.turn.machine, linkage, law.crank_motion)
     even = speed_profile_cycle(_at_constant_speed(optimum), linkage)
     record: Row = {
         "objective": request.objective,
@@ -183,8 +183,8 @@ def curves(_: Mechanism, __: Linkage, *, optimum: OptimalLaw, units: System, **o
 def figure(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, problem: Problem, **options: Any) -> PanelFigure:
     """Return plots of speed, torque and slider speed against crank angle, for the law and for constant speed."""
     law = optimum.law
-    theta = sampled_turn(law.turn.low)
-    now = speed_profile_curves(law.turn.machine, linkage, theta, law.motion)
+    theta = sampled_turn(law.turn.cell_start_angles)
+    now = speed_profile_curves(law.turn.machine, linkage, theta, law.crank_motion)
     even = speed_profile_curves(_at_constant_speed(optimum), linkage, theta)
     degrees = np.degrees(theta)
 

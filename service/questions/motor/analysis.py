@@ -20,8 +20,8 @@ from ....model.machine.cylinder_machines import cylinder_machines
 from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import TURN, cycle_turns
-from ....model.signals.averages import average, average_torque
-from ....model.signals.first_of_equal_maxima import angle_in_cycle, first_greatest
+from ....model.signals.averages import signal_averages, torque_averages
+from ....model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
 from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
@@ -68,7 +68,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     design = lengths_row(linkage)
     signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
-    averages, moves = average_torque(mechanism, design), SPEED.is_met(mechanism)
+    averages, moves = torque_averages(mechanism, design), SPEED.is_met(mechanism)
 
     least, least_angle = _least_inertia(mechanism, linkage)
     mean_power = mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]
@@ -84,7 +84,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
         "greatest_reflected_inertia_angle_deg": greatest.degrees,
         "least_reflected_inertia_kg_m2": least,
         "least_reflected_inertia_angle_deg": math.degrees(least_angle),
-        "mean_reflected_inertia_kg_m2": float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
+        "mean_reflected_inertia_kg_m2": float(signal_averages(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
     }
 
 
@@ -104,7 +104,7 @@ def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float
         for lowest in angles_sampled[dips[values[dips] <= values.min() + rise]].tolist()[:_MOST_DIPS]
     ]
     heights, angles = (np.array(part) for part in zip(*((size - at.fun, at.x) for at in minima), strict=True))
-    first = minima[int(first_greatest(heights, angles, TURN))]
+    first = minima[int(index_of_first_maximum(heights, angles, TURN))]
     return float(min(at.fun for at in minima)), angle_in_cycle(float(first.x), TURN)
 
 
@@ -143,10 +143,10 @@ def figure(mechanism: Mechanism, linkage: Linkage) -> PanelFigure:
     degrees = np.degrees(theta)
     several = mechanism.arrangement is not None
     torque = (multi_cylinder_curves if several else cycle)(mechanism, linkage, theta).torque
-    averages = average_torque(mechanism, design)
+    averages = torque_averages(mechanism, design)
     rms, mean = float(averages.rms[0]), float(averages.mean[0] * mechanism.speed * mean_speed_ratio(mechanism))
     inertia = Line("inertia", degrees, _reflected_inertia(mechanism, linkage, theta))
-    usual = float(average(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
+    usual = float(signal_averages(mechanism, Signal.REFLECTED_INERTIA, design).mean[0])
     power = Line("power", degrees, torque * crank_speed_and_acceleration(mechanism, theta)[0])
     levels = (None, None) if locks else (("RMS over time", rms), ("mean over time", mean))
     panels = (

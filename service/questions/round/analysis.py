@@ -87,14 +87,14 @@ def _rounded_result(rounded: Rounded, row: int) -> Answer:
 
 def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
-    from ....model.machine.raw_numbers_of_designs import unit_of
+    from ....model.machine.raw_numbers_of_designs import unit_of_number
     from ....objectives.tables.variable_columns import varying_column
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
     for item in part.mechanism.varying:
         column_key = varying_column(item)[0]
-        kinds[item.name] = kind_of_symbol(unit_of(item.paths[0]))
+        kinds[item.name] = kind_of_symbol(unit_of_number(item.paths[0]))
         names |= {item.name: item.name, column_key: item.name, split_unit(column_key)[0]: item.name}
     steps: dict[str, float] = {}
     for text in texts:

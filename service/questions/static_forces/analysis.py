@@ -86,7 +86,7 @@ def massless_mechanism(mechanism: Mechanism, load: float | None = None) -> Mecha
 
 def _slider_loads(mechanism: Mechanism) -> tuple[Load, ...]:
     """Return the loads that act on the slider at rest."""
-    return tuple(load for load in mechanism.loads if not load.on_crank and not load.inertial)
+    return tuple(load for load in mechanism.loads if not load.on_crank and not load.is_moving_mass)
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None) -> StaticForces:

@@ -17,7 +17,7 @@ from ....model.signals.signals import Signal
 from ....model.tolerance.error_sources import SOURCES, limits_of_sources, source_influences
 from ....model.tolerance.exact_worst_case import worst_position_error
 from ....model.tolerance.first_order import fractions_of_sum
-from ....model.tolerance.monte_carlo import simulate, summarise, variance_contributions, yield_within
+from ....model.tolerance.monte_carlo import simulate, summarise_sample, variance_contributions, yield_within
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words
 from ..peaks import lengths_row
@@ -118,7 +118,9 @@ def numbers(
     of_worst = 100.0 * fractions_of_sum(parts)[:, 0]
     of_variance = 100.0 * fractions_of_sum(variance_contributions(mechanism, linkage, at))[:, 0]
     simulation = simulate(mechanism, linkage, samples=samples, seed=seed)
-    spread = summarise(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
+    spread = (
+        summarise_sample(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
+    )
     deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
     return {
         "worst_case_mm": 1e3 * worst_case,

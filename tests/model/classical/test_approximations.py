@@ -11,9 +11,9 @@ import pytest
 from slidercrank.model.classical.comparison import TORQUE, approximation_errors_over_offset, compare_approximations
 from slidercrank.model.classical.lumped import (
     link_mass_properties,
-    lumped,
+    mechanism_with_lumped_rod,
     rod_mass_share_at_crank_pin,
-    rotating_and_reciprocating,
+    rotating_and_reciprocating_mass,
 )
 from slidercrank.model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from slidercrank.model.cycle.cycle import cycle
@@ -37,7 +37,7 @@ def test_two_masses_are_exact_for_a_rod_of_inertia_m_a_b() -> None:
         rod = RigidLink(mass=mass, centre=a, inertia=mass * a * (design[1] - a))
         machine = replace(machine, rod=rod)
         linkage = linkage_of(design, machine.branch)
-        exact, two = cycle(machine, linkage, THETA), cycle(lumped(machine, linkage), linkage, THETA)
+        exact, two = cycle(machine, linkage, THETA), cycle(mechanism_with_lumped_rod(machine, linkage), linkage, THETA)
         for name in ("torque", "guide", "pivot_x", "pivot_y"):
             one, other = getattr(exact, name), getattr(two, name)
             np.testing.assert_allclose(other, one, rtol=0, atol=1e-12 * np.abs(one).max())
@@ -46,22 +46,24 @@ def test_two_masses_are_exact_for_a_rod_of_inertia_m_a_b() -> None:
 def test_two_masses_are_wrong_for_any_other_inertia() -> None:
     linkage = Linkage(0.14, 0.31, -0.06)
     machine = replace(SMOOTH, rod=RigidLink(mass=1.3))  # m l^2 / 12 rather than m l^2 / 4
-    exact, two = cycle(machine, linkage, THETA), cycle(lumped(machine, linkage), linkage, THETA)
+    exact, two = cycle(machine, linkage, THETA), cycle(mechanism_with_lumped_rod(machine, linkage), linkage, THETA)
     assert np.abs(exact.torque - two.torque).max() > 1e-3 * np.abs(exact.torque).max()
 
 
 def test_masses_of_the_feeder_are_lumped_half_and_half() -> None:
     linkage = Linkage(0.040, 0.064, -0.020)
     # By moments about the pins, Eqs. 32 to 36: 0.25 + 0.1 and 0.25 + 0.8 kg.
-    assert rotating_and_reciprocating(FEEDER, linkage) == pytest.approx((0.35, 1.05), rel=1e-14)
+    assert rotating_and_reciprocating_mass(FEEDER, linkage) == pytest.approx((0.35, 1.05), rel=1e-14)
     off_centre = replace(FEEDER, rod=RigidLink(mass=0.5, centre=0.016))
-    assert rotating_and_reciprocating(off_centre, linkage) == pytest.approx((0.475, 0.925), rel=1e-14)
-    assert rotating_and_reciprocating(off_centre, linkage, crank_pin_share=0.5)[1] == pytest.approx(1.05, rel=1e-14)
+    assert rotating_and_reciprocating_mass(off_centre, linkage) == pytest.approx((0.475, 0.925), rel=1e-14)
+    assert rotating_and_reciprocating_mass(off_centre, linkage, crank_pin_share=0.5)[1] == pytest.approx(
+        1.05, rel=1e-14
+    )
 
 
 def test_lumping_keeps_mass_and_mass_centre() -> None:
     linkage = Linkage(0.14, 0.31, -0.06)
-    two = lumped(SMOOTH, linkage)
+    two = mechanism_with_lumped_rod(SMOOTH, linkage)
     crank, rod = link_mass_properties(SMOOTH.crank, 0.14), link_mass_properties(SMOOTH.rod, 0.31)
     whole = link_mass_properties(two.crank, 0.14)
     assert whole.mass + two.slider_mass == pytest.approx(crank.mass + rod.mass + SMOOTH.slider_mass, rel=1e-14)
@@ -76,9 +78,9 @@ def test_lumping_keeps_mass_and_mass_centre() -> None:
 def test_a_mass_centre_beyond_the_pins_cannot_be_lumped() -> None:
     machine = Mechanism(rod=RigidLink(mass=1.0, centre=-0.01))
     with pytest.raises(InputError, match=r"mass centre between the pins; got -10 mm"):
-        lumped(machine, Linkage(0.1, 0.3))
+        mechanism_with_lumped_rod(machine, Linkage(0.1, 0.3))
     with pytest.raises(InputError, match=r"share of the mass must be from 0 to 1; got 1\.5"):
-        lumped(Mechanism(), Linkage(0.1, 0.3), crank_pin_share=1.5)
+        mechanism_with_lumped_rod(Mechanism(), Linkage(0.1, 0.3), crank_pin_share=1.5)
 
 
 @pytest.mark.parametrize("branch", ["open", "crossed"])
@@ -146,7 +148,7 @@ def test_comparison_is_of_inertia_alone_at_constant_speed() -> None:
     np.testing.assert_array_equal(found.torque, exact.torque)
     np.testing.assert_array_equal(found.acceleration, exact.slider_acceleration)
     assert tuple(found.torques) == TORQUE
-    reciprocating = rotating_and_reciprocating(SMOOTH, linkage)[1]
+    reciprocating = rotating_and_reciprocating_mass(SMOOTH, linkage)[1]
     np.testing.assert_allclose(
         found.torques["series"],
         series_torque(linkage, THETA, speed=SMOOTH.speed, reciprocating_mass=reciprocating),

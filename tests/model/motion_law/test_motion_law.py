@@ -54,7 +54,7 @@ def law(request: pytest.FixtureRequest) -> MotionLaw:
 def test_the_torque_of_the_speed_profile_evaluation_is_that_of_the_law(law: MotionLaw) -> None:
     angle = np.random.default_rng(1).uniform(0.0, TURN, 2000)
     curves = cycle(
-        law.turn.machine, law.turn.linkage, angle, speed=law.speed(angle), acceleration=law.acceleration(angle)
+        law.turn.machine, law.turn.linkage, angle, speed=law.speed_at(angle), acceleration=law.acceleration_at(angle)
     )
     size = np.abs(law.torque).max() + np.abs(law.turn.terms.load).max()
     np.testing.assert_allclose(curves.torque, law.torque_at(angle), rtol=0.0, atol=1e-9 * size)
@@ -63,15 +63,15 @@ def test_the_torque_of_the_speed_profile_evaluation_is_that_of_the_law(law: Moti
 def test_the_acceleration_is_the_speed_times_its_slope(law: MotionLaw) -> None:
     angle = np.random.default_rng(2).uniform(0.0, TURN, 300)
     step = 1e-6
-    inside = law.turn.locate(angle - step)[0] == law.turn.locate(angle + step)[0]
-    slope = (law.speed(angle + step) - law.speed(angle - step)) / (2.0 * step)
-    found, size = law.acceleration(angle), np.abs(law.acceleration(angle)).max()
+    inside = law.turn.locate_in_cells(angle - step)[0] == law.turn.locate_in_cells(angle + step)[0]
+    slope = (law.speed_at(angle + step) - law.speed_at(angle - step)) / (2.0 * step)
+    found, size = law.acceleration_at(angle), np.abs(law.acceleration_at(angle)).max()
     assert inside.sum() > 200
-    np.testing.assert_allclose(found[inside], (law.speed(angle) * slope)[inside], rtol=0.0, atol=1e-5 * size)
+    np.testing.assert_allclose(found[inside], (law.speed_at(angle) * slope)[inside], rtol=0.0, atol=1e-5 * size)
 
 
 def test_the_drive_does_the_work_that_the_loads_take(law: MotionLaw) -> None:
-    judged = speed_profile_cycle(law.turn.machine, law.turn.linkage, law.motion)
+    judged = speed_profile_cycle(law.turn.machine, law.turn.linkage, law.crank_motion)
     scale = TURN * float(np.abs(law.turn.terms.load).max())
     assert judged.work == pytest.approx(law.turn.load_work, abs=1e-10 * scale)
     assert judged.period == pytest.approx(law.period, rel=1e-10)
@@ -84,7 +84,7 @@ def test_forward_dynamics_under_the_torque_of_the_law_give_the_law(law: MotionLa
     reached, way = None, law.turn.way
     for span in equation.spans_of_cycle(way):
         first, last = (span.low, span.high) if way > 0.0 else (span.high, span.low)
-        reached = float(law.speed(np.array([first]))[0]) ** 2 if reached is None else reached
+        reached = float(law.speed_at(np.array([first]))[0]) ** 2 if reached is None else reached
 
         def rate(angle: float, square: Any, span: Any = span) -> Any:
             terms = span.terms_at(np.array([angle]))
@@ -94,31 +94,32 @@ def test_forward_dynamics_under_the_torque_of_the_law_give_the_law(law: MotionLa
         run = solve_ivp(rate, (first, last), [reached], rtol=1e-10, atol=0.0, max_step=0.02)
         reached = float(run.y[0, -1])
         inner = run.t[1:-1]
-        np.testing.assert_allclose(np.sqrt(run.y[0, 1:-1]), np.abs(law.speed(inner)), rtol=1e-6)
+        np.testing.assert_allclose(np.sqrt(run.y[0, 1:-1]), np.abs(law.speed_at(inner)), rtol=1e-6)
 
 
 def test_times_are_integrals_of_the_inverse_speed_and_are_inverted(law: MotionLaw) -> None:
     turn = law.turn
     angle = turn.start + turn.way * np.array([0.3, 2.0, 4.4, 6.0])
-    for each, time in zip(angle, law.time(angle), strict=True):
+    for each, time in zip(angle, law.time_at(angle), strict=True):
         knots = turn.start + turn.way * turn.passed[(turn.passed < abs(each - turn.start))]
         ends = [*knots, each]
         parts = (
-            quad(lambda at: 1.0 / float(law.speed(np.array([at]))[0]), a, b, epsrel=1e-11)[0] for a, b in pairwise(ends)
+            quad(lambda at: 1.0 / float(law.speed_at(np.array([at]))[0]), a, b, epsrel=1e-11)[0]
+            for a, b in pairwise(ends)
         )
         assert time == pytest.approx(sum(parts), rel=1e-9)
-    np.testing.assert_allclose(law.angle_at(law.time(angle)), angle, atol=1e-10)
+    np.testing.assert_allclose(law.angle_at(law.time_at(angle)), angle, atol=1e-10)
 
 
 def test_without_loads_a_constant_kinetic_energy_needs_no_torque() -> None:
     turn = LawTurn(replace(BARE, gravity=(0.0, 0.0)), LINKAGE)
     law = MotionLaw.made_periodic(turn, np.zeros(len(turn.width)), 3.0)
-    judged = speed_profile_cycle(turn.machine, LINKAGE, law.motion)
+    judged = speed_profile_cycle(turn.machine, LINKAGE, law.crank_motion)
     assert judged.fluctuation > 0.1
     constant = speed_profile_cycle(turn.machine, LINKAGE).peaks["torque"].value
     assert judged.peaks["torque"].value < 1e-10 * constant
     angle = np.linspace(0.0, TURN, 50)
-    np.testing.assert_allclose(0.5 * turn.inertia_at(angle) * law.speed(angle) ** 2, 3.0, rtol=1e-12)
+    np.testing.assert_allclose(0.5 * turn.inertia_at(angle) * law.speed_at(angle) ** 2, 3.0, rtol=1e-12)
 
 
 def read_back(table: CamTable, time: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], ...]:

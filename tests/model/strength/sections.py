@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from slidercrank.model.cycle.cycle import cycle, derived_design
-from slidercrank.model.dynamics.torque import forces
+from slidercrank.model.dynamics.torque import forces_without_friction
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Bar
@@ -85,7 +85,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
     """Return axial stress and stress by bending, each (n, m), at crank angles (n,) and shares of the length (m,)."""
     bar: Any = getattr(mechanism, part)
     load = cycle(mechanism, linkage, theta).load
-    masses = tuple(own for own in mechanism.loads if own.inertial)
+    masses = tuple(own for own in mechanism.loads if own.is_moving_mass)
     design = derived_design(replace(mechanism, loads=masses), linkage)
     moved = motion(np.sin(theta), np.cos(theta), design.r, design.l, design.e, design.branch)
     c = stress_along(
@@ -94,7 +94,7 @@ def stress_rows(mechanism: Mechanism, part: str, linkage: Linkage, theta: Array,
         np.cos(theta),
         moved,
         design,
-        forces(np.sin(theta), np.cos(theta), moved, design, load),
+        forces_without_friction(np.sin(theta), np.cos(theta), moved, design, load),
         0.0,
         (bar.width, bar.depth, bar.density),
     )

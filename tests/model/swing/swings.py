@@ -10,7 +10,7 @@ import numpy as np
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTable
+from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
@@ -24,7 +24,7 @@ def crank_loads(random: np.random.Generator, *, spring: bool = True) -> tuple[Lo
     k, free = random.uniform(5.0, 60.0), random.uniform(-3.0, 3.0)
     loads: list[Load] = [
         CrankTorque(torque=random.normal(0.0, 20.0), resistance=random.uniform(0.0, 12.0)),
-        CrankTable(angles=tuple(angles.tolist()), forces=tuple(torques.tolist())),
+        CrankTorqueTable(angles=tuple(angles.tolist()), forces=tuple(torques.tolist())),
         *([CrankTorque(crank_stiffness=k, free_angle=free)] if spring else []),
     ]
     return tuple(load for load in loads if random.random() < 0.7)

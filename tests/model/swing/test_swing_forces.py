@@ -48,7 +48,7 @@ def test_the_drive_does_the_virtual_work(back: bool) -> None:
     for machine, linkage, swing in random_swings(300, seed=5):
         own = require_swing(machine, linkage, swing)
         found = swing_curves(machine, own, swing, SHARES, back=back)
-        way = swing.way * (-1.0 if back else 1.0)
+        way = swing.forward_direction * (-1.0 if back else 1.0)
         design = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])
         sign = 1.0 if machine.branch == "open" else -1.0
         for i, theta in enumerate(found.crank_angle):
@@ -88,9 +88,9 @@ def balances(machine: Mechanism, linkage: Linkage, found: SwingCurves, i: int, w
     drive = float(found.drive[i])
     torque, push = (drive, 0.0) if driver == "crank" else (0.0, drive)
     f = machine.friction
-    on_rod_at_a = -f.crank_pin.circle * math.hypot(ax, ay) * np.sign((motion.rod_1 - 1.0) * at.speed)
-    on_rod_at_b = -f.slider_pin.circle * math.hypot(bx, by) * np.sign(motion.rod_1 * at.speed)
-    on_crank = -f.crank_pivot.circle * math.hypot(px, py) * np.sign(at.speed)
+    on_rod_at_a = -f.crank_pin.friction_circle_radius * math.hypot(ax, ay) * np.sign((motion.rod_1 - 1.0) * at.speed)
+    on_rod_at_b = -f.slider_pin.friction_circle_radius * math.hypot(bx, by) * np.sign(motion.rod_1 * at.speed)
+    on_crank = -f.crank_pivot.friction_circle_radius * math.hypot(px, py) * np.sign(at.speed)
     rub = -f.guide * abs(guide) * np.sign(motion.x_1 * at.speed)
     load = sign * float(slider_load(at, design, theta, motion))
     size = max(map(abs, (px, py, ax, ay, bx, by, guide, drive, 1e-3)))
@@ -119,7 +119,7 @@ def test_forces_balance_every_body(friction: bool, back: bool) -> None:
     for machine, linkage, swing in random_swings(75, seed=6, friction=friction):
         own = require_swing(machine, linkage, swing)
         found = swing_curves(machine, own, swing, SHARES[1:-1], back=back)
-        way = swing.way * (-1.0 if back else 1.0)
+        way = swing.forward_direction * (-1.0 if back else 1.0)
         if np.isnan(found.drive).any():
             assert friction
             continue
@@ -141,7 +141,7 @@ def test_driving_the_slider_undoes_driving_the_crank() -> None:
             assert float(at.slider_velocity) == pytest.approx(found.slider_velocity[i], abs=1e-10 * scale)
             torque = float(
                 drive_torque(
-                    moving(machine, found, i, swing.way),
+                    moving(machine, found, i, swing.forward_direction),
                     np.array([float(own.crank), float(own.rod), float(own.offset)]),
                     theta,
                 )
@@ -204,7 +204,7 @@ def test_outward_and_inward_are_told_by_the_way() -> None:
     machine, linkage, swing = random_swings(1, seed=10)[0]
     own = require_swing(machine, linkage, swing)
     forth, back = (swing_curves(machine, own, swing, np.array([0.4]), back=back) for back in (False, True))
-    for curves, way in ((forth, swing.way), (back, -swing.way)):
+    for curves, way in ((forth, swing.forward_direction), (back, -swing.forward_direction)):
         at = moving(machine, curves, 0, way)
         sizes = np.array([float(own.crank), float(own.rod), float(own.offset)])
         _, _, outward = outward_motion(at, path(sizes, curves.crank_angle[0], own.sign))

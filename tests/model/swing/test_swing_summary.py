@@ -22,7 +22,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
-from slidercrank.model.swing.swing import Swing, dead_points, require_swing, without_inertia
+from slidercrank.model.swing.swing import Swing, dead_point_angles, require_swing, without_inertia
 from slidercrank.model.swing.swing_types import Law
 from tests.model.bodies import bodies
 from tests.model.swing.swings import random_swings
@@ -164,7 +164,7 @@ def test_dead_points_are_where_the_slider_turns() -> None:
     for _ in range(200):
         r, l = random.uniform(0.1, 1.0, 2)
         linkage = Linkage(r, l, random.uniform(-1.0, 1.0) * (r + l), "open" if random.random() < 0.5 else "crossed")
-        found = dead_points(linkage)
+        found = dead_point_angles(linkage)
         assert found
         for angle in found:
             at = linkage.at(angle, speed=1.0)
@@ -221,7 +221,7 @@ def test_energy_near_a_dead_point_is_that_of_the_potential(near: float, law: Law
     """The slider's force grows as the inverse root of the way from the dead point; its work does not."""
     machine = Mechanism(crank=RigidLink(mass=2.0), rod=RigidLink(mass=3.0), slider_mass=4.0, gravity=(0.0, -9.81))
     linkage = Linkage(0.04, 0.1, 0.01)
-    dead = min(dead_points(linkage), key=abs)
+    dead = min(dead_point_angles(linkage), key=abs)
     duration = None if law == "slow" else 40.0
     swing = Swing(start=dead + math.radians(near), end=math.radians(80.0), driver="slider", law=law, duration=duration)
     found = summarise(machine, linkage, swing)

@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.error_sources import angles_where_error_counts, limit_box
+from slidercrank.model.tolerance.error_sources import angle_ranges_where_error_counts, limit_box
 from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
 from slidercrank.model.tolerance.first_order import first_order_position_errors
 from tests.model.cases import Array
@@ -137,7 +137,7 @@ def test_exact_worst_case_tends_to_the_first_order_as_the_square_of_the_toleranc
             )
             machine = dataclasses.replace(mechanism, tolerances=small)
             exact = (
-                position_deviation_extremes(machine, linkage, TURN).size
+                position_deviation_extremes(machine, linkage, TURN).largest_magnitude
                 - first_order_position_errors(machine, linkage, TURN).worst_case
             )
             gaps.append(np.abs(exact).max())
@@ -162,12 +162,12 @@ def test_worst_over_the_cycle_is_the_greatest_of_a_dense_sweep_of_the_window(
         counts = (share >= part[0]) & (share <= part[1])
         if during != "cycle":
             counts &= (linkage.sign * at.slider_velocity > 0.0) == (during == "outward stroke")
-        dense = position_deviation_extremes(machine, linkage, theta[counts]).size.max()
+        dense = position_deviation_extremes(machine, linkage, theta[counts]).largest_magnitude.max()
         found = worst_position_error(machine, linkage)
         # The sweep misses a smooth top by the square of its spacing, an end of the window by its slope.
         assert found.size >= dense * (1.0 - 1e-12)
         assert found.size == pytest.approx(dense, rel=2e-3)
-        assert position_deviation_extremes(machine, linkage, found.crank_angle).size[0] == pytest.approx(
+        assert position_deviation_extremes(machine, linkage, found.crank_angle).largest_magnitude[0] == pytest.approx(
             found.size, rel=1e-12
         )
 
@@ -176,9 +176,13 @@ def test_worst_over_the_whole_cycle_is_exact() -> None:
     for mechanism, linkage in [(PUBLISHED, SUPPORT), *CASES[:6]]:
         found = worst_position_error(mechanism, linkage)
         near = found.crank_angle + np.linspace(-1e-3, 1e-3, 2001)
-        assert position_deviation_extremes(mechanism, linkage, near).size.max() <= found.size * (1.0 + 1e-12)
-        everywhere = np.concatenate(angles_where_error_counts(mechanism, linkage, count=4096))
-        assert position_deviation_extremes(mechanism, linkage, everywhere).size.max() <= found.size * (1.0 + 1e-12)
+        assert position_deviation_extremes(mechanism, linkage, near).largest_magnitude.max() <= found.size * (
+            1.0 + 1e-12
+        )
+        everywhere = np.concatenate(angle_ranges_where_error_counts(mechanism, linkage, count=4096))
+        assert position_deviation_extremes(mechanism, linkage, everywhere).largest_magnitude.max() <= found.size * (
+            1.0 + 1e-12
+        )
 
 
 def test_worst_case_of_case_four_is_just_beyond_its_first_order() -> None:

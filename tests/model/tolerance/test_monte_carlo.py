@@ -16,7 +16,13 @@ from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
 from slidercrank.model.tolerance.error_distributions import Contact, Shape, Spreads, error_distribution
 from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
 from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
-from slidercrank.model.tolerance.monte_carlo import CHUNK, simulate, summarise, variance_contributions, yield_within
+from slidercrank.model.tolerance.monte_carlo import (
+    CHUNK,
+    simulate,
+    summarise_sample,
+    variance_contributions,
+    yield_within,
+)
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 
 TURN = np.array([0.2, 1.3, 2.9, 4.0, 5.5])
@@ -115,8 +121,8 @@ def test_first_order_exact_and_simulation_agree_on_case_four() -> None:
         first_order_position_errors(PUBLISHED, SUPPORT, TURN),
         position_deviation_extremes(PUBLISHED, SUPPORT, TURN),
     )
-    assert np.all(np.abs(found.errors).max(axis=0) <= exact.size)
-    assert np.all(np.abs(exact.size - one.worst_case) <= one.remainder)
+    assert np.all(np.abs(found.errors).max(axis=0) <= exact.largest_magnitude)
+    assert np.all(np.abs(exact.largest_magnitude - one.worst_case) <= one.remainder)
     # Normal but for the remainder: the share within a root-sum-square, three standard deviations, cut at three.
     for n in range(len(TURN)):
         share = yield_within(found.errors[:, n], one.root_sum_square[n] / 3.0, confidence=0.9999)
@@ -177,11 +183,11 @@ def test_machines_that_do_not_turn_are_counted_and_never_within_a_limit() -> Non
     assert yield_within(found.greatest, 1e3, confidence=0.9999).low < stats.norm.cdf(1.0)
     assert yield_within(found.greatest, 1e3, confidence=0.9999).high > stats.norm.cdf(1.0)
     assert found.stuck == np.isnan(found.greatest).sum() > 0
-    assert np.isfinite(summarise(found.greatest).mean)
+    assert np.isfinite(summarise_sample(found.greatest).mean)
 
 
 def test_summary_is_that_of_the_sample() -> None:
-    found = summarise(np.arange(101.0), percents=(10.0, 50.0))
+    found = summarise_sample(np.arange(101.0), percents=(10.0, 50.0))
     assert found.mean == 50.0
     assert found.deviation == pytest.approx(np.arange(101.0).std(ddof=1))
     assert found.percentiles == ((10.0, 10.0), (50.0, 50.0))
@@ -211,7 +217,7 @@ def test_wrong_distributions_and_limits_are_refused() -> None:
         (lambda: yield_within([0.0], math.nan), "must be zero or more and finite"),
         (lambda: yield_within([0.0], 1.0, confidence=1.0), "confidence must be between 0 and 1; got 1"),
         (lambda: yield_within([], 1.0), "at least one number"),
-        (lambda: summarise([math.nan, 1.0]), "needs at least two machines that rotate fully; got 1"),
+        (lambda: summarise_sample([math.nan, 1.0]), "needs at least two machines that rotate fully; got 1"),
     ):
         with pytest.raises(InputError, match=message):
             wrong()

@@ -21,7 +21,7 @@ from slidercrank.model.machine.loads.crank_torque import CrankTorque
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward_dynamics import State, simulate
 from slidercrank.model.transient.steady_running import Runner, SteadyRunning, steady_running
@@ -78,7 +78,7 @@ def test_the_torque_of_the_motion_is_that_of_inverse_dynamics(machine: Mechanism
     assert np.abs(running.torque - wanted).max() <= 1e-7 * np.abs(wanted).max()
     cylinders = 1 if machine.arrangement is None else len(machine.arrangement.phases)
     design = np.array([[0.043, 0.15, 0.005]])
-    mean = average_torque(replace(machine, arrangement=None), design).mean[0] * cylinders
+    mean = torque_averages(replace(machine, arrangement=None), design).mean[0] * cylinders
     assert running.motor_torque[0] == pytest.approx(mean, rel=1e-9)
 
 

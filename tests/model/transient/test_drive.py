@@ -40,14 +40,14 @@ def test_a_table_is_met_at_its_points_does_not_overshoot_and_is_undefined_beyond
 def test_slopes_are_those_of_the_torque(motor: Motor) -> None:
     speeds = np.array([1.0, 30.0, 70.0])
     rise = (motor.torque_at(speeds + 1e-4) - motor.torque_at(speeds - 1e-4)) / 2e-4
-    np.testing.assert_allclose(motor.slope(speeds), rise, rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(motor.torque_slope(speeds), rise, rtol=1e-7, atol=1e-9)
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_a_gear_multiplies_torque_and_divides_speed(way: float) -> None:
     drive = Drive(motor=LINE, flywheel=0.5, motor_inertia=0.01, gear_ratio=5.0)
     assert drive.inertia == 0.75
-    assert drive.torque(way * 20.0, way) == pytest.approx(way * 5.0 * 4.0, rel=1e-14)
+    assert drive.torque_on_crank(way * 20.0, way) == pytest.approx(way * 5.0 * 4.0, rel=1e-14)
     assert speed_range(Drive(motor=TABLE, gear_ratio=5.0)) == (-1.0, 18.0)
     assert speed_range(drive) == (-math.inf, math.inf)
 

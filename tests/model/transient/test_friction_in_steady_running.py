@@ -17,7 +17,7 @@ from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor, 
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.forward_dynamics import State, simulate
 from slidercrank.model.transient.steady_running import Runner, SteadyRunning, steady_running
@@ -100,9 +100,17 @@ def test_the_energy_integral_holds_over_the_turn(machine: Mechanism) -> None:
     found = cycle(machine, linkage, way * at, speed=speed, acceleration=acceleration)
     motion = linkage.at(way * at, speed=1.0)
     heat = RUBBING.guide * np.abs(found.guide * motion.slider_velocity)
-    heat += RUBBING.crank_pivot.circle * np.hypot(found.pivot_x, found.pivot_y)
-    heat += RUBBING.crank_pin.circle * np.hypot(found.crank_pin_x, found.crank_pin_y) * (1.0 - motion.rod_velocity)
-    heat += RUBBING.slider_pin.circle * np.hypot(found.slider_pin_x, found.slider_pin_y) * np.abs(motion.rod_velocity)
+    heat += RUBBING.crank_pivot.friction_circle_radius * np.hypot(found.pivot_x, found.pivot_y)
+    heat += (
+        RUBBING.crank_pin.friction_circle_radius
+        * np.hypot(found.crank_pin_x, found.crank_pin_y)
+        * (1.0 - motion.rod_velocity)
+    )
+    heat += (
+        RUBBING.slider_pin.friction_circle_radius
+        * np.hypot(found.slider_pin_x, found.slider_pin_y)
+        * np.abs(motion.rod_velocity)
+    )
     useful = -way * (linkage.sign * found.load * motion.slider_velocity + found.crank_load)
     spent = float((heat + useful).mean()) * 2.0 * math.pi
     size = float((heat + np.abs(useful)).mean()) * 2.0 * math.pi
@@ -113,7 +121,7 @@ def test_the_energy_integral_holds_over_the_turn(machine: Mechanism) -> None:
 def test_with_a_heavy_flywheel_the_torque_is_the_mean_one_of_constant_speed() -> None:
     for machine, design in zip(machines(), DESIGNS, strict=True):
         running = Runner(machine, linkage_of(design, machine.branch)).under_constant_torque(1e7)
-        expected = average_torque(machine, design[None])
+        expected = torque_averages(machine, design[None])
         assert running.motor_torque[0] == pytest.approx(expected.mean[0], abs=1e-6 * expected.rms[0])
 
 
@@ -124,7 +132,7 @@ def test_friction_of_next_to_nothing_is_no_friction() -> None:
         both = (replace(machine, friction=friction) for friction in (Friction(), nearly))
         runners = [Runner(each, on_branch(each)) for each in both]
         for one, other in zip(
-            *((each.under_constant_torque(0.3), each.running_under(MOTOR)) for each in runners), strict=True
+            *((each.under_constant_torque(0.3), each.run_under_drive(MOTOR)) for each in runners), strict=True
         ):
             for name in ("mean_speed", "fluctuation", "work"):
                 assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-10)

@@ -81,7 +81,7 @@ def solved(machine: Mechanism, design: Array, theta: Array, speed: float) -> Arr
     linkage, sign = linkage_of(design, machine.branch), 1.0 if machine.branch == "open" else -1.0
     moving, way = replace(machine, speed=speed), path(design, theta, sign)
     still, pushed = (inertia_forces(replace(moving, acceleration=a), design, theta) for a in (0.0, 1.0))
-    motor = float(DRIVE.torque(speed, machine.direction))
+    motor = float(DRIVE.torque_on_crank(speed, machine.direction))
     at: dict[str, Any] = {
         "pin": (design[0] * math.cos(theta[0]), design[0] * math.sin(theta[0])),
         "slider_at": (way.x[0], design[2]),
@@ -128,7 +128,7 @@ def test_motion_is_that_of_an_independent_integration() -> None:
         linkage, way = replace(LINKAGE, branch=machine.branch), machine.direction
 
         def rate(_time: float, y: Array, machine: Mechanism = machine, linkage: Linkage = linkage) -> list[float]:
-            motor = float(DRIVE.torque(y[1], machine.direction))
+            motor = float(DRIVE.torque_on_crank(y[1], machine.direction))
 
             def surplus(a: float) -> float:
                 needed = float(cycle(machine, linkage, y[0], speed=y[1], acceleration=a).torque[0])
@@ -242,7 +242,7 @@ def test_torque_rises_with_the_acceleration_by_no_less_than_the_bound() -> None:
                 low, high = np.sort(random.normal(size=(2, 20)), axis=0) * size
                 one, other = span.friction_state(angle, speed, low), span.friction_state(angle, speed, high)
                 rise = (other.torque - one.torque) / (high - low)
-                scale = equation.inertia(angle)
+                scale = equation.moving_inertia(angle)
                 assert np.all(rise >= one.least - 1e-9 * scale)
                 assert np.all(one.by_acceleration >= one.least - 1e-9 * scale)
                 closest = min(closest, float(((rise - one.least) / scale).min()))

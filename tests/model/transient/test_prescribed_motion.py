@@ -56,7 +56,7 @@ def test_a_speed_over_angle_gives_time_and_acceleration(way: float) -> None:
 
 def test_a_table_over_angle_is_interpolated_smoothly_and_periodically() -> None:
     at = np.radians(np.arange(0.0, 360.0, 15.0))
-    table = SpeedOverAngle.table(tuple(at), tuple(20.0 + 5.0 * np.cos(at)))
+    table = SpeedOverAngle.from_table(tuple(at), tuple(20.0 + 5.0 * np.cos(at)))
     exact = SpeedOverAngle(lambda q: 20.0 + 5.0 * np.cos(q), lambda q: -5.0 * np.sin(q))
     got, expected = (prescribed_over_angle(STROKES, LINKAGE, motion, start=-2.0) for motion in (table, exact))
     # Cubic: (15 deg)^4 / 384 of the fourth derivative, and (15 deg)^3 / 24 for the slope.
@@ -77,7 +77,7 @@ def test_over_a_turn_the_work_is_that_on_the_loads_for_any_periodic_speed() -> N
 def test_a_simulation_replayed_needs_the_torque_that_it_had() -> None:
     drive = Drive(motor=LinearMotor(stall_torque=60.0, no_load_speed=40.0), flywheel=0.2)
     run = simulate(SMOOTH, LINKAGE, drive, duration=0.6, samples=2000)
-    motion = SpeedOverTime.table(run.time.tolist(), run.speed.tolist(), start=float(run.angle[0]))
+    motion = SpeedOverTime.from_table(run.time.tolist(), run.speed.tolist(), start=float(run.angle[0]))
     found = prescribed_over_time(SMOOTH, LINKAGE, motion, np.linspace(0.05, 0.55, 300))
     expected = np.interp(found.time, run.time, run.torque)
     # The table is interpolated by a cubic, the comparison linearly, both between 2,000 points a turn.
@@ -108,10 +108,10 @@ GOOD: Any = (lambda q: 20.0 + np.cos(q), lambda q: -np.sin(q))
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: SpeedOverAngle.table((0.0, 1.0, 2.0), (1.0, 1.0, 1.0)), "at least four; got 3 crank angles"),
-        (lambda: SpeedOverAngle.table((0.0, 1.0, 2.0, 7.0), (1.0,) * 4), "span less than 360 deg; got 401"),
-        (lambda: SpeedOverTime.table((0.0, 1.0, 3.0, 2.0), (1.0,) * 4), "times of a table must increase"),
-        (lambda: SpeedOverTime.table((0.0, 1.0, 2.0, 3.0), (1.0, 1.0, 1.0, math.nan)), "finite throughout"),
+        (lambda: SpeedOverAngle.from_table((0.0, 1.0, 2.0), (1.0, 1.0, 1.0)), "at least four; got 3 crank angles"),
+        (lambda: SpeedOverAngle.from_table((0.0, 1.0, 2.0, 7.0), (1.0,) * 4), "span less than 360 deg; got 401"),
+        (lambda: SpeedOverTime.from_table((0.0, 1.0, 3.0, 2.0), (1.0,) * 4), "times of a table must increase"),
+        (lambda: SpeedOverTime.from_table((0.0, 1.0, 2.0, 3.0), (1.0, 1.0, 1.0, math.nan)), "finite throughout"),
         (
             lambda: prescribed_over_angle(SMOOTH, LINKAGE, SpeedOverAngle(np.cos, lambda q: -np.sin(q))),
             "must not be zero or change its sign, .*state the motion over time",
@@ -130,7 +130,9 @@ GOOD: Any = (lambda q: 20.0 + np.cos(q), lambda q: -np.sin(q))
             "times must be a list of finite, incr",
         ),
         (
-            lambda: prescribed_over_time(SMOOTH, LINKAGE, SpeedOverTime.table((0, 1, 2, 3), (1, 2, 3, 5)), [0.0, 4.0]),
+            lambda: prescribed_over_time(
+                SMOOTH, LINKAGE, SpeedOverTime.from_table((0, 1, 2, 3), (1, 2, 3, 5)), [0.0, 4.0]
+            ),
             "times must lie within the table, 0 to 3 s; got 0 to 4 s",
         ),
     ],

@@ -20,7 +20,7 @@ from slidercrank.model.machine.drive import Drive, LinearMotor
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.model.transient.crank_equation import CrankEquation
@@ -55,7 +55,7 @@ def test_over_a_turn_the_torque_does_the_work_of_the_loads(seed: int) -> None:
     machine, linkage = random_uneven(seed)
     still = replace(machine, loads=tuple(load for load in machine.loads if not load.speed_power))
     design = np.array([[linkage.crank, linkage.rod, linkage.offset]])
-    found, wanted = speed_profile_cycle(still, linkage), average_torque(still, design).mean[0]
+    found, wanted = speed_profile_cycle(still, linkage), torque_averages(still, design).mean[0]
     assert found.mean_torque == pytest.approx(wanted, rel=1e-10, abs=1e-10 * found.rms_torque)
     assert found.mean_power == pytest.approx(still.direction * TURN * found.mean_torque / found.period, rel=1e-12)
 
@@ -69,7 +69,7 @@ def test_power_in_is_energy_gained_and_work_done_at_every_angle(seed: int) -> No
 
     def energy(angle: NDArray[np.float64]) -> NDArray[np.float64]:
         speed, _ = crank_speed_and_acceleration(machine, angle)
-        return 0.5 * equation.inertia(angle) * speed**2 + equation.height_energy(angle)
+        return 0.5 * equation.moving_inertia(angle) * speed**2 + equation.gravity_energy(angle)
 
     h = 1e-4
     slope = (8.0 * (energy(theta + h) - energy(theta - h)) - energy(theta + 2 * h) + energy(theta - 2 * h)) / (12.0 * h)
@@ -118,7 +118,7 @@ def test_without_a_profile_it_is_the_cycle() -> None:
         assert found.peaks[name].value == pytest.approx(
             find_peaks(machine, kind, design, limit=1).values[0, 0], rel=1e-10
         )
-    assert found.rms_torque == pytest.approx(average_torque(machine, design).rms[0], rel=1e-12)
+    assert found.rms_torque == pytest.approx(torque_averages(machine, design).rms[0], rel=1e-12)
     theta = np.linspace(0.0, TURN, 50)
     same = speed_profile_curves(machine, Linkage(0.05, 0.2, 0.03), theta).curves.torque
     assert (same == cycle(machine, Linkage(0.05, 0.2, 0.03), theta).torque).all()
@@ -134,7 +134,7 @@ def test_steady_running_under_a_motor_is_replayed() -> None:
     kept = np.concatenate([[True], np.diff(turned) > 1e-4]) & (turned < TURN - 1e-4)
     angle = running.crank_angle[kept]
     profile = SpeedTable(angles=tuple(angle.tolist()), speeds=tuple(running.speed[kept].tolist()))
-    again = replace(machine, speed=profile.mean, speed_profile=profile)
+    again = replace(machine, speed=profile.mean_speed, speed_profile=profile)
     found = speed_profile_curves(again, linkage, angle)
     size = np.abs(running.torque).max()
     assert np.abs(found.curves.torque - running.torque[kept]).max() < 1e-5 * size
@@ -156,9 +156,9 @@ def test_several_cylinders_share_the_speed_of_the_shaft() -> None:
     speed, rise = crank_speed_and_acceleration(machine, theta)
     torque, moment = np.zeros(20), np.zeros(20)
     for k in range(2):
-        c = np.exp(-1j * arrangement.bank(k)) * complex(*machine.gravity)
+        c = np.exp(-1j * arrangement.bank_angle(k)) * complex(*machine.gravity)
         alone = replace(machine, gravity=(c.real, c.imag))
-        at = theta + arrangement.lead(k)
+        at = theta + arrangement.lead_over_slider_line(k)
         torque += cycle(alone, linkage, at, speed=speed, acceleration=rise).torque
         moment += shaking_curves(alone, linkage, at, speed=speed, acceleration=rise).moment
     found = multi_cylinder_curves(both, linkage, theta)
@@ -193,5 +193,5 @@ def test_impossible_profiles_are_refused() -> None:
 def test_a_table_of_one_speed_is_a_constant_one(speed: float) -> None:
     profile = SpeedTable(angles=(0.0, 1.0, 2.5, 4.0, 5.0), speeds=(speed,) * 5)
     theta = np.linspace(0.0, TURN, 50)
-    np.testing.assert_allclose(profile.ratio(theta), 1.0, rtol=1e-14)
-    np.testing.assert_allclose(profile.slope(theta), 0.0, atol=1e-14)
+    np.testing.assert_allclose(profile.speed_ratio(theta), 1.0, rtol=1e-14)
+    np.testing.assert_allclose(profile.speed_ratio_slope(theta), 0.0, atol=1e-14)

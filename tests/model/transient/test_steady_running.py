@@ -121,7 +121,7 @@ def test_of_several_operating_points_the_stable_one_next_to_the_speed_is_taken()
 @pytest.mark.parametrize("machine", MACHINES.values(), ids=MACHINES)
 def test_a_flywheel_gives_the_wanted_fluctuation_in_a_simulation(machine: Mechanism, motor: Drive | None) -> None:
     found = design_flywheel(machine, on_branch(machine), 0.05, motor)
-    assert found.needed
+    assert found.is_needed
     assert found.running.fluctuation == pytest.approx(0.05, rel=1e-10)
     start = start_of(found.running)
     run = simulate(machine, on_branch(machine), found.drive, duration=60.0, turns=1, start=start, samples=3000)
@@ -142,7 +142,7 @@ def test_the_classical_flywheel_is_exact_to_first_order() -> None:
 def test_no_flywheel_is_designed_where_none_is_needed() -> None:
     heavy = Mechanism(speed=10.0, crank=RigidLink(mass=400.0), slider_mass=0.1)
     found = design_flywheel(heavy, LINKAGE, 0.05)
-    assert not found.needed
+    assert not found.is_needed
     assert found.inertia == found.drive.flywheel == 0.0
     assert found.running.fluctuation < 0.05
 

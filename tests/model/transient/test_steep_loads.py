@@ -19,7 +19,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.signals.averages import average_torque
+from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.transient import steady_cycle
 from slidercrank.model.transient.flywheel import design_flywheel
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
@@ -103,7 +103,7 @@ def test_means_and_energies_with_friction_do_not_halve_panels_without_end() -> N
     )
     before = time.process_time()
     found = cycle_energies(machine, LINKAGE)
-    mean = average_torque(machine, DESIGN, gradients=True)
+    mean = torque_averages(machine, DESIGN, gradients=True)
     several = multi_cylinder_cycle(replace(machine, arrangement=Arrangement(phases=(0.0, math.pi))), LINKAGE)
     uneven = speed_profile_cycle(machine, LINKAGE)
     # They take a quarter of a second; halving panels down to rounding takes minutes or never ends.

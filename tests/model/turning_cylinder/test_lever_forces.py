@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.quadrature import gauss
+from slidercrank.model.quadrature import gauss_nodes_and_weights
 from slidercrank.model.swing.law import travel_speed_acceleration
 from slidercrank.model.turning_cylinder.forces import (
     LeverBody,
@@ -56,7 +56,7 @@ def test_forces_of_300_machines_are_those_of_free_bodies_with_constraints() -> N
 def test_the_work_of_the_slow_cylinder_lifts_the_weights() -> None:
     """Integral of P dL against the rise of all mass centres, with 40 Gauss points."""
     random = np.random.default_rng(7)
-    share, weight = gauss(40)
+    share, weight = gauss_nodes_and_weights(40)
     for _ in range(60):
         machine, swing = some_machine(random)
         slow = replace(swing, law="slow", duration=None)
@@ -70,7 +70,7 @@ def test_the_work_of_the_slow_cylinder_lifts_the_weights() -> None:
 def test_power_of_the_cylinder_is_the_rate_of_kinetic_and_potential_energy() -> None:
     """At rest at both ends, the work over a smooth law is that of the slow swing."""
     random = np.random.default_rng(8)
-    share, weight = gauss(60)
+    share, weight = gauss_nodes_and_weights(60)
     for _ in range(40):
         machine, swing = some_machine(random)
         timed = LeverSwing(swing.start, swing.end, "polynomial", 0.7)

@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.tolerance.error_sources import angles_where_error_counts
+from slidercrank.model.tolerance.error_sources import angle_ranges_where_error_counts
 from slidercrank.model.tolerance.first_order import first_order_position_errors
 from slidercrank.optimise.problem.tolerance_costs import NAMES, Cost, Costs
 from slidercrank.optimise.sizing.input_words import Kind
@@ -95,9 +95,9 @@ def test_with_one_active_angle_it_is_the_dearest_of_the_closed_forms_of_single_a
 def by_slsqp(mechanism: Mechanism, linkage: Linkage, costs: Costs, limit: float, found: Allocation) -> Array:
     """Return the tolerances of a sequential quadratic programme on many angles, from a start of its own."""
     power = 1 if found.kind == "worst case" else 2
-    theta = np.concatenate(angles_where_error_counts(mechanism, linkage, count=300))
+    theta = np.concatenate(angle_ranges_where_error_counts(mechanism, linkage, count=300))
     near = np.concatenate([[angle + np.linspace(-2e-3, 2e-3, 41)] for angle in found.angles], axis=None)
-    inside = [(part[0], part[-1]) for part in angles_where_error_counts(mechanism, linkage)]
+    inside = [(part[0], part[-1]) for part in angle_ranges_where_error_counts(mechanism, linkage)]
     turns = near[:, None] + 2.0 * np.pi * np.array([-1.0, 0.0, 1.0])
     near = turns[np.any([(turns >= low) & (turns <= high) for low, high in inside], axis=0)]
     s = influence_sizes(linkage, np.concatenate([theta, near])) ** power / limit**power
@@ -168,7 +168,7 @@ def test_the_error_reaches_the_limit_and_never_exceeds_it_in_the_working_stroke(
         assert found.converged
         assert found.residual <= 1e-10
         assert found.error == pytest.approx(1e-4, rel=1e-10)
-        theta = np.concatenate(angles_where_error_counts(found.mechanism, linkage, count=20_000))
+        theta = np.concatenate(angle_ranges_where_error_counts(found.mechanism, linkage, count=20_000))
         linear = first_order_position_errors(found.mechanism, linkage, theta)
         error = linear.worst_case if kind == "worst case" else linear.root_sum_square
         assert error.max() <= 1e-4 * (1.0 + 1e-10)

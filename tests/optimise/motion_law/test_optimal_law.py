@@ -49,7 +49,7 @@ def require_within_limits(found: OptimalLaw) -> None:
     """Check the limits of a law at 20,000 angles by the inverse dynamics of any speed."""
     law, limits, request = found.law, found.limits, found.limits.request
     angle = np.linspace(0.0, TURN, 20_000)
-    speed, acceleration = law.speed(angle), law.acceleration(angle)
+    speed, acceleration = law.speed_at(angle), law.acceleration_at(angle)
     curves = cycle(law.turn.machine, law.turn.linkage, angle, speed=speed, acceleration=acceleration)
     assert np.all(speed * law.turn.way >= limits.least_speed * (1.0 - LIMIT_TOLERANCE))
     assert np.all(speed * law.turn.way <= limits.greatest_speed * (1.0 + LIMIT_TOLERANCE))
@@ -80,7 +80,7 @@ def test_laws_of_random_machines_keep_their_limits_and_are_near_their_bound(seed
     )
     found = optimal_law(machine, linkage, request)
     require_within_limits(found)
-    judged = speed_profile_cycle(found.law.turn.machine, linkage, found.law.motion)
+    judged = speed_profile_cycle(found.law.turn.machine, linkage, found.law.crank_motion)
     assert judged.period == pytest.approx(TURN / mean, rel=1e-9)
     assert found.proven or found.relaxed
     assert found.bound <= found.value * (1.0 + 1e-9)

@@ -41,7 +41,7 @@ def test_the_page_has_the_linkage_at_even_times_forth_and_back(case: Case) -> No
     assert math.degrees(swing.end) == pytest.approx(data["angles"][180])
     # The driver's place is that of the law of motion, forth and once more back.
     place = angles if swing.driver == "crank" else slider
-    s = travel_speed_acceleration(swing.law, np.arange(181) / 180.0, swing.table)[0]
+    s = travel_speed_acceleration(swing.law, np.arange(181) / 180.0, swing.law_pieces)[0]
     np.testing.assert_allclose(place[:181], place[0] + (place[180] - place[0]) * s, atol=1e-6 * np.ptp(place))
     back = np.append(place[180:], place[0])
     np.testing.assert_allclose(back, place[180] + (place[0] - place[180]) * s, atol=1e-6 * np.ptp(place))
