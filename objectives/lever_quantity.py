@@ -188,5 +188,5 @@ class LeverRms(LeverQuantity):
         in_chunks(len(rows), work, size=_CHUNK)
         if not gradients:
             return Values(values, None)
-        slopes[rows] = numbers.chain(by_number)
+        slopes[rows] = numbers.chain_to_designs(by_number)
         return Values(values, slopes)

@@ -153,7 +153,7 @@ def compile_kernel(function: Callable[..., Any], examples: tuple[Any, ...]) -> M
     symbol = compiled.fndesc.llvm_func_name
     _, _, (code, _) = compiled.library.serialize_using_object_code()
     arguments = tuple(str(argument.type) for argument in compiled.library.get_function(symbol).arguments)
-    functions = compiled.library.get_function(symbol).module_name.functions
+    functions = compiled.library.get_function(symbol).module.functions
     calls = tuple(
         function_declared.name
         for function_declared in functions

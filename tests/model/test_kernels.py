@@ -308,7 +308,8 @@ def test_digests_do_not_depend_on_the_process() -> None:
         "import slidercrank.model.signals.fast_torque_and_error, slidercrank.model.signals.complex_forces;"
         "from slidercrank.model.kernel.kernel import KERNELS;"
         "from slidercrank.model.kernel.kernel_digest import kernel_digest;"
-        "print(json.dumps({w.name: kernel_digest(w.function, w.examples) for w in (k.source() for k in KERNELS)}))"
+        "sources = [kernel.compilation_source() for kernel in KERNELS];"
+        "print(json.dumps({source.name: kernel_digest(source.function, source.examples) for source in sources}))"
     )
     found = []
     for seed in ("1", "2"):
