@@ -16,7 +16,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import single_rotating_linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
-from .lumped import mechanism_with_lumped_rod, rotating_and_reciprocating_mass
+from .lumped import mechanism_with_lumped_rod, rotating_and_reciprocating_masses
 from .series import drive_torque_equation_48, series_acceleration, series_torque
 
 ACCELERATION = ("series",)
@@ -50,7 +50,7 @@ def compare_approximations(mechanism: Mechanism, linkage: Linkage, crank_angle: 
     inert = _with_inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed
-    rotating, reciprocating = rotating_and_reciprocating_mass(inert, linkage)
+    rotating, reciprocating = rotating_and_reciprocating_masses(inert, linkage)
     torques = (
         cycle(mechanism_with_lumped_rod(inert, linkage), linkage, theta).torque,
         cycle(mechanism_with_lumped_rod(inert, linkage, crank_pin_share=0.5), linkage, theta).torque,

@@ -82,7 +82,7 @@ def mechanism_with_lumped_rod(
     )
 
 
-def rotating_and_reciprocating_mass(
+def rotating_and_reciprocating_masses(
     mechanism: Mechanism, linkage: Linkage, *, crank_pin_share: float | None = None
 ) -> tuple[float, float]:
     """Return the rotating mass at the crank pin, crank included, and the reciprocating mass, kg.

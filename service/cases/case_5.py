@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.classical.lumped import rotating_and_reciprocating_mass
+from ...model.classical.lumped import rotating_and_reciprocating_masses
 from ...model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import RigidLink
@@ -34,7 +34,7 @@ def linkage(offset: float) -> Linkage:
 
 def rotating_and_reciprocating_mass() -> tuple[float, float]:
     """Return the rotating and the reciprocating mass, kg, with both links split in half as in the paper."""
-    return rotating_and_reciprocating_mass(MACHINE, linkage(0.020))
+    return rotating_and_reciprocating_masses(MACHINE, linkage(0.020))
 
 
 def exact_torque(offset: float, crank_angle: Array) -> Array:

@@ -13,7 +13,7 @@ from slidercrank.model.classical.lumped import (
     link_mass_properties,
     mechanism_with_lumped_rod,
     rod_mass_share_at_crank_pin,
-    rotating_and_reciprocating_mass,
+    rotating_and_reciprocating_masses,
 )
 from slidercrank.model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from slidercrank.model.cycle.cycle import cycle
@@ -53,10 +53,10 @@ def test_two_masses_are_wrong_for_any_other_inertia() -> None:
 def test_masses_of_the_feeder_are_lumped_half_and_half() -> None:
     linkage = Linkage(0.040, 0.064, -0.020)
     # By moments about the pins, Eqs. 32 to 36: 0.25 + 0.1 and 0.25 + 0.8 kg.
-    assert rotating_and_reciprocating_mass(FEEDER, linkage) == pytest.approx((0.35, 1.05), rel=1e-14)
+    assert rotating_and_reciprocating_masses(FEEDER, linkage) == pytest.approx((0.35, 1.05), rel=1e-14)
     off_centre = replace(FEEDER, rod=RigidLink(mass=0.5, centre=0.016))
-    assert rotating_and_reciprocating_mass(off_centre, linkage) == pytest.approx((0.475, 0.925), rel=1e-14)
-    assert rotating_and_reciprocating_mass(off_centre, linkage, crank_pin_share=0.5)[1] == pytest.approx(
+    assert rotating_and_reciprocating_masses(off_centre, linkage) == pytest.approx((0.475, 0.925), rel=1e-14)
+    assert rotating_and_reciprocating_masses(off_centre, linkage, crank_pin_share=0.5)[1] == pytest.approx(
         1.05, rel=1e-14
     )
 
@@ -148,7 +148,7 @@ def test_comparison_is_of_inertia_alone_at_constant_speed() -> None:
     np.testing.assert_array_equal(found.torque, exact.torque)
     np.testing.assert_array_equal(found.acceleration, exact.slider_acceleration)
     assert tuple(found.torques) == TORQUE
-    reciprocating = rotating_and_reciprocating_mass(SMOOTH, linkage)[1]
+    reciprocating = rotating_and_reciprocating_masses(SMOOTH, linkage)[1]
     np.testing.assert_allclose(
         found.torques["series"],
         series_torque(linkage, THETA, speed=SMOOTH.speed, reciprocating_mass=reciprocating),
