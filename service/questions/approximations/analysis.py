@@ -14,7 +14,7 @@ from ....model.classical.comparison import (
     compare_approximations,
     relative_error,
 )
-from ....model.classical.lumped import rotating_and_reciprocating_mass
+from ....model.classical.lumped import rotating_and_reciprocating_masses
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind
@@ -92,7 +92,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     cover inertia only, at constant speed. Raises `InputError` if the crank has no speed.
     """
     comparison = compare_approximations(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
-    rotating, reciprocating = rotating_and_reciprocating_mass(mechanism, linkage)
+    rotating, reciprocating = rotating_and_reciprocating_masses(mechanism, linkage)
     offsets = _errors_over_offset(mechanism, linkage, _TABULATED)
 
     return {
