@@ -1,7 +1,8 @@
 """Processor time of unusual jobs over that of the plain feeder job, each solved in this process once it is warm.
 
-Each job is runs/feeder.toml with one change. Processes that compute quantities of your own count. What a front is worth
-is measured elsewhere: here a job is only to take no longer than others of its kind. `--profile NAME` tells where.
+Each job is runs/feeder.toml with one change, or another machine. Processes that compute quantities of your own count.
+What a front is worth is measured elsewhere: here a job is only to take no longer than others of its kind. `--profile
+NAME` tells where.
 """
 
 from __future__ import annotations
@@ -101,6 +102,7 @@ def jobs() -> dict[str, tuple[Job, float]]:
                 friction=rubs, constraints=made["constraints"] | {"peak_torque": {"max": "90 N m"}}
             )
         ),
+        "lever moved by a cylinder": (tomllib.loads(Path("runs/tipper.toml").read_text(encoding="utf-8")), 3.0),
         "own quantity, NumPy": job(own("in_numpy")),
         "own quantity, Python": job(own("in_python"), IN_PYTHON),
         "own quantity, peaks": job(own("of_motion")),

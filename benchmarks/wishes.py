@@ -14,7 +14,7 @@ from slidercrank.optimise.solve import solve
 
 from .report import Row
 
-JOBS = ("feeder", "sieve", "support", "compressor", "press", "servo_press")
+JOBS = ("feeder", "sieve", "support", "compressor", "press", "servo_press", "tipper")
 COUNT = 100
 AT_MOST = 300.0
 """ms, of a wish in a process that is warm."""

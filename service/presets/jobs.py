@@ -22,7 +22,7 @@ def shipped_jobs() -> dict[str, dict[str, Any]]:
 
 
 class Design(NamedTuple):
-    """Lengths, mm, and the swing range of the crank, deg; None for full rotation."""
+    """Lengths, mm, and the swing range of the crank or lever, deg; None for full rotation."""
 
     crank_mm: float
     rod_mm: float
@@ -38,4 +38,5 @@ DESIGNS = {
     "servo_press": Design(26.6, 175.54, 79.99),
     "sieve": Design(137.0, 556.3, 110.86),
     "support": Design(1360.0, 2426.8, -600.0, 11.16, 101.16),
+    "tipper": Design(350.0, 900.0, 0.0, -20.0, 50.0),
 }

@@ -62,6 +62,9 @@ def test_the_jobs_of_the_guide_have_a_front_of_levers(pytestconfig: pytest.Confi
     guide = (pytestconfig.rootpath / "docs" / "levers.md").read_text(encoding="utf-8")
     texts = re.findall(r"^```toml\n(.*?)^```$", guide, re.MULTILINE | re.DOTALL)
     tables = tomllib.loads(texts[place])
+    shipped = tomllib.loads((pytestconfig.rootpath / "runs" / "tipper.toml").read_text(encoding="utf-8"))
+    if place == 0:
+        assert tables == {name: part for name, part in shipped.items() if name not in ("description", "optimiser")}
     front = sc.solve(sc.problem(tables | {"optimiser": {"designs": 4, "samples": 200}}))
     assert len(front) == 4
     assert set(re.findall(r"`(\w+)`", guide)) >= {of.name for of in swing_facts() if isinstance(of, LeverQuantity)}

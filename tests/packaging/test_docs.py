@@ -290,6 +290,6 @@ def test_the_first_job_of_the_page_presses_slowly(pages: dict[Path, str], root: 
     assert (front.dimensions[:, 2] < 0.0).all()
 
 
-@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press", "servo_press"])
+@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press", "servo_press", "tipper"])
 def test_no_shipped_job_loads_its_fast_stroke(job: str, root: Path) -> None:
     assert stroke_warnings(load_job(root / "runs" / f"{job}.toml")) == []

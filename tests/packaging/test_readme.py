@@ -116,7 +116,7 @@ def test_the_front_of_the_first_page_is_that_of_the_feeder(root: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press", "servo_press"])
+@pytest.mark.parametrize("job", ["feeder", "sieve", "support", "compressor", "press", "servo_press", "tipper"])
 def test_the_gallery_has_the_knee_of_each_front(job: str, root: Path) -> None:
     (part,) = (part for part in page(root, "gallery.md").split("\n## ") if f"Job: `runs/{job}.toml`.\n" in part)
     told = re.search(r"^Knee: crank ([\d.]+) mm, rod ([\d.]+) mm, offset (-?[\d.]+) mm\.$", part, re.MULTILINE)

@@ -52,7 +52,7 @@ def test_check_calls_a_job_of_fixed_lengths_fixed_with_its_stroke_as_an_equality
     assert json.loads(command("check", job, "--json").stdout)["degrees_of_freedom"] == 0
 
 
-@pytest.mark.parametrize("name", ["feeder", "sieve", "support", "compressor", "servo_press"])
+@pytest.mark.parametrize("name", ["feeder", "sieve", "support", "compressor", "servo_press", "tipper"])
 def test_shipped_jobs_pass_the_check(name: str, pytestconfig: pytest.Config, command: Command) -> None:
     done = command("check", pytestconfig.rootpath / "runs" / f"{name}.toml")
     assert done.exit_code == 0, done.stderr

@@ -21,7 +21,7 @@ from slidercrank.service.jobs.job_toml import job_toml
 from tests.service.api.serving import refused
 
 TOML = {"Content-Type": "application/toml"}
-SHIPPED = ("feeder", "sieve", "support", "compressor", "press", "servo_press")
+SHIPPED = ("feeder", "sieve", "support", "compressor", "press", "servo_press", "tipper")
 
 
 def shipped(root: Path) -> dict[str, Any]:
@@ -56,7 +56,11 @@ def test_the_design_that_shows_a_shipped_job_is_one_of_its_ranges_and_moves_as_a
         assert ends.lower - 1e-9 <= length <= ends.upper + 1e-9
     parts = shown["outlines"]
     assert [each["bore_mm"] for each in parts["cylinders"]] == ([70.0] if name == "compressor" else [])
-    assert (parts["body"] is not None, parts["actuator"] is not None) == (name == "support",) * 2
+    assert (parts["body"] is not None, parts["actuator"] is not None) == (
+        name in ("support", "tipper"),
+        name == "support",
+    )
+    assert (parts["lever"] is not None) == (name == "tipper")
     if shown["from_deg"] is not None:
         motion = tomllib.loads((pytestconfig.rootpath / "runs" / f"{name}.toml").read_text())["motion"]
         assert (f"{shown['from_deg']:g} deg", f"{shown['to_deg']:g} deg") == (motion["from"], motion["to"])
