@@ -34,11 +34,11 @@ def importers(root: Path) -> dict[Path, set[Path]]:
     """
     texts = {file: (root / file).read_text(encoding="utf-8") for file in files_of(root, ".py", ".js", ".mjs")}
     python = {file: text for file, text in texts.items() if file.suffix == ".py"}
-    modules = {_dotted(file): file for file in python}
+    modules = {_module_name(file): file for file in python}
     names = {file: dict(_imported(text, file, modules)) for file, text in python.items()}
     found: dict[Path, set[Path]] = defaultdict(set)
     for file, text in python.items():
-        for target in {*names[file].values(), *_passed_on(text, names[file], names)} - {file}:
+        for target in {*names[file].values(), *_reexported_from(text, names[file], names)} - {file}:
             found[target].add(file)
     sources = [file for file in python if file.parts[0] != "tests"]
     finders = [file for file in sources if "import_module(" in python[file]]
@@ -59,7 +59,7 @@ def importers(root: Path) -> dict[Path, set[Path]]:
     return found
 
 
-def _dotted(file: Path) -> str:
+def _module_name(file: Path) -> str:
     """Return the name by which a module is imported."""
     parts = (file.parent if file.name == "__init__.py" else file.with_suffix("")).parts
     if file.is_relative_to(FRONT_DOOR.parent):
@@ -69,7 +69,7 @@ def _dotted(file: Path) -> str:
 
 def _imported(text: str, file: Path, modules: dict[str, Path]) -> Iterator[tuple[str, Path]]:
     """Yield the names under which a module imports from the project, and the files that they come from."""
-    package = _dotted(file).split(".")[: None if file.name == "__init__.py" else -1]
+    package = _module_name(file).split(".")[: None if file.name == "__init__.py" else -1]
     for name, alias in _IMPORT.findall(text):
         if name in modules:
             yield alias or name, modules[name]
@@ -83,7 +83,7 @@ def _imported(text: str, file: Path, modules: dict[str, Path]) -> Iterator[tuple
                 yield alias or name, target
 
 
-def _passed_on(text: str, own: dict[str, Path], names: dict[Path, dict[str, Path]]) -> Iterator[Path]:
+def _reexported_from(text: str, own: dict[str, Path], names: dict[Path, dict[str, Path]]) -> Iterator[Path]:
     """Yield the files that define the names that a module imports from packages that re-export them."""
     for name, source in own.items():
         if source.name == "__init__.py":

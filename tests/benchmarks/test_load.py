@@ -19,8 +19,8 @@ def test_clients_at_once_see_no_errors_and_miss_no_events(tmp_path: Path) -> Non
     rows = load(address, tmp_path, seconds=2.0, clients=10, keyed=20, small=5, workers=1)
     counted = {row.what: row for row in rows if not {"ms", "percentile"} & set(row.what.replace(",", "").split())}
     assert [what for what, row in counted.items() if row.kept() is False] == []
-    assert one(rows, "jobs made by").figures == [1]
-    assert one(rows, "small jobs: done").figures == [5]
+    assert only_row_with(rows, "jobs made by").figures == [1]
+    assert only_row_with(rows, "small jobs: done").figures == [5]
 
 
 def test_a_store_that_was_filled_in_bulk_answers_everything(tmp_path: Path) -> None:
@@ -29,6 +29,6 @@ def test_a_store_that_was_filled_in_bulk_answers_everything(tmp_path: Path) -> N
     assert all(row.figures[0] > 0.0 for row in rows)
 
 
-def one(rows: list[Row], words: str) -> Row:
+def only_row_with(rows: list[Row], words: str) -> Row:
     (found,) = (row for row in rows if words in row.what)
     return found

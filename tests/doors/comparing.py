@@ -74,12 +74,16 @@ def data_of(lines: list[str]) -> list[str]:
         key = _KEY.match(line)
         value = line[key.end() :] if key else line.strip()
         before = f"{key[1]} " if key else ""
-        found = [value.rstrip(",")] if _WORD.match(value) else [_plain(datum) for datum in _DATUM.findall(value)]
+        found = (
+            [value.rstrip(",")]
+            if _WORD.match(value)
+            else [_with_plain_number(datum) for datum in _DATUM.findall(value)]
+        )
         data += [f"{before}{datum}" for datum in found] or ([before.strip()] if key else [])
     return data
 
 
-def _plain(datum: str) -> str:
+def _with_plain_number(datum: str) -> str:
     """Return an option unchanged, and a number in one spelling: 9.10e-03 is 0.0091, -0 is 0."""
     return datum if datum.startswith("--") else f"{float(datum.replace(chr(0x2212), '-')) + 0.0:.12g}"
 
@@ -100,15 +104,15 @@ def compare(before: Path, after: Path, allowances: list[Allowance], *, data: boo
             continue
         texts = [file.read_text(encoding="utf-8").splitlines() for file in (old, new)]
         texts = [data_of(lines) for lines in texts] if data else texts
-        changed = list(_changed(*texts))
+        changed = list(_differing_lines(*texts))
         left = [line for line in changed if not any(one.covers(case, line) for one in allowances)]
         found.allowed += len(changed) - len(left)
         if left:
-            found.differences[case] = "\n".join(_short(left))
+            found.differences[case] = "\n".join(_shortened_lines(left))
     return found
 
 
-def _changed(before: list[str], after: list[str]) -> Iterator[str]:
+def _differing_lines(before: list[str], after: list[str]) -> Iterator[str]:
     """Yield lines that one of two texts has and the other has not, with - or + before them."""
     for kind, start, end, begin, stop in SequenceMatcher(None, before, after, autojunk=False).get_opcodes():
         if kind != "equal":
@@ -116,7 +120,7 @@ def _changed(before: list[str], after: list[str]) -> Iterator[str]:
             yield from (f"+{line}" for line in after[begin:stop])
 
 
-def _short(lines: list[str]) -> Iterator[str]:
+def _shortened_lines(lines: list[str]) -> Iterator[str]:
     """Yield the first lines of a difference, long ones cut around the first place where they differ."""
     for index, line in enumerate(lines[:_LINES]):
         other = next((one for one in lines[max(0, index - 1) : index + 2] if one[0] != line[0]), line)

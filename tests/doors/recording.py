@@ -57,7 +57,7 @@ class Recorder:
 
     def _run(self, case: Case) -> tuple[int, list[tuple[str, str]]]:
         before = self._files()
-        run = _as_a_program if case.words[:1] in _PROCESSES and "--help" not in case.words else _within
+        run = _as_a_program if case.words[:1] in _PROCESSES and "--help" not in case.words else _run_in_process
         code, out, errors = run(case.words)
         written = [name for name, state in self._files().items() if before.get(name) != state]
         files = [(name, text_of((self.place / name).read_bytes(), kind_of_file(name))) for name in sorted(written)]
@@ -89,7 +89,7 @@ class Recorder:
 _SETTINGS: dict[str, Any] = {"submissions_per_minute": 0}
 
 
-def _within(words: list[str]) -> tuple[int, str, str]:
+def _run_in_process(words: list[str]) -> tuple[int, str, str]:
     from typer.testing import CliRunner
 
     from slidercrank.service.cli import app
@@ -125,7 +125,7 @@ def _as_a_program(words: list[str]) -> tuple[int, str, str]:
 _strftime = time.strftime
 
 
-def _at_noon(form: str, _: object = None) -> str:
+def _format_fixed_time(form: str, _: object = None) -> str:
     """Format the same time each time: names of runs have it, and figures show these names."""
     return _strftime(form, time.gmtime(1767268800))
 
@@ -142,7 +142,7 @@ def _record_script(name: str, cases: dict[str, Case], target: Path) -> tuple[str
         place = Path(shutil.copytree(JOBS, Path(folder).resolve() / name))
         (place / "runs").mkdir()
         os.chdir(place)
-        with Recorder(place) as recorder, patch.object(time, "strftime", _at_noon):
+        with Recorder(place) as recorder, patch.object(time, "strftime", _format_fixed_time):
             for title, case in cases.items():
                 code, text = recorder.recorded(case)
                 (target / f"{title}.txt").write_text(text, encoding="utf-8")

@@ -53,7 +53,7 @@ class Case:
     def words(self) -> list[str]:
         """Words of a command after the program; those with an asterisk are names of files here, as in a shell."""
         words = shlex.split(self.typed)[1:]
-        return [name for word in words for name in (_fitting(word) if "*" in word else [word])]
+        return [name for word in words for name in (_matching_paths(word) if "*" in word else [word])]
 
     @property
     def method(self) -> str:
@@ -102,7 +102,7 @@ class Case:
         return re.fullmatch(pattern, urlsplit(self.target).path) is not None
 
 
-def _fitting(word: str) -> list[str]:
+def _matching_paths(word: str) -> list[str]:
     return sorted(map(str, Path().glob(word))) or [word]
 
 

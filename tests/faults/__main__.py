@@ -19,11 +19,11 @@ from .clocks import clocks
 from .commits import commits
 from .disk import disk
 from .flood import flood
-from .full import full
+from .full_disk import fill_disk_at_random
+from .full_store_disk import fill_store_disk
 from .kills import kills
 from .pauses import pauses
 from .restarts import restarts
-from .room import room
 from .runaway import runaway
 from .stalls import ATTACKS, Attack, stall
 from .starts import starts
@@ -91,7 +91,7 @@ def _restarts(seconds: Annotated[float, typer.Option(help="For how long, s.")] =
 @app.command("full")
 def _full(count: Count = 50, seed: Seed = 1) -> None:
     """Let the disk be full at random moments (SQLite)."""
-    _report(f"disk full {count} times on sqlite", lambda: full(count, seed))
+    _report(f"disk full {count} times on sqlite", lambda: fill_disk_at_random(count, seed))
 
 
 @app.command("disk")
@@ -103,7 +103,7 @@ def _disk(count: Annotated[int, typer.Option(help="How often each disk is filled
 @app.command("room")
 def _room(count: Annotated[int, typer.Option(help="How often the disk is filled.")] = 10, seed: Seed = 1) -> None:
     """Leave a small disk room for leases but not for rounds, at random moments (SQLite, as root)."""
-    _report(f"no room for a round {count} times on sqlite", lambda: room(count, seed))
+    _report(f"no room for a round {count} times on sqlite", lambda: fill_store_disk(count, seed))
 
 
 @app.command("clocks")

@@ -11,10 +11,10 @@ from tests.service.store.clocks import Clock
 
 from .audit import keep_audit
 from .crew import crew
-from .found import undisturbed
 from .jobs import KINDS, tables
 from .kills import LEASE
 from .places import Kind, place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _STEPS = (3600.0, 86_400.0)  # s

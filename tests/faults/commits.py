@@ -17,10 +17,10 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 
 from .audit import keep_audit
-from .found import undisturbed
-from .full import whole
+from .full_disk import is_intact
 from .jobs import tables
 from .places import Kind, place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _KIND = "random 3"
@@ -72,21 +72,21 @@ def commits(kind: Kind, every: int = 1) -> tuple[int, Verdict]:
                 with Store(address) as store:
                     keep_audit(address)
                     failing = _Failing(store, number, failure)
-                    job = _life(store, failing, total)
+                    job = _submit_and_solve(store, failing, total)
                 if not failing.reached:
                     break
                 count += 1
                 total.add(judge(address, {job: _KIND}, expected, where.folder / "none"))
-                if kind == "sqlite" and not whole(address):
+                if kind == "sqlite" and not is_intact(address):
                     total.violate("lost", f"the file is damaged after commit {number} {failure}")
     return count, total
 
 
-def _life(store: Store, failing: _Failing, total: Verdict) -> int:
+def _submit_and_solve(store: Store, failing: _Failing, total: Verdict) -> int:
     """Submit a job and solve it, trying again after the fault where that is for the caller to do."""
     job = None
     for _ in range(10):
-        with _clean(total):
+        with _collect_store_errors(total):
             job = submit(store, tables(_KIND), key="one", most_attempts=1000)
             work(store, name="w1", lease=_LEASE, drain=True)
             if store.job(job.id).state == "done":
@@ -97,7 +97,7 @@ def _life(store: Store, failing: _Failing, total: Verdict) -> int:
 
 
 @contextlib.contextmanager
-def _clean(total: Verdict) -> Iterator[None]:
+def _collect_store_errors(total: Verdict) -> Iterator[None]:
     """Take errors of the store, as sentences; whatever else comes through is a fault of the software."""
     try:
         yield

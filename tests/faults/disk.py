@@ -54,17 +54,17 @@ def disk(count: int, seed: int) -> Verdict:
     with tempfile.TemporaryDirectory(prefix="faults-") as folder:
         job = Path(folder) / "job.toml"
         job.write_text(_JOB)
-        whole = _undisturbed(job, Path(folder) / "undisturbed") if count else []
+        whole = _run_undisturbed(job, Path(folder) / "undisturbed") if count else []
         for number in range(count):
             for where in PLACES:
                 with small_disk() as small:
-                    _strike(verdict, small, where, job, Path(folder) / f"{where} {number}", whole, chance)
+                    _run_on_full_disk(verdict, small, where, job, Path(folder) / f"{where} {number}", whole, chance)
         with small_disk() as small:
             _serve(verdict, small)
     return verdict
 
 
-def _undisturbed(job: Path, runs: Path) -> list[list[str]]:
+def _run_undisturbed(job: Path, runs: Path) -> list[list[str]]:
     process = _optimise(runs, {}, str(job), "--no-figures")
     _, errors = process.communicate()
     if process.returncode:
@@ -89,7 +89,7 @@ def _optimise(runs: Path, environment: dict[str, str], *arguments: str) -> subpr
     )
 
 
-def _strike(
+def _run_on_full_disk(
     verdict: Verdict, small: Disk, where: Where, job: Path, runs: Path, whole: list[list[str]], chance: random.Random
 ) -> None:
     """Run a job with one place on a disk that fills at some moment; then make room and resume."""
@@ -127,13 +127,15 @@ def _strike(
     verdict.failed += process.returncode == 2
     small.empty()
     if process.returncode == 2 and where in ("store", "runs"):
-        _go_on(verdict, where, runs, environment, whole)
+        _resume_run(verdict, where, runs, environment, whole)
     elif process.returncode == 0 and _designs(runs) != whole:
         verdict.violate("designs differ", where)
     Path(environment["SLIDERCRANK_STORE"]).unlink(missing_ok=True)
 
 
-def _go_on(verdict: Verdict, where: Where, runs: Path, environment: dict[str, str], whole: list[list[str]]) -> None:
+def _resume_run(
+    verdict: Verdict, where: Where, runs: Path, environment: dict[str, str], whole: list[list[str]]
+) -> None:
     with Store(environment["SLIDERCRANK_STORE"]) as store:
         run = store.jobs()[0].run
     again = _optimise(runs, environment, "--resume", run, "--no-figures")

@@ -13,7 +13,7 @@ import httpx
 
 from .api_process import TOKEN, Api, api
 from .places import place
-from .watched import FILES, Flooded, many_files, watched
+from .watched import FILES, Flooded, many_files, watch_flooded_api
 
 _TURN = 30.0  # s that a request waits while others are first, as docs/service.md says
 _JOB = (
@@ -30,7 +30,7 @@ def flood(count: int, seed: int) -> Flooded:
         served.until_it_answers()
         kinds = [kind for kind in (_bodies, _large_jobs, _addresses, _headers, _slow_bodies) for _ in range(count)]
         random_.shuffle(kinds)
-        with watched(served, flooded):
+        with watch_flooded_api(served, flooded):
             _half_open(served, flooded, 1100)
             for kind in kinds:
                 kind(served, flooded)
@@ -38,7 +38,7 @@ def flood(count: int, seed: int) -> Flooded:
     return flooded
 
 
-def _asked(served: Api, *parts: bytes) -> int:
+def _status_of_request(served: Api, *parts: bytes) -> int:
     """Send bytes and return the status of what is answered; 0 where the connection is just closed."""
     content = b""
     with contextlib.suppress(OSError), socket.create_connection(served.where, timeout=90.0) as there:
@@ -50,8 +50,8 @@ def _asked(served: Api, *parts: bytes) -> int:
     return int(content.split(maxsplit=2)[1]) if content.startswith(b"HTTP/1.1 ") else 0
 
 
-def _refused(served: Api, flooded: Flooded, what: str, *parts: bytes) -> None:
-    status = _asked(served, *parts)
+def _require_refusal(served: Api, flooded: Flooded, what: str, *parts: bytes) -> None:
+    status = _status_of_request(served, *parts)
     flooded.requests += 1
     if not (status == 0 or 400 <= status < 500):
         flooded.violations.append(f"{what}: answered with {status}")
@@ -75,7 +75,7 @@ def _bodies(served: Api, flooded: Flooded) -> None:
         (b"application/json", b'{"job": ' + b"9" * 1_000_000 + b"}"),
     ):
         whole = body * max(1, 1_000_000 // len(body)) if len(body) < 10_000 else body
-        _refused(served, flooded, "body", _posted(kind, whole))
+        _require_refusal(served, flooded, "body", _posted(kind, whole))
 
 
 def _large_jobs(served: Api, flooded: Flooded) -> None:
@@ -94,25 +94,25 @@ def _large_jobs(served: Api, flooded: Flooded) -> None:
         flooded.violations += [
             f"a large job: {one.status_code} after {one.elapsed.total_seconds():.1f} s"
             for one in answers
-            if one.status_code != usual and not _turned_away(one)
+            if one.status_code != usual and not _waited_in_vain(one)
         ]
-        if all(_turned_away(one) for one in answers):
+        if all(_waited_in_vain(one) for one in answers):
             flooded.violations.append(f"none of the large jobs was answered: {path}")
 
 
-def _turned_away(answer: httpx.Response) -> bool:
+def _waited_in_vain(answer: httpx.Response) -> bool:
     """Whether others were first for as long as a request waits for its turn."""
     return answer.status_code == 503 and "Retry-After" in answer.headers and answer.elapsed.total_seconds() >= _TURN
 
 
 def _addresses(served: Api, flooded: Flooded) -> None:
-    _refused(served, flooded, "address", b"GET /", b"a" * 40_000_000, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
+    _require_refusal(served, flooded, "address", b"GET /", b"a" * 40_000_000, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
 
 
 def _headers(served: Api, flooded: Flooded) -> None:
     start = b"GET /api/v1/jobs HTTP/1.1\r\nHost: localhost\r\n"
-    _refused(served, flooded, "headers", start, b"X: " + b"a" * 20_000_000, b"\r\n\r\n")
-    _refused(served, flooded, "headers", start, b"a: b\r\n" * 1_000_000, b"\r\n")
+    _require_refusal(served, flooded, "headers", start, b"X: " + b"a" * 20_000_000, b"\r\n\r\n")
+    _require_refusal(served, flooded, "headers", start, b"a: b\r\n" * 1_000_000, b"\r\n")
 
 
 def _slow_bodies(served: Api, flooded: Flooded) -> None:

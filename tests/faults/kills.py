@@ -12,8 +12,8 @@ from .audit import keep_audit
 from .caller import Caller
 from .crew import Crew, crew
 from .feed import Feed
-from .found import undisturbed
 from .places import Kind, place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 LEASE = 1.0

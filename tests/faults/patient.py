@@ -12,7 +12,7 @@ from functools import partial
 import httpx
 
 from slidercrank.service.store import Claim, Store
-from tests.service.store.contents import add, result, taken
+from tests.service.store.contents import add, claim_waiting_job, result
 
 from .api_process import TOKEN, Api
 
@@ -31,12 +31,12 @@ def patient_clients(store: Store, served: Api, violations: list[str]) -> Iterato
     """Let clients ask an API of a store, and say what they did not get whole and in order."""
     chance, names = random.Random(1), ["time_ratio", *(f"quantity_{number}" for number in range(_QUANTITIES))]
     add(store)
-    done = taken(store)
+    done = claim_waiting_job(store)
     done.finish(result(rows=[{name: chance.random() for name in names} for _ in range(_DESIGNS)]))
     add(store)
     clients = {
         "download": partial(_download, served, f"jobs/{done.job.id}/export.csv"),
-        "stream": partial(_follow, served, taken(store, lease=3600.0)),
+        "stream": partial(_follow, served, claim_waiting_job(store, lease=3600.0)),
         "requests": partial(_ask_a_few, served),
     }
     over, begun = threading.Event(), threading.Semaphore(0)

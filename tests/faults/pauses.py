@@ -11,10 +11,10 @@ from slidercrank.service.store import Store
 from .audit import keep_audit
 from .crew import crew
 from .feed import Feed
-from .found import undisturbed
 from .journal import notes
 from .kills import LEASE, finish
 from .places import Kind, place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _LONGER = (0.2, 2.0)  # s beyond the lease
@@ -32,7 +32,7 @@ def pauses(kind: Kind, count: int, seed: int) -> Verdict:
         feed.fill()
         with crew(where.address, journal, size=4, lease=LEASE) as workers:
             done = 0
-            while done < count or (done < _MOST * count and not _refused(journal)):
+            while done < count or (done < _MOST * count and not _was_refused(journal)):
                 time.sleep(chance.uniform(0.0, 0.3))
                 feed.fill()
                 stopped = feed.busy()[: max(1, count - done)]
@@ -50,5 +50,5 @@ def pauses(kind: Kind, count: int, seed: int) -> Verdict:
     return verdict
 
 
-def _refused(journal: Path) -> bool:
+def _was_refused(journal: Path) -> bool:
     return any(note.what == "refused" for note in notes(journal))

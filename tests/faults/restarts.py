@@ -10,9 +10,9 @@ from slidercrank.service.store import Store
 from .audit import keep_audit
 from .crew import crew
 from .feed import Feed
-from .found import undisturbed
 from .kills import GRACE, LEASE, finish
 from .places import place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _BETWEEN = (0.5, 5.0)  # s from a start to the next crash

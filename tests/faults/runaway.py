@@ -140,17 +140,19 @@ def _in_a_service(
         with Serving(str(folder / f"{end.name}.db"), *options, folder=str(folder), log=str(log)) as serving:
             serving.until_ready()
             for when in ("after",) if short else _WHEN:
-                _cancelled(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
+                _check_cancellation(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
                 if not short:
                     _out_of_time(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
                 _worker_killed(verdict, serving, folder, f"loops_{next(kinds)}_{when}:judge", when)
             function = f"loops_{next(kinds)}_after:judge"
-            _, marker = _under_way(verdict, serving, folder, function, "after")
+            _, marker = _start_runaway_job(verdict, serving, folder, function, "after")
             serving.stop_watching()
             processes = [serving.process.pid, *(worker.pid for worker in serving.workers())]
             serving.process.send_signal(end)
             # Its workers have their grace, which is a second, and five more to end.
-            _gone(verdict, f"{function}, service ended by {end.name}", marker, 1.0 + 5.0 + SOON, *processes)
+            _require_marker_closed(
+                verdict, f"{function}, service ended by {end.name}", marker, 1.0 + 5.0 + SOON, *processes
+            )
         serving.judge(verdict)
         left_over(verdict, serving, within=10.0)
         most = PRINTED * len(_markers(folder)) + _OF_THE_SERVICE
@@ -158,7 +160,7 @@ def _in_a_service(
             verdict.violate("printed", f"{log.stat().st_size / 1e6:.0f} MB in the log, in place of {most / 1e6:.0f}")
 
 
-def _under_way(
+def _start_runaway_job(
     verdict: Verdict, serving: Serving, folder: Path, function: str, when: str, **limits: float
 ) -> tuple[int, Path]:
     """Return the number of a job whose function has reached its loop, and the file that it opened."""
@@ -169,7 +171,7 @@ def _under_way(
         lambda: _markers(folder) - before and (when == "before" or serving.job(number)["records"] > 2), 120.0
     ):
         verdict.violate("lost", f"{function}: it does not loop: {serving.job(number)}")
-    return number, _latest(folder, before)
+    return number, _latest_marker(folder, before)
 
 
 def _markers(folder: Path) -> set[Path]:
@@ -177,7 +179,7 @@ def _markers(folder: Path) -> set[Path]:
     return set(folder.glob("loops_*.py.*"))
 
 
-def _latest(folder: Path, before: set[Path]) -> Path:
+def _latest_marker(folder: Path, before: set[Path]) -> Path:
     return max(_markers(folder) - before, key=lambda file: file.stat().st_mtime, default=folder / "none")
 
 
@@ -192,38 +194,40 @@ def _is_open(file: Path) -> bool:
     return False
 
 
-def _cancelled(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
-    number, marker = _under_way(verdict, serving, folder, function, when)
+def _check_cancellation(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
+    number, marker = _start_runaway_job(verdict, serving, folder, function, when)
     processes = [serving.process.pid, *(worker.pid for worker in serving.workers())]
     serving.cancel(number)
-    _gone(verdict, f"{function}, cancelled", marker, SOON, *processes)
-    _ended(verdict, serving, number, function, "cancelled")
+    _require_marker_closed(verdict, f"{function}, cancelled", marker, SOON, *processes)
+    _wait_for_end(verdict, serving, number, function, "cancelled")
 
 
 def _out_of_time(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
     begin = time.monotonic()
-    number, marker = _under_way(verdict, serving, folder, function, when, seconds=15.0)
-    _gone(verdict, f"{function}, out of time", marker, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0)
-    _ended(verdict, serving, number, function, "cancelled")
+    number, marker = _start_runaway_job(verdict, serving, folder, function, when, seconds=15.0)
+    _require_marker_closed(
+        verdict, f"{function}, out of time", marker, max(0.0, 15.0 - (time.monotonic() - begin)) + 5.0
+    )
+    _wait_for_end(verdict, serving, number, function, "cancelled")
 
 
 def _worker_killed(verdict: Verdict, serving: Serving, folder: Path, function: str, when: str) -> None:
-    number, marker = _under_way(verdict, serving, folder, function, when)
+    number, marker = _start_runaway_job(verdict, serving, folder, function, when)
     for worker in serving.workers():
         worker.kill()
-    _gone(verdict, f"{function}, worker killed", marker, SOON)
+    _require_marker_closed(verdict, f"{function}, worker killed", marker, SOON)
     serving.cancel(number)
-    _ended(verdict, serving, number, function, "cancelled")
+    _wait_for_end(verdict, serving, number, function, "cancelled")
 
 
-def _ended(verdict: Verdict, serving: Serving, number: int, function: str, state: str) -> None:
+def _wait_for_end(verdict: Verdict, serving: Serving, number: int, function: str, state: str) -> None:
     serving.until(lambda: serving.job(number)["state"] == state, 30.0)
     job = serving.job(number)
     if job["state"] != state:
         verdict.violate("lost", f"{function}: {job['state']}, {job['reason']}")
 
 
-def _gone(verdict: Verdict, what: str, marker: Path, within: float, *processes: int) -> None:
+def _require_marker_closed(verdict: Verdict, what: str, marker: Path, within: float, *processes: int) -> None:
     watch = Stopwatch(os.getpid(), *processes)
     while (left := _is_open(marker)) and watch.seconds() < within + SLACK:
         time.sleep(0.02)
@@ -260,12 +264,12 @@ def _on_the_command_line(verdict: Verdict, folder: Path, function: str, when: st
     end = time.monotonic() + 120.0
     while not _markers(folder) - before and time.monotonic() < end and process.poll() is None:
         time.sleep(0.1)
-    marker = _latest(folder, before)
+    marker = _latest_marker(folder, before)
     if process.poll() is not None or not _is_open(marker):
         verdict.violate("lost", f"{function} on the command line: it ended with {process.poll()} before {blow.name}")
         return
     process.send_signal(blow)
-    _gone(verdict, f"{function} on the command line, {blow.name}", marker, SOON)
+    _require_marker_closed(verdict, f"{function} on the command line, {blow.name}", marker, SOON)
     try:
         code = process.wait(30.0)
     except subprocess.TimeoutExpired:

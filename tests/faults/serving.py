@@ -81,11 +81,11 @@ class Serving:
 
     def workers(self) -> list[psutil.Process]:
         """Return its workers."""
-        return [process for process in self.look_at_processes() if says(process, "worker_process")]
+        return [process for process in self.look_at_processes() if runs_command_with_word(process, "worker_process")]
 
     def functions(self) -> list[psutil.Process]:
         """Return the processes of own functions, with all that they have started."""
-        return [process for process in self.look_at_processes() if says(process, "own.guard_process")]
+        return [process for process in self.look_at_processes() if runs_command_with_word(process, "own.guard_process")]
 
     def until_ready(self) -> None:
         """Wait until it answers and has a worker; watch it from then on."""
@@ -159,7 +159,7 @@ class Serving:
                 self.look_at_processes()
 
 
-def says(process: psutil.Process, word: str) -> bool:
+def runs_command_with_word(process: psutil.Process, word: str) -> bool:
     """Return whether a process lives and its command has a word."""
     try:
         return word in " ".join(process.cmdline())

@@ -12,7 +12,7 @@ from slidercrank.service.store import Store
 from .api_process import Api, api
 from .patient import patient_clients
 from .places import place
-from .watched import FILES, SIGNS, Flooded, many_files, watched
+from .watched import FILES, SIGNS, Flooded, many_files, watch_flooded_api
 
 _REQUEST = b"GET /api/v1/health/live HTTP/1.1\r\nHost: localhost\r\n"
 _HEAD = _REQUEST + b"".join(b"a%d: %s\r\n" % (number, b"b" * 600) for number in range(80)) + b"\r\n"
@@ -34,7 +34,7 @@ def stall(attack: Attack, seconds: float) -> Flooded:
     flooded = Flooded()
     with place("sqlite") as where, Store(where.address) as store, many_files(), api(where.address, FILES) as served:
         served.until_it_answers()
-        with patient_clients(store, served, flooded.violations), watched(served, flooded):
+        with patient_clients(store, served, flooded.violations), watch_flooded_api(served, flooded):
             _send(served, flooded, *ATTACKS[attack], seconds)
     return flooded
 

@@ -37,18 +37,18 @@ def suspends(count: int, seed: int) -> Verdict:
         (folder / "job.toml").write_text(
             text.replace("evaluations = 2000", "evaluations = 40").replace("samples = 20", "samples = 8")
         )
-        alone = _searched(verdict, folder, 0, None, all_of_it=False)
+        alone = _suspended_front(verdict, folder, 0, None, all_of_it=False)
         if not alone:
             verdict.violate("lost", "the search that was left alone has no front")
         for number in range(1, count + 1):
             moment = chance.uniform(2.0, 5.0), _LIMIT + chance.uniform(*_LONGER)
-            found = _searched(verdict, folder, number, moment, all_of_it=number % 2 == 0)
+            found = _suspended_front(verdict, folder, number, moment, all_of_it=number % 2 == 0)
             if found != alone:
                 verdict.violate("designs differ", f"search {number}, suspended at {moment[0]:.2f} s")
     return verdict
 
 
-def _searched(
+def _suspended_front(
     verdict: Verdict, folder: Path, number: int, moment: tuple[float, float] | None, *, all_of_it: bool
 ) -> bytes:
     """Return the front of a search, suspended at a moment for a time, s."""

@@ -73,7 +73,7 @@ class Usage:
             used = []
             for process in psutil.Process().children(recursive=True):
                 try:
-                    if not _kept(process):
+                    if not _is_helper_process(process):
                         self._seen.add(process)
                         if "python" in process.name():  # not what starts a server, or mounts a disk
                             used.append((process.memory_info().rss, process.num_fds()))
@@ -84,6 +84,6 @@ class Usage:
                 self._samples.append(_Sample(time.monotonic(), len(used), memory, files))
 
 
-def _kept(process: psutil.Process) -> bool:
+def _is_helper_process(process: psutil.Process) -> bool:
     """Whether a process is one of `multiprocessing`, which the harness keeps to start its workers from."""
     return process.ppid() == os.getpid() and any("multiprocessing." in part for part in process.cmdline())

@@ -11,9 +11,9 @@ from pathlib import Path
 from slidercrank.service.store import Event, Store
 
 from .audit import Change, changes
-from .found import found
 from .jobs import Found
 from .journal import Note, notes
+from .stored_results import results_in_store
 
 _ENDED = ("done", "infeasible", "cancelled", "failed")
 
@@ -92,7 +92,7 @@ def judge(
     deaths: when workers were killed. within: how soon after that, in s, another one has to go on with their jobs.
     """
     verdict = Verdict(jobs=len(numbers))
-    results, audit = found(address), changes(address)
+    results, audit = results_in_store(address), changes(address)
     noted: dict[int, list[Note]] = {}
     for note in notes(journal):
         verdict.failed += note.what == "failed"

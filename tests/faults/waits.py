@@ -13,17 +13,19 @@ class Stopwatch:
     def __init__(self, *processes: int) -> None:
         """Take the numbers of the processes."""
         self._begin = time.monotonic()
-        self._before = {process: _waits(process) for process in processes}
+        self._before = {process: _processor_waits(process) for process in processes}
 
     def seconds(self) -> float:
         """Return the time."""
         took = time.monotonic() - self._begin
         for process, before in self._before.items():
-            took -= max((now - before.get(thread, now) for thread, now in _waits(process).items()), default=0.0)
+            took -= max(
+                (now - before.get(thread, now) for thread, now in _processor_waits(process).items()), default=0.0
+            )
         return took
 
 
-def _waits(process: int) -> dict[str, float]:
+def _processor_waits(process: int) -> dict[str, float]:
     """Return how long each thread of a process has waited for a processor since it began, s."""
     found = {}
     with contextlib.suppress(OSError):  # it has just ended

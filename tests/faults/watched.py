@@ -71,7 +71,7 @@ def many_files() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def watched(served: Api, flooded: Flooded) -> Iterator[None]:
+def watch_flooded_api(served: Api, flooded: Flooded) -> Iterator[None]:
     """Watch an API while it is flooded, and whether it is at rest again afterwards."""
     for _ in range(20):  # what it keeps of its first requests is no matter of floods
         served.answers()

@@ -29,12 +29,12 @@ def main(address: str, name: str, lease: float, journal: Path, pause: float, clo
     die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the harness, which ends its workers
     logging.disable()  # it is expected to warn
-    _note(Journal(journal), pause)
+    _record_writes(Journal(journal), pause)
     with contextlib.nullcontext() if clock is None else Clock(clock).shown(), Store(address) as store:
         work(store, name=name, lease=lease, drain=clock is not None)
 
 
-def _note(journal: Journal, pause: float) -> None:
+def _record_writes(journal: Journal, pause: float) -> None:
     report, write, writing = Claim.report, Claim._write, Database.writing
     chance = random.Random()
 

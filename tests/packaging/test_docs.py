@@ -151,7 +151,7 @@ def arrow(file: Path, name: str) -> tuple[float, float]:
     raise AssertionError(f"{file.name} has no line called {name}")
 
 
-def drawn(file: Path) -> tuple[Linkage, float]:
+def linkage_of_sketch(file: Path) -> tuple[Linkage, float]:
     """Return the linkage of the sketch of signs, with pixels as metres, and its crank angle."""
     at = points(file)
     (ax, ay), (bx, by) = at["crank-pin"], at["slider-pin"]
@@ -160,7 +160,7 @@ def drawn(file: Path) -> tuple[Linkage, float]:
 
 def test_the_sketch_shows_the_signs_of_the_code(root: Path) -> None:
     file = root / "docs" / "sketch.svg"
-    linkage, angle = drawn(file)
+    linkage, angle = linkage_of_sketch(file)
     at = points(file)
     pixel = 0.02  # coordinates are given to a hundredth
     assert linkage.rotates_fully
@@ -182,7 +182,7 @@ def test_the_sketch_shows_the_signs_of_the_code(root: Path) -> None:
 
 def test_the_sketch_of_the_dead_centres_is_to_scale(root: Path) -> None:
     at = points(root / "docs" / "dead_centres.svg")
-    linkage, _ = drawn(root / "docs" / "sketch.svg")
+    linkage, _ = linkage_of_sketch(root / "docs" / "sketch.svg")
     pixel = 0.02
     inner, outer = linkage.dead_centres
     assert (float(inner), linkage.offset) == pytest.approx(at["inner"], abs=pixel)

@@ -31,31 +31,31 @@ COMPILES = "slidercrank is compiling its formulas (only once after installation)
 pytestmark = pytest.mark.slow
 
 
-def copied(root: Path, place: Path) -> Path:
+def installed_copy(root: Path, place: Path) -> Path:
     """Return a copy as pip would install it, which compiles to byte code."""
     package = place / "site/slidercrank"
     for folder, to in ((".package/slidercrank", package), *((name, package / name) for name in ORDER)):
-        shutil.copytree(root / folder, to, ignore=_needless)
+        shutil.copytree(root / folder, to, ignore=_needless_files)
     return package
 
 
-def _needless(folder: str, names: list[str]) -> set[str]:
+def _needless_files(folder: str, names: list[str]) -> set[str]:
     return {name for name in names if folder.endswith("__pycache__") and not name.endswith(".pyc")}
 
 
 @pytest.fixture
 def copy(tmp_path: Path, pytestconfig: pytest.Config) -> Path:
-    return copied(pytestconfig.rootpath, tmp_path)
+    return installed_copy(pytestconfig.rootpath, tmp_path)
 
 
 @pytest.fixture(scope="module")
 def first_use(tmp_path_factory: pytest.TempPathFactory, pytestconfig: pytest.Config) -> FirstUse:
     """Use a copy for the first time."""
-    copy = copied(pytestconfig.rootpath, tmp_path_factory.mktemp("installed"))
-    return copy, *used(copy, ALONE)
+    copy = installed_copy(pytestconfig.rootpath, tmp_path_factory.mktemp("installed"))
+    return copy, *run_in_copy(copy, ALONE)
 
 
-def used(package: Path, code: str = USE, *, before: tuple[str, ...] = (), **environment: str) -> tuple[str, str]:
+def run_in_copy(package: Path, code: str = USE, *, before: tuple[str, ...] = (), **environment: str) -> tuple[str, str]:
     """Return standard output and standard error of a process that uses the copy."""
     known = {name: value for name, value in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")}
     home = package.parent.parent / "home"
@@ -82,11 +82,11 @@ def test_a_damaged_kernel_is_compiled_anew(first_use: FirstUse) -> None:
     assert kernels
     for file in kernels:
         file.write_bytes(file.read_bytes()[:100])
-    again, said = used(copy, ALONE)
+    again, said = run_in_copy(copy, ALONE)
     assert again == printed
     assert said.startswith(COMPILES)
     assert 100 not in {file.stat().st_size for file in kernels}
-    assert used(copy) == (printed, "")
+    assert run_in_copy(copy) == (printed, "")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions as in POSIX")
@@ -98,11 +98,11 @@ def test_a_copy_that_cannot_be_written_in_a_home_that_cannot_says_so_once(copy: 
         folder.chmod(0o555)
     # Root may write everywhere unless it gives that up.
     before = ("setpriv", "--inh-caps=-all", "--bounding-set=-all") if os.getuid() == 0 else ()
-    printed, said = used(copy, ALONE, before=before, TMPDIR=str(temporary))
+    printed, said = run_in_copy(copy, ALONE, before=before, TMPDIR=str(temporary))
     assert printed == f"{copy / '__init__.py'} 0.2\n"
     assert said.startswith(f"slidercrank keeps compiled kernels in {temporary}/slidercrank-{os.getuid()}: {home}")
     assert f"set NUMBA_CACHE_DIR to a writable folder\n{COMPILES}" in said
-    assert used(copy, before=before, TMPDIR=str(temporary)) == (printed, "")
+    assert run_in_copy(copy, before=before, TMPDIR=str(temporary)) == (printed, "")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="permissions as in POSIX")
@@ -116,9 +116,9 @@ def test_kernels_are_read_from_a_home_that_cannot_be_written_and_none_from_one_t
     try:
         for folder in folders:
             folder.chmod(0o555)
-        assert used(copy, before=before, TMPDIR=str(tmp_path)) == (printed, "")
+        assert run_in_copy(copy, before=before, TMPDIR=str(tmp_path)) == (printed, "")
         home.chmod(0o000)
-        again, said = used(copy, ALONE, before=before, TMPDIR=str(tmp_path))
+        again, said = run_in_copy(copy, ALONE, before=before, TMPDIR=str(tmp_path))
         assert again == printed
         assert said.startswith(f"slidercrank keeps compiled kernels in {tmp_path}/slidercrank-{os.getuid()}: {home}")
     finally:

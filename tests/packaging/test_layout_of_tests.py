@@ -12,17 +12,17 @@ ORDER = ("support of tests", "harness of faults", "benchmarks", "test files")  #
 def test_imports_of_tests_harness_and_benchmarks_point_one_way(pytestconfig: pytest.Config) -> None:
     root = pytestconfig.rootpath
     files = [file for folder in ("tests", "benchmarks") for file in sorted((root / folder).rglob("*.py"))]
-    assert {room(file.relative_to(root)) for file in files} == set(ORDER)
+    assert {folder_of(file.relative_to(root)) for file in files} == set(ORDER)
     wrong = [
         f"{file.relative_to(root)}:{line} imports {imported.relative_to(root)}"
         for file in files
         for line, imported in imported_files(file, root)
-        if ORDER.index(room(imported.relative_to(root))) > ORDER.index(room(file.relative_to(root)))
+        if ORDER.index(folder_of(imported.relative_to(root))) > ORDER.index(folder_of(file.relative_to(root)))
     ]
     assert not wrong, "\n".join(wrong)
 
 
-def room(file: Path) -> str:
+def folder_of(file: Path) -> str:
     """Return where a file belongs, by its path from the top."""
     if file.parts[0] == "benchmarks":
         return "benchmarks"

@@ -56,7 +56,7 @@ def words(path: Path) -> Iterator[str]:
 
 
 @cache
-def named_in() -> dict[str, set[str]]:
+def files_by_quantity() -> dict[str, set[str]]:
     """Return the files that name each quantity."""
     found: dict[str, set[str]] = {name: set() for name in FACTS}
     for folder in FOLDERS:
@@ -71,11 +71,11 @@ def named_in() -> dict[str, set[str]]:
 
 @pytest.mark.parametrize("name", FACTS)
 def test_a_quantity_is_named_in_its_own_file_and_at_most_one_other(name: str) -> None:
-    found = named_in()[name]
+    found = files_by_quantity()[name]
     own = [path for path in found if path.startswith("objectives/")]
     assert len(own) == 1, own
     assert len(found) <= 2, found
 
 
 def test_the_search_for_names_finds_one_that_is_written_down() -> None:
-    assert "objectives/proportions.py" in named_in()["stroke"]
+    assert "objectives/proportions.py" in files_by_quantity()["stroke"]

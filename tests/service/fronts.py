@@ -150,7 +150,7 @@ def job_file(folder: Path) -> Path:
     return file
 
 
-def found(monkeypatch: pytest.MonkeyPatch, result: ParetoFront) -> None:
+def replace_solve(monkeypatch: pytest.MonkeyPatch, result: ParetoFront) -> None:
     """Let `solve` give a front without a search, after telling of its rounds."""
 
     def solve(_: Problem, *, progress: object = None, **_more: object) -> ParetoFront:

@@ -16,7 +16,7 @@ ROUNDS = 3
 Search = Callable[..., ParetoFront]
 
 
-def found(problem: Problem, status: str) -> ParetoFront:
+def made_up_front(problem: Problem, status: str) -> ParetoFront:
     """Return a front of one design, as a search finds it."""
     return ParetoFront(
         problem=problem,
@@ -48,10 +48,10 @@ def search(problem: Problem, *, progress: Any, cancelled: Any, resume: Any, keep
 
     for number in range(len(resume), ROUNDS):
         if cancelled():
-            return found(problem, "cancelled")
+            return made_up_front(problem, "cancelled")
         keep(search_record(number))
         progress(at(number + 1))
-    return found(problem, "done")
+    return made_up_front(problem, "done")
 
 
 def until(condition: Callable[[], bool]) -> None:

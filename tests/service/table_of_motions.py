@@ -130,7 +130,7 @@ def _problem(motion: Motion, friction: float) -> sc.Problem:
         return sc.problem(tables, require_feasible=False)
 
 
-def _chosen(motion: Motion, friction: float) -> sc.Problem:
+def _chosen_problem(motion: Motion, friction: float) -> sc.Problem:
     return _problem(motion, friction).parts()[0]
 
 
@@ -155,7 +155,7 @@ def quantities(motion: Motion) -> Refusals:
     """Return why each quantity is refused on a motion."""
 
     def ask(name: str, friction: float) -> None:
-        problem = _chosen(motion, friction)
+        problem = _chosen_problem(motion, friction)
         value = problem.evaluate([_design(problem)], [name])[0, 0]
         reason = problem.quantity(name).undefined_because([problem.mechanism])
         if reason is not None:
@@ -166,7 +166,7 @@ def quantities(motion: Motion) -> Refusals:
 
 
 def _bound(motion: Motion, name: str, friction: float) -> None:
-    problem = _chosen(motion, friction)
+    problem = _chosen_problem(motion, friction)
     senses: tuple[Sense, ...] = ("minimise", "maximise")
     reasons = [unbounded_reason(problem, Objective(quantity=name, sense=sense)) for sense in senses]
     if all(reasons):
@@ -187,7 +187,7 @@ def _rule(name: str, reason: str) -> str:
     return rule
 
 
-def _listed(names: list[str]) -> str:
+def _names_in_words(names: list[str]) -> str:
     """Return names in words; all of a kind of motion as such."""
     levers = {name for name, fact in FACTS.items() if isinstance(fact, LeverQuantity)}
     arms = {name for name, fact in FACTS.items() if isinstance(fact, LeverQuantity) and "cylinder" not in fact.moved_by}
@@ -213,7 +213,7 @@ def table(of: Callable[[Motion], Refusals]) -> str:
     names: dict[tuple[str, str], list[str]] = {}
     for (name, rule), on in motions.items():
         names.setdefault((rule, "; ".join(on)), []).append(name)
-    rows = [f"| {_listed(refused)} | {rule} | {on} |" for (rule, on), refused in names.items()]
+    rows = [f"| {_names_in_words(refused)} | {rule} | {on} |" for (rule, on), refused in names.items()]
     return "\n".join(["| rejected | reason | on |", "|---|---|---|", *rows]) + "\n"
 
 

@@ -134,7 +134,7 @@ def command(*words: object) -> Any:
     return json.loads(done.stdout)
 
 
-def lasting(record: dict[str, Any]) -> dict[str, Any]:
+def without_changing_parts(record: dict[str, Any]) -> dict[str, Any]:
     """Return the record of a run without what differs each time."""
     return {key: value for key, value in record.items() if key not in ("run", "seconds", "numbers")}
 
@@ -153,7 +153,7 @@ def test_five_calls_lead_from_a_description_to_a_report(agent: Agent, tmp_path: 
 
     (tmp_path / "job.toml").write_text(text, encoding="utf-8")
     options = ("--designs", 6, "--seed", 3, "--runs", tmp_path, "--no-figures")
-    assert lasting(found) == lasting(command("optimise", tmp_path / "job.toml", *options))
+    assert without_changing_parts(found) == without_changing_parts(command("optimise", tmp_path / "job.toml", *options))
     assert found["numbers"] == [1, 2, 3, 4, 5, 6]
 
 
@@ -165,13 +165,13 @@ def test_tables_and_text_of_a_job_give_the_same_front(agent: Agent, run: str) ->
 def test_a_front_its_part_and_its_picks_are_those_of_the_command(agent: Agent, run: str) -> None:
     of_run = (agent.runs / run, "--runs", agent.runs)
     whole = agent.ask("front", run=run, rows=0, columns=["all"])
-    assert lasting(whole) == lasting(command("front", *of_run))
+    assert without_changing_parts(whole) == without_changing_parts(command("front", *of_run))
     inches = agent.ask("front", run=run, rows=0, columns=["all"], units="inch")
-    assert lasting(inches) == lasting(command("front", *of_run, "--units", "inch"))
+    assert without_changing_parts(inches) == without_changing_parts(command("front", *of_run, "--units", "inch"))
     where = ["transmission_angle >= 41 deg"]
     part = agent.ask("front", run=run, where=where, sort="time_ratio", columns=["crank", "time_ratio"])
     options = ("--where", where[0], "--sort", "time_ratio", "--columns", "crank,time_ratio")
-    assert lasting(part) == lasting(command("front", *of_run, *options))
+    assert without_changing_parts(part) == without_changing_parts(command("front", *of_run, *options))
     assert [whole["designs"][number - 1]["time_ratio"] for number in part["numbers"]] == [
         row["time_ratio"] for row in part["designs"]
     ]
@@ -286,7 +286,7 @@ def test_a_cancelled_search_ends_soon_and_goes_on_to_the_same_front(agent: Agent
     found = agent.ask("optimise", resume=latest["run"], columns=["all"])
     (tmp_path / "job.toml").write_text(LONG, encoding="utf-8")
     expected = command("optimise", tmp_path / "job.toml", "--runs", tmp_path, "--no-figures")
-    assert lasting(found) == lasting(expected)
+    assert without_changing_parts(found) == without_changing_parts(expected)
     assert "only an interrupted or cancelled run can continue; " in agent.refused("optimise", resume=latest["run"])
 
 

@@ -20,7 +20,7 @@ LEAST = {"choice_least_gearmotor", "choice_least_gearmotor_maker", "least_gearmo
 KEYS = {"choice_gearmotor", "choice_gearmotor_maker", "price_EUR", *LEAST}
 
 
-def expected(design: dict[str, Any]) -> None:
+def expected_catalogue_values(design: dict[str, Any]) -> None:
     """Compare what a design has of its catalogue with the torque that it needs."""
     assert set(design) >= KEYS
     assert (design["choice_gearmotor"], design["price_EUR"], design["choice_gearmotor_maker"]) == (
@@ -53,7 +53,7 @@ def test_commands_check_and_tell_catalogues_and_keep_their_columns(pusher: Path,
     record = json.loads(done.stdout)
     assert len(record["designs"]) > 3
     for design in record["designs"]:
-        expected(design)
+        expected_catalogue_values(design)
     table = command("front", record["run"])
     said = "In every design: offset 20 mm, gearmotor GM 150, gearmotor maker Acme, price 830 EUR"
     assert said in " ".join(table.stdout.split())
@@ -70,7 +70,7 @@ def test_the_api_checks_catalogues_gives_their_columns_and_filters_by_price(stor
         assert any("of 6 rows 1 is searched" in note for note in checked["notes"])
         found = client.get(f"{API}/jobs/{number}/designs").json()
         for row in found["designs"]:
-            expected(row)
+            expected_catalogue_values(row)
         front = client.get(f"{API}/jobs/{number}/front").json()
         groups = {column["key"]: column["group"] for column in front["columns"]}
         assert {groups[key] for key in KEYS} == {groups["crank_mm"]}

@@ -55,7 +55,7 @@ def start(script: str, *arguments: object) -> subprocess.Popen[str]:
     )
 
 
-def under_way(place: Path, process: subprocess.Popen[str]) -> Path:
+def folder_of_running_search(place: Path, process: subprocess.Popen[str]) -> Path:
     """Return the run's folder once its search has told of a round."""
     for _ in range(1500):
         assert process.poll() is None, process.communicate()
@@ -147,7 +147,7 @@ def test_debugging_shows_the_traceback_of_a_fault(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_a_killed_run_is_marked_unfinished(tmp_path: Path, command: Command) -> None:
     process = start(SLOW.format(stuck=False), "optimise", fronts.job_file(tmp_path), "--runs", tmp_path / "runs")
-    run = under_way(tmp_path / "runs", process)
+    run = folder_of_running_search(tmp_path / "runs", process)
     process.send_signal(signal.SIGKILL)
     process.communicate()
     with pytest.raises(RunError, match="is unfinished"):
@@ -162,7 +162,7 @@ def test_a_killed_run_is_marked_unfinished(tmp_path: Path, command: Command) -> 
 def test_interrupting_keeps_what_was_found(tmp_path: Path) -> None:
     arguments = ("optimise", fronts.job_file(tmp_path), "--json", "--runs", tmp_path / "runs")
     process = start(SLOW.format(stuck=False), *arguments)
-    run = under_way(tmp_path / "runs", process)
+    run = folder_of_running_search(tmp_path / "runs", process)
     process.send_signal(signal.SIGINT)
     output, message = process.communicate()
     assert process.returncode == 130, message
@@ -176,7 +176,7 @@ def test_interrupting_keeps_what_was_found(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
 def test_interrupting_twice_stops_at_once(tmp_path: Path) -> None:
     process = start(SLOW.format(stuck=True), "optimise", fronts.job_file(tmp_path), "--runs", tmp_path / "runs")
-    run = under_way(tmp_path / "runs", process)
+    run = folder_of_running_search(tmp_path / "runs", process)
     process.send_signal(signal.SIGINT)
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)

@@ -38,7 +38,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def asked(command: Command, place: Path, name: str, *given: object) -> Any:
+def json_output(command: Command, place: Path, name: str, *given: object) -> Any:
     """Return the JSON output of a command on the run."""
     done = command(name, "latest", *given, "--runs", place / "runs", "--json")
     assert done.exit_code == 0, done.stderr
@@ -46,14 +46,14 @@ def asked(command: Command, place: Path, name: str, *given: object) -> Any:
 
 
 def rows_of(command: Command, place: Path) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = asked(command, place, "front")["designs"]
+    rows: list[dict[str, Any]] = json_output(command, place, "front")["designs"]
     assert len(rows) >= 2
     return rows
 
 
 def test_swing_and_front_tell_the_same_of_each_design(command: Command, place: Path) -> None:
     for number, row in enumerate(rows_of(command, place), 1):
-        found = asked(command, place, "swing", "--design", number)
+        found = json_output(command, place, "swing", "--design", number)
         assert row["peak_actuator_force_N"] == pytest.approx(abs(found["peak_drive_N"]), rel=1e-9)
         assert row["swing_angle_error_deg"] == pytest.approx(found["crank_position_error_deg"], rel=1e-9)
         assert row["actuator_travel_mm"] == pytest.approx(found["travel_mm"], rel=1e-12)
@@ -68,7 +68,7 @@ def test_swing_and_front_tell_the_same_of_each_design(command: Command, place: P
 def test_designs_are_chosen_by_what_they_are(command: Command, place: Path) -> None:
     rows = rows_of(command, place)
     middle = float(np.median([row["rod_mass_kg"] for row in rows]))
-    kept = asked(command, place, "front", "--where", f"rod_mass <= {middle!r} kg", "--sort", "swing_angle_error")
+    kept = json_output(command, place, "front", "--where", f"rod_mass <= {middle!r} kg", "--sort", "swing_angle_error")
     few = [row for row in rows if row["rod_mass_kg"] <= middle]
     expected = sorted(few, key=lambda row: row["swing_angle_error_deg"])
     assert [row["crank_mm"] for row in kept["designs"]] == [row["crank_mm"] for row in expected]
@@ -110,9 +110,9 @@ def test_round_like_and_wish_answer_with_designs_that_swing(command: Command, pl
     """Each tells of its design what `swing` tells of these lengths; the machine is that of the design."""
     rows = rows_of(command, place)
     least = min(row["actuator_travel_mm"] for row in rows)
-    near = asked(command, place, "round", 1, "--to", "10 mm")
-    like = asked(command, place, "like", 1, "--where", f"actuator_travel <= {least - 20.0!r} mm")
-    wish = asked(command, place, "wish", 1, "--at", "swing_angle_error=improve")
+    near = json_output(command, place, "round", 1, "--to", "10 mm")
+    like = json_output(command, place, "like", 1, "--where", f"actuator_travel <= {least - 20.0!r} mm")
+    wish = json_output(command, place, "wish", 1, "--at", "swing_angle_error=improve")
     answers = [near["designs"][0], like["design"], wish["design"]]
     for row in answers:
         linkage = Linkage(*(1e-3 * row[f"{name}_mm"] for name in ("crank", "rod", "offset")))
@@ -130,7 +130,7 @@ def test_inverse_gives_the_crank_angles_of_the_swing(command: Command, place: Pa
         linkage = Linkage(*(1e-3 * row[f"{name}_mm"] for name in ("crank", "rod", "offset")))
         for angle in random.uniform(11.2, 101.1, 3):
             at = float(linkage.at(math.radians(angle)).slider_position)
-            found = asked(command, place, "inverse", "--design", number, f"--slider-position={1e3 * at!r} mm")
+            found = json_output(command, place, "inverse", "--design", number, f"--slider-position={1e3 * at!r} mm")
             assert [each["crank_angle_deg"] for each in found["solutions"]] == pytest.approx([angle], rel=1e-9)
             assert (
                 "one other crank angle for this position lies outside the swing from 11.16 to 101.16" in found["note"]

@@ -119,7 +119,7 @@ def free_port() -> int:
         return int(one.getsockname()[1])
 
 
-def asked(url: str, token: str, *, job: str | None = None) -> object:
+def api_response(url: str, token: str, *, job: str | None = None) -> object:
     """Return the API's answer; with a job, to its submission."""
     headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/toml"}
     request = urllib.request.Request(url, None if job is None else job.encode(), headers)
@@ -136,13 +136,13 @@ def test_the_service_in_five_lines_with_backup_and_restore(docs: Path, tmp_path:
         assert service.stdout is not None
         assert service.stdout.readline() == "slidercrank serves the jobs of sqlite:///runs/slidercrank.db at\n"
         address, token = service.stdout.readline().strip().split("?token=")
-        over_http = asked(f"{address}api/v1/jobs", token, job=fronts.JOB)
+        over_http = api_response(f"{address}api/v1/jobs", token, job=fronts.JOB)
         assert isinstance(over_http, dict)
         terminal.run(f"slidercrank watch {over_http['id']}")
         printed = [terminal.run(line) for line in others]
         assert printed[0] == "job 2: Short test [job], queued\n"
         assert "8 designs" in printed[-1]
-        listed = asked(f"{address}api/v1/jobs", token)
+        listed = api_response(f"{address}api/v1/jobs", token)
         assert isinstance(listed, dict)
         assert [job["state"] for job in listed["jobs"]] == ["done", "done"]
         backup, *restore = [line for line in commands(docs, "Backup and restore") if "pg_" not in line]
@@ -179,10 +179,10 @@ def done_on_cluster(port: int) -> int:
     """Return how many kinds of tasks of the engine a scheduler saw done."""
     cloudpickle.register_pickle_by_value(sys.modules[__name__])
     with Client(f"tcp://127.0.0.1:{port}", set_as_default=False) as client:  # type: ignore[no-untyped-call]
-        return int(client.run_on_scheduler(finished))
+        return int(client.run_on_scheduler(count_finished_tasks))
 
 
-def finished(dask_scheduler: Any) -> int:
+def count_finished_tasks(dask_scheduler: Any) -> int:
     """Return how many kinds of tasks of the engine a scheduler has seen done; runs in its process."""
     groups = dask_scheduler.task_prefixes.values()
     return sum(sum(group.all_durations.values()) > 0 for group in groups if group.name.startswith("slidercrank"))

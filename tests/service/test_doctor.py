@@ -19,7 +19,7 @@ from slidercrank.service.store.database import Database
 from slidercrank.service.store.database_clock import now
 from slidercrank.service.store.schema import workers
 from tests.service.conftest import Command
-from tests.service.store.contents import add, end_lease, result, taken
+from tests.service.store.contents import add, claim_waiting_job, end_lease, result
 
 needs_proc = pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder of Linux")
 
@@ -31,7 +31,7 @@ def file(runs: Path) -> Path:
     return runs / "slidercrank.db"
 
 
-def looked_at(command: Command, *options: object) -> tuple[int, dict[str, tuple[str, str]]]:
+def checks_by_name(command: Command, *options: object) -> tuple[int, dict[str, tuple[str, str]]]:
     """Return the exit code, and grade and text of every check by its name."""
     done = command("doctor", "--json", *options)
     found = json.loads(done.stdout)
@@ -40,7 +40,7 @@ def looked_at(command: Command, *options: object) -> tuple[int, dict[str, tuple[
 
 
 def test_a_fresh_machine_is_healthy_and_stays_as_it_is(runs: Path, command: Command) -> None:
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert code == 0
     assert found["store"] == ("ok", f"no store at {runs / 'slidercrank.db'} yet; the first job creates it")
     assert "slidercrank 0." in found["versions"][1]
@@ -51,9 +51,9 @@ def test_a_store_in_use_is_healthy(file: Path, command: Command) -> None:
     with Store(file) as store:
         store.register("one")
         add(store)
-        taken(store).finish(result())
+        claim_waiting_job(store).finish(result())
         add(store)
-        code, found = looked_at(command)
+        code, found = checks_by_name(command)
     assert code == 0
     assert {name: grade for name, (grade, _) in found.items() if grade != "ok"} == {}
     assert found["jobs"] == ("ok", "1 done, 1 queued")
@@ -65,7 +65,7 @@ def test_a_store_in_use_is_healthy(file: Path, command: Command) -> None:
 def test_jobs_that_wait_without_a_worker_are_a_problem(file: Path, command: Command) -> None:
     with Store(file) as store:
         add(store)
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["workers"][0]) == (1, "problem")
     assert "1 job waiting without a worker; start slidercrank serve or slidercrank worker" in found["workers"][1]
 
@@ -75,13 +75,13 @@ def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) 
         for name in ("one", "lost"):
             store.register(name)
         add(store)
-        taken(store, "lost")
+        claim_waiting_job(store, "lost")
         database = Database(file)
         with database.writing() as connection:
             connection.execute(update(workers).where(workers.c.id == "lost").values(seen=now() - 300.0))
         database.close()
         end_lease(str(file), 1)
-        code, found = looked_at(command)
+        code, found = checks_by_name(command)
     assert code == 0
     assert found["workers"] == ("note", "1 running; 1 not heard from for more than 120 s: stopped or disconnected")
     assert found["leases"] == ("note", "the leases of jobs 1 have expired; the next free worker continues them")
@@ -89,7 +89,7 @@ def test_ended_leases_and_silent_workers_are_told(file: Path, command: Command) 
 
 def test_what_is_no_database_is_a_problem(file: Path, command: Command) -> None:
     file.write_text("no database")
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["store"][0]) == (1, "problem")
     assert "file is not a database" in found["store"][1]
 
@@ -99,7 +99,7 @@ def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, 
     with sqlite3.connect(file) as connection:
         connection.execute("UPDATE alembic_version SET version_num = '9999'")
     connection.close()
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["tables"][0]) == (1, "problem")
     assert "their version is 9999, but this release supports" in found["tables"][1]
     with sqlite3.connect(file) as connection:
@@ -110,7 +110,7 @@ def test_a_store_of_a_later_release_is_a_problem_and_stays_as_it_is(file: Path, 
 def test_a_database_without_tables_is_noted_and_gets_none(file: Path, command: Command) -> None:
     with contextlib.closing(sqlite3.connect(file)) as fresh:
         fresh.execute("PRAGMA user_version = 1")
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["tables"][0]) == (0, "note")
     connection = sqlite3.connect(file)
     assert connection.execute("SELECT count(*) FROM sqlite_master").fetchone() == (0,)
@@ -122,15 +122,15 @@ def test_a_file_that_may_not_be_written_is_a_problem(
 ) -> None:
     Store(file).close()
     monkeypatch.setattr(os, "access", lambda path, _mode: Path(path).stat().st_mode & 0o600 == 0o600)
-    assert looked_at(command)[0] == 0
+    assert checks_by_name(command)[0] == 0
     file.chmod(0o400)
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["permissions"][0]) == (1, "problem")
     assert f"chmod u+rw {file}" in found["permissions"][1]
 
 
 def test_a_server_that_is_away_is_a_problem(command: Command) -> None:
-    code, found = looked_at(command, "--store", "postgresql://nobody:secret@/none?host=/no/such/place")
+    code, found = checks_by_name(command, "--store", "postgresql://nobody:secret@/none?host=/no/such/place")
     assert (code, found["store"][0]) == (1, "problem")
     assert "must be a database that can be reached" in found["store"][1]
     assert "secret" not in found["store"][1]
@@ -142,13 +142,13 @@ def test_a_full_disk_is_a_problem(
 ) -> None:
     usage = namedtuple("usage", "total used free")
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage(0, 0, free))
-    got, found = looked_at(command)
+    got, found = checks_by_name(command)
     assert (got, found["disk of runs"][0]) == (code, grade)
 
 
 @needs_proc
 def test_a_place_that_cannot_be_written_is_a_problem(command: Command) -> None:
-    code, found = looked_at(command, "--runs", "/proc/none")
+    code, found = checks_by_name(command, "--runs", "/proc/none")
     assert (code, found["runs"][0]) == (1, "problem")
     assert "/proc/none is not writable" in found["runs"][1]
 
@@ -158,7 +158,7 @@ def test_a_model_that_would_be_compiled_anew_every_time_is_a_problem(
     command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/proc/none")
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["compiled model"][0]) == (1, "problem")
 
 
@@ -184,22 +184,22 @@ def test_a_store_that_was_deleted_is_a_problem(file: Path, command: Command, mon
     with Store(file) as store:
         add(store)
         file.unlink()
-        code, found = looked_at(command)
+        code, found = checks_by_name(command)
         assert (code, found["store"][0]) == (1, "problem")
         assert "a write-ahead log must have its store beside it" in found["store"][1]
     for left in file.parent.iterdir():
         left.unlink()
-    assert looked_at(command)[0] == 0
-    assert looked_at(command, "--store", file)[0] == 1, "somebody says that there is one"
+    assert checks_by_name(command)[0] == 0
+    assert checks_by_name(command, "--store", file)[0] == 1, "somebody says that there is one"
     monkeypatch.setenv("SLIDERCRANK_STORE", str(file))
-    assert looked_at(command)[0] == 1
+    assert checks_by_name(command)[0] == 1
 
 
 def test_a_store_that_others_may_read_is_noted(file: Path, command: Command) -> None:
     Store(file).close()
-    assert "permissions" not in looked_at(command)[1]
+    assert "permissions" not in checks_by_name(command)[1]
     file.chmod(0o644)
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code, found["permissions"][0]) == (0, "note")
     assert f"chmod 600 {file}" in found["permissions"][1]
 
@@ -219,5 +219,5 @@ def test_a_database_of_something_else_is_a_problem_and_gets_no_tables(made: str,
     assert "a store must be a database of its own" in done.stderr
     assert connection.execute(names).fetchall() == before
     connection.close()
-    code, found = looked_at(command)
+    code, found = checks_by_name(command)
     assert (code != 0, found["tables"][0]) == (True, "problem")

@@ -37,7 +37,7 @@ SIEVE = ("--crank", "140 mm", "--rod", "310 mm", "--offset", "60 mm")
 MACHINES = {"loaded": fronts.MACHINE, "locked": LOCKED, "bare": Mechanism(), "moving": Mechanism(speed=-3.0)}
 
 
-def written(numbers: Any) -> str:
+def printed_text(numbers: Any) -> str:
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=140), extremes.blocks(numbers))
     return stream.getvalue()
@@ -58,7 +58,7 @@ def test_numbers_are_the_extremes_in_the_units_of_the_cycle_table() -> None:
 def test_numbers_are_fit_for_json_and_can_be_shown(name: str) -> None:
     numbers: Any = extremes.numbers(MACHINES[name], LINKAGE)
     assert json.loads(json_text(numbers)) == numbers
-    text = written(numbers)
+    text = printed_text(numbers)
     assert "nan" not in text
     assert ("undefined" in text) == (name == "locked")
     assert ("drive torque" in text) == (name in ("loaded", "locked"))
@@ -201,5 +201,5 @@ def test_several_cylinders_along_a_profile_have_no_one_duration() -> None:
     numbers: Any = extremes.numbers(both, LINKAGE)
     assert numbers["strokes"]["duration_ratio"] is None
     assert numbers["strokes"]["outward"]["duration_s"] is None
-    assert "ratio of durations" not in written(numbers)
+    assert "ratio of durations" not in printed_text(numbers)
     assert json.loads(json_text(numbers)) == numbers

@@ -11,12 +11,12 @@ from tests.faults.commits import commits
 from tests.faults.dask_faults import strike
 from tests.faults.disk import disk
 from tests.faults.flood import flood
-from tests.faults.full import full
+from tests.faults.full_disk import fill_disk_at_random
+from tests.faults.full_store_disk import fill_store_disk
 from tests.faults.kills import kills
 from tests.faults.pauses import pauses
 from tests.faults.places import Kind
 from tests.faults.restarts import restarts
-from tests.faults.room import room
 from tests.faults.runaway import runaway
 from tests.faults.small_disk import small_disk
 from tests.faults.stalls import stall
@@ -64,7 +64,7 @@ def test_a_server_that_crashes_loses_nothing() -> None:
 
 
 def test_a_full_disk_loses_and_damages_nothing() -> None:
-    verdict = full(2, seed=1)
+    verdict = fill_disk_at_random(2, seed=1)
     assert verdict.violations == []
     assert verdict.failed > 0
 
@@ -114,7 +114,7 @@ def test_a_clock_that_is_set_ends_no_worker_before_its_queue_is_empty() -> None:
 
 @needs_disk
 def test_a_disk_without_room_for_a_round_fails_no_job() -> None:
-    verdict = room(1, seed=1)
+    verdict = fill_store_disk(1, seed=1)
     assert verdict.violations == []
     assert verdict.failed > 0
 

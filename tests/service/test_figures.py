@@ -145,7 +145,7 @@ def test_without_a_speed_velocity_is_per_crank_speed() -> None:
     np.testing.assert_allclose(curves.panels[2].lines[0].y, expected, rtol=1e-9, atol=1e-9)
 
 
-def drawn(figure: Figure) -> list[Text]:
+def texts_in_figure(figure: Figure) -> list[Text]:
     """Return the texts that are seen in a figure once it is drawn."""
     figure.draw_without_rendering()  # a third of the time, and the same places
     texts = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
@@ -155,19 +155,19 @@ def drawn(figure: Figure) -> list[Text]:
         for axis in (axes.xaxis, axes.yaxis)
         for tick in axis.get_major_ticks()
         for label in (tick.label1, tick.label2)
-        if not axes.axison or not axis.get_visible() or not _within(axis.get_view_interval(), tick.get_loc())
+        if not axes.axison or not axis.get_visible() or not _lies_within(axis.get_view_interval(), tick.get_loc())
     ]
     return [text for text in texts if text not in hidden]
 
 
-def _within(interval: tuple[float, float], at: float) -> bool:
+def _lies_within(interval: tuple[float, float], at: float) -> bool:
     low, high = sorted(interval)
     return bool(low <= at <= high)
 
 
 def overlaps(figure: Figure) -> list[tuple[str, str]]:
     """Return the pairs of texts that overlap, and texts that stick out of the figure as pairs with "edge"."""
-    texts = drawn(figure)
+    texts = texts_in_figure(figure)
     boxes = [text.get_window_extent() for text in texts]
     page = figure.bbox
     found = []
@@ -191,7 +191,7 @@ FRONTS = {
     "six objectives": lambda: fronts.front(SIX, designs=40),
     "two designs": lambda: fronts.front(designs=2),
     "target": lambda: with_target(fronts.front()),
-    "all alike": lambda: all_alike(fronts.front(designs=3)),
+    "all alike": lambda: front_of_equal_designs(fronts.front(designs=3)),
 }
 
 
@@ -200,7 +200,7 @@ def with_target(front: ParetoFront) -> ParetoFront:
     return replace(front, problem=replace(front.problem, objectives=objectives))
 
 
-def all_alike(front: ParetoFront) -> ParetoFront:
+def front_of_equal_designs(front: ParetoFront) -> ParetoFront:
     """Return a front whose designs are all the first one."""
     rows = [0] * len(front)
     return replace(

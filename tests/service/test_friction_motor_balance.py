@@ -43,7 +43,7 @@ LOCKED = replace(MACHINE, friction=Friction(guide=1.5))
 TOPICS = (friction, motor, balance)
 
 
-def written(topic: ModuleType, numbers: Any) -> str:
+def printed_text(topic: ModuleType, numbers: Any) -> str:
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=140), topic.blocks(numbers))
     return stream.getvalue()
@@ -54,7 +54,7 @@ def written(topic: ModuleType, numbers: Any) -> str:
 def test_numbers_are_fit_for_json_and_can_be_shown(topic: ModuleType, machine: Mechanism) -> None:
     numbers: Any = topic.numbers(machine, LINKAGE)
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
-    assert 4 <= len(written(topic, numbers).splitlines()) <= 20
+    assert 4 <= len(printed_text(topic, numbers).splitlines()) <= 20
 
 
 @pytest.mark.parametrize("topic", TOPICS)
@@ -76,7 +76,7 @@ def test_friction_says_where_the_work_goes() -> None:
     assert numbers["efficiency"] == pytest.approx(numbers["useful_work_J"] / numbers["input_work_J"], rel=1e-10)
     stroke = float(LINKAGE.stroke)
     assert numbers["useful_work_J"] == pytest.approx(500.0 * stroke + 20.0 * stroke, rel=1e-10)
-    assert "drives at every crank angle" in written(friction, numbers)
+    assert "drives at every crank angle" in printed_text(friction, numbers)
 
 
 def test_a_linkage_that_locks_has_no_torque_no_work_and_no_efficiency() -> None:
@@ -89,7 +89,7 @@ def test_a_linkage_that_locks_has_no_torque_no_work_and_no_efficiency() -> None:
         assert math.degrees(at) == pytest.approx(math.degrees(math.atan(1.5)), rel=1e-9)
     for key in ("peak_torque_Nm", "mean_torque_Nm", "peak_guide_force_N", "input_work_J", "efficiency"):
         assert numbers[key] is None
-    assert "undefined" in written(friction, numbers)
+    assert "undefined" in printed_text(friction, numbers)
     numbers = motor.numbers(LOCKED, LINKAGE)
     for key in ("peak_torque_Nm", "rms_torque_Nm", "mean_torque_Nm", "peak_power_W", "mean_power_W"):
         assert numbers[key] is None

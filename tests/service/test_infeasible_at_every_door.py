@@ -25,7 +25,7 @@ from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
 from tests.service.api.fixed_front import served
-from tests.service.api.serving import client_of, refused
+from tests.service.api.serving import client_of, refusal_sentence
 from tests.service.conftest import Command
 from tests.service.sized import NEEDED
 
@@ -306,10 +306,10 @@ def test_the_api_analyses_a_design_of_an_impossible_job(store: Store) -> None:
 def test_the_api_answers_with_a_problem_of_the_type_infeasible(place: str, store: Store) -> None:
     with client_of(store) as client:
         response = client.post(f"/{place}", json={"job": changed_job(**WISH)})
-        assert SAID in refused(response, 422)
+        assert SAID in refusal_sentence(response, 422)
         assert response.json()["type"] == "infeasible"
         wrong = client.post(f"/{place}", json={"job": changed_job(constraints={"strok": {"min": "90 mm"}})})
-        assert refused(wrong, 422)
+        assert refusal_sentence(wrong, 422)
         assert wrong.json()["type"] == "about:blank"
     assert store.jobs() == []
 

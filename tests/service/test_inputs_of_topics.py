@@ -31,7 +31,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
         yield opened
 
 
-def printed(solved: Solved, *options: str) -> Any:
+def printed_numbers(solved: Solved, *options: str) -> Any:
     place = ["--runs", str(solved.folder.parent), "--design", "2"]
     done = CliRunner().invoke(command_line, ["analyse", "latest", *place, "--json", *options])
     assert done.exit_code == 0, done.stderr
@@ -58,7 +58,7 @@ def test_any_value_gives_the_same_numbers_by_option_and_in_the_api(
     one, topic, random = INPUTS[name], TOPIC_OF_INPUT[name], np.random.default_rng(3)
     for value in random.uniform(*RANGES[name], 3).tolist():
         typed = f"{value!r} {one.unit.symbol}".strip()
-        expected = printed(solved, "--show", topic, one.flag, typed)[topic]
+        expected = printed_numbers(solved, "--show", topic, one.flag, typed)[topic]
         answer = client.get(f"{solved.path}/designs/2/topics/{topic}", params={one.key: value})
         assert_same(answer.json()["numbers"], expected)
 

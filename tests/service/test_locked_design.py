@@ -18,7 +18,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.service.questions.strength import analysis as strength
 from tests.service import fronts as made
-from tests.service.api.fixed_front import API, Solved, client_of, put_in
+from tests.service.api.fixed_front import API, Solved, client_of, store_result
 from tests.service.conftest import Command
 
 pytestmark = pytest.mark.filterwarnings("ignore:in every sampled design the loaded stroke")
@@ -141,7 +141,7 @@ def test_a_sweep_has_no_forces_where_friction_locks_and_says_why(command: Comman
 
 
 def test_what_if_has_no_value_where_friction_locks_the_changed_design(client: httpx.Client, solved: Solved) -> None:
-    number = put_in(solved.store, solved.result, tomllib.loads(made.JOB) | {"friction": {"guide": 0.9}})
+    number = store_result(solved.store, solved.result, tomllib.loads(made.JOB) | {"friction": {"guide": 0.9}})
     lengths = {"crank_mm": 130.0, "rod_mm": 250.0, "offset_mm": 80.0}  # acos(210 / 250) - atan(0.9) = -9.1 deg
     answer = client.post(f"{API}/jobs/{number}/designs/1/what-if", json={**lengths, "angles": 0})
     assert answer.status_code == 200, answer.text

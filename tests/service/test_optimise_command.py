@@ -22,7 +22,7 @@ def job(tmp_path: Path) -> Path:
     return fronts.job_file(tmp_path)
 
 
-def only(runs: Path) -> Path:
+def only_run(runs: Path) -> Path:
     """Return the only run of a place."""
     (run,) = (path for path in runs.iterdir() if path.is_dir())
     return run
@@ -32,7 +32,7 @@ def only(runs: Path) -> Path:
 def test_a_job_gives_a_front_and_a_run(job: Path, runs: Path, command: Command) -> None:
     done = command("optimise", job)
     assert done.exit_code == 0, done.stderr
-    run = only(runs)
+    run = only_run(runs)
     assert run.name.endswith("-short-test-job")
     assert {file.name for file in run.iterdir()} == {
         *("job.toml", "front.csv", "front.json", "figures", "versions.json", "log.txt")
@@ -54,11 +54,11 @@ def test_json_is_the_only_output_and_the_same_as_the_file(job: Path, runs: Path,
     record = json.loads(done.stdout)
     assert set(KEYS) <= set(record)
     assert set(DESIGN_KEYS) <= set(record["designs"][0])
-    assert (record["status"], record["seed"], record["run"]) == ("done", 3, str(only(runs)))
+    assert (record["status"], record["seed"], record["run"]) == ("done", 3, str(only_run(runs)))
     assert len(record["designs"]) <= 5
-    assert json.loads((only(runs) / "front.json").read_text()) == record
-    assert not (only(runs) / "figures").exists()
-    with (only(runs) / "front.csv").open(newline="") as file:
+    assert json.loads((only_run(runs) / "front.json").read_text()) == record
+    assert not (only_run(runs) / "figures").exists()
+    with (only_run(runs) / "front.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["crank_mm"]) for row in rows] == [design["crank_mm"] for design in record["designs"]]
     assert list(rows[0]) == list(record["designs"][0])
@@ -74,31 +74,31 @@ def test_the_same_job_and_seed_give_the_same_front(job: Path, runs: Path, comman
 
 def test_runs_go_where_the_option_says(job: Path, runs: Path, tmp_path: Path, command: Command) -> None:
     assert command("optimise", job, "--no-figures", "--runs", tmp_path / "mine").exit_code == 0
-    assert read_run(only(tmp_path / "mine")).status == "done"
+    assert read_run(only_run(tmp_path / "mine")).status == "done"
     assert not runs.exists()
 
 
 def test_one_objective_gives_one_design_with_all_its_numbers(
     job: Path, runs: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    fronts.found(monkeypatch, fronts.front(("peak_torque",), designs=1))
+    fronts.replace_solve(monkeypatch, fronts.front(("peak_torque",), designs=1))
     done = command("optimise", job)
     assert done.exit_code == 0, done.stderr
     assert "peak guide force" in done.stdout
-    assert [file.name for file in (only(runs) / "figures").iterdir()] == ["best_peak_torque.png"]
+    assert [file.name for file in (only_run(runs) / "figures").iterdir()] == ["best_peak_torque.png"]
 
 
 def test_nothing_feasible_is_exit_code_3_and_keeps_the_message(
     job: Path, runs: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     message = "time ratio 1.5 caps the least transmission angle at 27.46 deg; 40 deg is asked"
-    fronts.found(monkeypatch, fronts.empty_front("infeasible", message))
+    fronts.replace_solve(monkeypatch, fronts.empty_front("infeasible", message))
     done = command("optimise", job, "--json")
     assert done.exit_code == 3
     record = json.loads(done.stdout)
     assert (record["status"], record["message"], record["designs"]) == ("infeasible", message, [])
     assert message in done.stderr
-    assert not (only(runs) / "figures").exists()
+    assert not (only_run(runs) / "figures").exists()
     shown = command("front", "latest")
     assert (shown.exit_code, shown.stdout) == (3, "")
     assert message in shown.stderr
@@ -182,7 +182,7 @@ def test_a_fault_is_one_message_with_the_place_of_the_log(
     monkeypatch.setattr("slidercrank.optimise.solve.solve", broken)
     done = command("optimise", job, "--json")
     assert (done.exit_code, done.stdout) == (1, "")
-    log = only(runs) / "log.txt"
+    log = only_run(runs) / "log.txt"
     assert f"see {log}" in done.stderr
     assert "kernel lost" in done.stderr
     assert "Traceback" not in done.stderr
@@ -208,7 +208,7 @@ def test_the_table_marks_the_extremes_and_the_knee(
     job: Path, runs: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     front = fronts.front(designs=60)
-    fronts.found(monkeypatch, front)
+    fronts.replace_solve(monkeypatch, front)
     lines = command("optimise", job, "--no-figures").stdout.splitlines()
     at = lines.index("At the knee:")
     table = [line for line in lines[:at] if line.split() and line.split()[0].isdigit() and " of " not in line]

@@ -16,7 +16,7 @@ import pytest
 from slidercrank.objectives.own.function_process_client import Worker
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import Terms, work
-from tests.faults.serving import Serving, alive, says
+from tests.faults.serving import Serving, alive, runs_command_with_word
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")
 BUSY = 1.0  # s that a busy machine may add
@@ -84,7 +84,11 @@ def submit(store: Store, function: str) -> int:
 
 def functions() -> set[int]:
     """Return the processes of own functions that this one has; other tests leave some."""
-    return {child.pid for child in psutil.Process().children(recursive=True) if says(child, "own.guard_process")}
+    return {
+        child.pid
+        for child in psutil.Process().children(recursive=True)
+        if runs_command_with_word(child, "own.guard_process")
+    }
 
 
 def test_the_process_of_a_function_ends_with_its_job(store: Store) -> None:

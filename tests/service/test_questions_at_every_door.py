@@ -65,7 +65,9 @@ def by_agent(place: Path, **inputs: Any) -> dict[str, Any]:
     return found
 
 
-def told(problem: sc.Problem, question: str, design: list[float], given: dict[str, Any]) -> dict[str, Any] | str:
+def result_or_refusal(
+    problem: sc.Problem, question: str, design: list[float], given: dict[str, Any]
+) -> dict[str, Any] | str:
     """Return an answer, or the sentence of its refusal."""
     try:
         return problem.ask(question, design, **given)
@@ -95,7 +97,7 @@ def test_every_topic_of_random_machines_has_the_same_answer_at_every_door(addres
         sent = httpx.post(f"{address}{API}/analyse", json={"job": tables, **sizes, "show": ["all"]}, timeout=60.0)
         for name in TOPICS:
             given = {"touch_distance": TOUCH, "rated_torque": f"{RATED!r} N m"} if name == "press" else {}
-            answer = told(problem, name, design, given)
+            answer = result_or_refusal(problem, name, design, given)
             if isinstance(answer, str):
                 assert f"{name}: {answer}" in done.stderr.splitlines()
             else:

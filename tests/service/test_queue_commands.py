@@ -37,10 +37,10 @@ def store(runs: Path) -> Iterator[Store]:
         yield opened
 
 
-def solved(store: Store, monkeypatch: pytest.MonkeyPatch, status: str = "done") -> None:
+def solve_waiting_jobs(store: Store, monkeypatch: pytest.MonkeyPatch, status: str = "done") -> None:
     """Let a worker solve what waits, with a made-up search."""
     front = fronts.front(designs=4) if status == "done" else fronts.empty_front(status, "none")
-    fronts.found(monkeypatch, front)
+    fronts.replace_solve(monkeypatch, front)
     work(store, drain=True)
 
 
@@ -130,9 +130,9 @@ def test_jobs_are_listed_with_what_they_found(
     store: Store, job: Path, command: Command, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     command("submit", job)
-    solved(store, monkeypatch)
+    solve_waiting_jobs(store, monkeypatch)
     command("submit", job)
-    solved(store, monkeypatch, "infeasible")
+    solve_waiting_jobs(store, monkeypatch, "infeasible")
     command("submit", job)
     lines = [line.split() for line in command("jobs").stdout.splitlines()]
     rows = {line[0]: " ".join(line[3:]) for line in lines if line and line[0].isdecimal()}
@@ -307,7 +307,7 @@ def test_submitting_can_watch_to_the_end(
             time.sleep(0.01)
         work(store, drain=True)
 
-    fronts.found(monkeypatch, fronts.front(designs=4))
+    fronts.replace_solve(monkeypatch, fronts.front(designs=4))
     thread = threading.Thread(target=work_soon)
     thread.start()
     done = command("submit", job, "--watch")

@@ -63,12 +63,12 @@ def stop(monkeypatch: pytest.MonkeyPatch) -> Any:
     return after
 
 
-def only(runs: Path) -> Path:
+def only_run(runs: Path) -> Path:
     (run,) = (path for path in runs.iterdir() if path.is_dir())
     return run
 
 
-def kept(runs: Path, number: int = 1) -> int:
+def count_stored_records(runs: Path, number: int = 1) -> int:
     """Return how many records of a job are in the store."""
     with Store(runs / "slidercrank.db") as store:
         return store.job(number).records
@@ -83,8 +83,8 @@ def whole(job: Path, tmp_path: Path, command: Command) -> str:
     """Return the front of the job without a stop, as it is stored."""
     done = command("optimise", job, "--no-figures", "--seed", 4, "--designs", 6, "--runs", tmp_path / "whole")
     assert done.exit_code == 0, done.output
-    assert kept(tmp_path / "whole") == 0
-    return designs(only(tmp_path / "whole"))
+    assert count_stored_records(tmp_path / "whole") == 0
+    return designs(only_run(tmp_path / "whole"))
 
 
 @pytest.mark.parametrize("killed", [False, True])
@@ -96,19 +96,19 @@ def test_a_stopped_run_goes_on_and_ends_as_if_it_had_not_been(
     if killed:
         with pytest.raises(Killed):
             command(*arguments)
-        run = only(runs)
+        run = only_run(runs)
         assert (run / MARK).exists()
         assert f"continue it with `slidercrank optimise --resume {run.name}`" in command("front", run.name).stderr
     else:
         stopped = command(*arguments)
-        run = only(runs)
+        run = only_run(runs)
         assert stopped.exit_code == 130
         assert f"continue with: slidercrank optimise --resume {run.name}" in stopped.stderr
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
-    assert kept(runs) == 3
+    assert count_stored_records(runs) == 3
     again = command("optimise", "--resume", run.name, "--json", "--no-figures")
     assert again.exit_code == 0, again.output
-    assert only(runs) == run
+    assert only_run(runs) == run
     assert designs(run) == whole
     record = json.loads(again.stdout)
     assert (record["status"], record["seed"], record["run"]) == ("done", 4, str(run))
@@ -125,7 +125,7 @@ def contents(place: Path) -> dict[Path, bytes]:
 
 def test_a_refused_resume_changes_nothing_in_a_run_that_is_done(job: Path, runs: Path, command: Command) -> None:
     assert command("optimise", job, "--no-figures").exit_code == 0
-    run = only(runs)
+    run = only_run(runs)
     before = contents(runs)
     for name in (run.name, run, 1):
         refused = command("optimise", "--resume", name, "--no-figures")
@@ -157,7 +157,7 @@ def test_a_refused_resume_changes_nothing_in_a_stopped_run(
     else:
         command("optimise", job, "--no-figures")
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
-    run = only(runs)
+    run = only_run(runs)
     with Store(runs / "slidercrank.db") as store:
         if reason in ("queued", "running elsewhere"):
             store.resume(1)
@@ -182,7 +182,7 @@ def test_a_cancelled_run_can_still_be_read_after_an_error_of_the_search(
 ) -> None:
     stop(2, killed=False)
     command("optimise", job, "--no-figures")
-    run = only(runs)
+    run = only_run(runs)
     before = designs(run)
 
     def fail(*given: object, **options: object) -> None:
@@ -214,7 +214,7 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
     stop(2, killed=False)
     command("optimise", job, "--no-figures")
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
-    run = only(runs)
+    run = only_run(runs)
     before = designs(run)
     for arguments, words in (
         ((), "needs a job file, or a run to continue"),
@@ -227,7 +227,7 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
         assert words in done.stderr
     assert designs(run) == before
     assert not (run / MARK).exists()
-    assert kept(runs) == 2
+    assert count_stored_records(runs) == 2
     (runs / "slidercrank.db").unlink()
     assert "is not in" in command("optimise", "--resume", "latest").stderr
 
@@ -249,7 +249,7 @@ def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
 def test_a_run_of_the_command_line_is_a_job_of_the_store(job: Path, runs: Path, command: Command) -> None:
     done = command("optimise", job, "--no-figures", "--json", "--seed", 4, "--designs", 6)
     assert done.exit_code == 0, done.output
-    run = only(runs)
+    run = only_run(runs)
     with Store(runs / "slidercrank.db") as store:
         (known,) = store.jobs()
         assert (known.state, known.run, known.name, known.worker) == ("done", run.name, "Short test [job]", None)
@@ -274,8 +274,8 @@ def test_a_job_of_a_worker_is_a_run_of_the_command_line(job: Path, runs: Path, w
     shown = command("front", "latest", "--json")
     assert shown.exit_code == 0, shown.output
     assert json.loads(shown.stdout)["run"] == str(runs / name)
-    assert designs(only(runs)) == whole
-    assert only(runs).name == name
+    assert designs(only_run(runs)) == whole
+    assert only_run(runs).name == name
     again = command("front", number, "--json")
     assert again.stdout == shown.stdout
 
@@ -294,7 +294,7 @@ def test_a_cancelled_job_of_a_worker_goes_on_at_the_command_line(
     monkeypatch.setattr("slidercrank.optimise.solve.solve", solve)
     again = command("optimise", "--resume", number, "--no-figures")
     assert again.exit_code == 0, again.output
-    assert designs(only(runs)) == whole
+    assert designs(only_run(runs)) == whole
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of Unix")
@@ -314,9 +314,9 @@ def test_a_command_that_was_killed_can_be_resumed_at_once(job: Path, runs: Path,
     arguments = ["optimise", str(job), "--no-figures", "--seed", "4", "--designs", "6"]
     killed = subprocess.run([sys.executable, "-c", script, *arguments], capture_output=True, check=False)
     assert killed.returncode == -9, killed.stderr
-    run = only(runs)
+    run = only_run(runs)
     assert (run / MARK).exists()
-    assert kept(runs) == 3
+    assert count_stored_records(runs) == 3
     again = command("optimise", "--resume", "latest", "--no-figures")
     assert again.exit_code == 0, again.output
     assert designs(run) == whole

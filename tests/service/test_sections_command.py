@@ -42,14 +42,14 @@ bearing_pressure = "20 MPa"
 """
 
 
-def written(folder: Path, text: str) -> Path:
+def written_job_file(folder: Path, text: str) -> Path:
     file = folder / "press.toml"
     file.write_text(text, encoding="utf-8")
     return file
 
 
 def test_json_is_what_the_function_gives(command: Command, tmp_path: Path) -> None:
-    job = written(tmp_path, JOB + SECTIONS)
+    job = written_job_file(tmp_path, JOB + SECTIONS)
     done = command("sections", job, "--rod", "200 mm", "--json")
     assert done.exit_code == 0, done.output
     shown = json.loads(done.stdout)
@@ -71,7 +71,9 @@ def test_a_job_that_names_a_catalogue_is_sized_with_the_concentration_of_its_eye
 ) -> None:
     choice = '[[choice]]\nname = "drive"\nfile = "drives.csv"\n'
     (tmp_path / "drives.csv").write_text("name,mechanism.speed (rpm)\nslow,100\nfast,120\n", encoding="utf-8")
-    job = written(tmp_path, JOB + choice + SECTIONS.replace("[sections]\n", "[sections]\neye_concentration = 2.5\n", 1))
+    job = written_job_file(
+        tmp_path, JOB + choice + SECTIONS.replace("[sections]\n", "[sections]\neye_concentration = 2.5\n", 1)
+    )
     limits = load_job(job).sections
     assert limits is not None
     assert limits.eye_concentration == 2.5
@@ -80,7 +82,7 @@ def test_a_job_that_names_a_catalogue_is_sized_with_the_concentration_of_its_eye
 
 
 def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -> None:
-    done = command("sections", written(tmp_path, JOB + SECTIONS), "--rod", "200 mm")
+    done = command("sections", written_job_file(tmp_path, JOB + SECTIONS), "--rod", "200 mm")
     assert done.exit_code == 0, done.output
     assert "mass of both: " in done.stdout
     assert "rod: buckling out of the plane" in done.stdout
@@ -114,13 +116,13 @@ def test_the_table_names_what_holds_the_mass(command: Command, tmp_path: Path) -
 def test_what_cannot_be_sized_is_refused_in_words(
     command: Command, tmp_path: Path, text: str, arguments: tuple[str, ...], message: str
 ) -> None:
-    done = command("sections", written(tmp_path, text), *arguments)
+    done = command("sections", written_job_file(tmp_path, text), *arguments)
     assert done.exit_code == 2
     assert message in " ".join(done.stderr.split())
 
 
 def test_loads_that_no_section_carries_are_infeasible(command: Command, tmp_path: Path) -> None:
-    job = written(tmp_path, JOB.replace("120 rpm", "60000 rpm") + SECTIONS)
+    job = written_job_file(tmp_path, JOB.replace("120 rpm", "60000 rpm") + SECTIONS)
     done = command("sections", job, "--rod", "200 mm", "--json")
     assert done.exit_code == 3
     assert "no section within the ranges carries" in done.stderr

@@ -66,7 +66,7 @@ def test_python_answers_a_slip(slip: dict[str, Any], file: Path) -> None:
 
 
 def test_the_page_answers_a_slip(slip: dict[str, Any]) -> None:
-    wrong, infeasible, understood = looked_at(slip["text"], slip["files"])
+    wrong, infeasible, understood = page_findings(slip["text"], slip["files"])
     if slip["exit"]:
         assert [unplaced(one) for one in wrong] == [unplaced(one) for one in slip.get("page", slip["check"])]
         assert infeasible == (slip["exit"] == 3)
@@ -83,7 +83,7 @@ def unplaced(sentence: str) -> str:
     return re.sub(r"(?m)^( *)line \d+(?:, |: )", r"\1", sentence)
 
 
-def looked_at(text: str, files: dict[str, str]) -> tuple[list[str], bool, Understood | None]:
+def page_findings(text: str, files: dict[str, str]) -> tuple[list[str], bool, Understood | None]:
     """Return the page's findings on a job file: mistakes, whether the job is infeasible, and the job in words.
 
     files: sent beside it, but for those of catalogues, which are pasted into the form.

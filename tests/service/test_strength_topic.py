@@ -29,7 +29,7 @@ from tests.model.strength.sections import eye_rows, linkage_with, random_bars, s
 from tests.service import fronts
 
 
-def strong(seed: int) -> tuple[Mechanism, Linkage]:
+def random_bar_machine(seed: int) -> tuple[Mechanism, Linkage]:
     """Return a random machine whose links are bars, without a counterweight, and a design of it."""
     random = np.random.default_rng(seed)
     machine = replace(random_bars(random), counterweight=Counterweight(mass=0.0, radius=0.0))
@@ -38,7 +38,7 @@ def strong(seed: int) -> tuple[Mechanism, Linkage]:
 
 def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_stress() -> None:
     for seed in (21, 22, 23):
-        machine, linkage = strong(seed)
+        machine, linkage = random_bar_machine(seed)
         found = numbers(machine, linkage)
         assert json_ready(found) == {key: "inf" if value == np.inf else value for key, value in found.items()}
         design = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
@@ -79,7 +79,7 @@ def test_numbers_are_those_of_the_quantities_and_places_those_of_the_greatest_st
 
 
 def test_curves_of_the_figure_are_those_of_a_section_cut_from_the_other_end() -> None:
-    machine, linkage = strong(22)
+    machine, linkage = random_bar_machine(22)
     panels = [panel_in_units(panel, "metric") for panel in figure(machine, linkage).panels]
     assert [str(panel.title).split()[0] for panel in panels] == [name for name in LINKS for _ in range(2)]
     for name, over, along in zip(LINKS, panels[::2], panels[1::2], strict=True):
@@ -96,7 +96,7 @@ def test_curves_of_the_figure_are_those_of_a_section_cut_from_the_other_end() ->
 
 
 def test_the_text_tells_every_number_and_what_is_missing_is_said() -> None:
-    machine, linkage = strong(23)
+    machine, linkage = random_bar_machine(23)
     screen = Console(file=io.StringIO(), width=120)
     found = numbers(machine, linkage)
     print_blocks(screen, blocks(found))

@@ -42,7 +42,7 @@ def settings(store: Store, *, lease: float = 2.0, grace: float = 0.5, drain: boo
     return WorkerSettings(address=store.name, lease=lease, drain=drain, terms=Terms(grace=grace))
 
 
-def put_in(store: Store, name: str, limits: Limits | None = None) -> Job:
+def submit_made_up_job(store: Store, name: str, limits: Limits | None = None) -> Job:
     """Return a job that does what its name says."""
     return store.submit({}, name=name, limits=limits or Limits())
 
@@ -55,7 +55,7 @@ def until(condition: Callable[[], object], what: str) -> None:
         time.sleep(0.05)
 
 
-def gone(process: int) -> bool:
+def has_ended(process: int) -> bool:
     """Whether a process has ended; one that nobody has waited for counts."""
     try:
         return psutil.Process(process).status() == psutil.STATUS_ZOMBIE
@@ -67,7 +67,7 @@ def test_a_worker_that_is_killed_is_replaced_and_its_job_goes_on(
     store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.INFO)
-    job = put_in(store, "rounds")
+    job = submit_made_up_job(store, "rounds")
     with Supervisor(settings(store), 1, program=MADE_UP) as supervisor:
         until(lambda: store.job(job.id).records >= 3, "third round")
         (killed,) = supervisor.processes()
@@ -75,14 +75,14 @@ def test_a_worker_that_is_killed_is_replaced_and_its_job_goes_on(
         until(lambda: store.job(job.id).state == "done", "end of the job")
         (other,) = supervisor.processes()
         assert other != killed
-    assert gone(other)
+    assert has_ended(other)
     rounds = [event.data["round"] for event in store.events(job.id) if event.kind == "progress"]
     assert rounds == list(range(1, ROUNDS + 1))
     assert "worker 1 ended: killed by SIGKILL; another one starts in 0.5 s" in caplog.messages
 
 
 def test_workers_that_are_told_to_stop_hand_their_job_back_between_rounds(store: Store) -> None:
-    job = put_in(store, "rounds")
+    job = submit_made_up_job(store, "rounds")
     with Supervisor(settings(store, lease=60.0), 1, program=MADE_UP):
         until(lambda: store.job(job.id).records >= 2, "second round")
     after = store.job(job.id)
@@ -93,18 +93,18 @@ def test_workers_that_are_told_to_stop_hand_their_job_back_between_rounds(store:
 
 
 def test_a_worker_in_an_endless_round_hands_its_job_back_when_its_grace_is_over(store: Store) -> None:
-    job = put_in(store, "stuck")
+    job = submit_made_up_job(store, "stuck")
     with Supervisor(settings(store, lease=60.0), 1, program=MADE_UP) as supervisor:
         until(lambda: store.job(job.id).records == 1, "first round")
         (process,) = supervisor.processes()
-    assert gone(process)
+    assert has_ended(process)
     after = store.job(job.id)
     assert (after.state, after.records) == ("queued", 1)
     assert after.reason == "its worker stopped in the middle of a round; another one continues"
 
 
 def test_a_job_whose_search_has_not_begun_is_handed_back_before_the_grace_is_over(store: Store) -> None:
-    job = put_in(store, "loads")
+    job = submit_made_up_job(store, "loads")
     with Supervisor(settings(store, lease=60.0, grace=60.0), 1, program=MADE_UP):
         until(lambda: store.job(job.id).state == "running", "claim of the job")
         begin = time.monotonic()
@@ -122,7 +122,7 @@ def test_a_worker_that_cannot_stop_is_killed(
     with Supervisor(settings(store, grace=0.0), 1, program=deaf) as supervisor:
         until(supervisor.processes, "process")
         (process,) = supervisor.processes()
-    assert gone(process)
+    assert has_ended(process)
     assert f"worker process {process} did not stop in time and is killed" in caplog.messages
 
 
@@ -130,8 +130,8 @@ def test_a_worker_that_cannot_stop_is_killed(
 def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_once(
     store: Store, caplog: pytest.LogCaptureFixture
 ) -> None:
-    greedy = put_in(store, "greedy", Limits(memory=300_000_000))
-    after = put_in(store, "rounds")
+    greedy = submit_made_up_job(store, "greedy", Limits(memory=300_000_000))
+    after = submit_made_up_job(store, "rounds")
     with Supervisor(settings(store), 1, program=MADE_UP):
         until(lambda: store.job(after.id).state == "done", "end of the next job")
     failed = store.job(greedy.id)
@@ -145,9 +145,9 @@ def test_a_job_that_takes_too_much_memory_fails_and_its_worker_is_replaced_at_on
 
 @pytest.mark.slow
 def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> None:
-    leaves = put_in(store, "leaves")
-    fits = put_in(store, "rounds", Limits(memory=350_000_000))
-    greedy = put_in(store, "greedy", Limits(memory=350_000_000))
+    leaves = submit_made_up_job(store, "leaves")
+    fits = submit_made_up_job(store, "rounds", Limits(memory=350_000_000))
+    greedy = submit_made_up_job(store, "greedy", Limits(memory=350_000_000))
     with Supervisor(settings(store), 1, program=MADE_UP):
         until(lambda: store.job(greedy.id).state == "failed", "end of the jobs")
     assert (store.job(leaves.id).state, store.job(fits.id).state) == ("done", "done")
@@ -159,8 +159,8 @@ def test_what_earlier_jobs_left_does_not_count_against_a_job(store: Store) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("ends", ["cancelled", "out of time"])
 def test_a_job_that_hears_nothing_does_not_keep_its_worker(ends: str, store: Store) -> None:
-    loops = put_in(store, "loops", Limits(seconds=0.3) if ends == "out of time" else None)
-    after = put_in(store, "rounds")
+    loops = submit_made_up_job(store, "loops", Limits(seconds=0.3) if ends == "out of time" else None)
+    after = submit_made_up_job(store, "rounds")
     with Supervisor(settings(store), 1, program=MADE_UP):
         until(lambda: store.job(loops.id).records == 1, "first round")
         if ends == "cancelled":
@@ -173,7 +173,7 @@ def test_a_job_that_hears_nothing_does_not_keep_its_worker(ends: str, store: Sto
 
 
 def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
-    job = put_in(store, "stuck")
+    job = submit_made_up_job(store, "stuck")
     script = (
         "import sys, time\n"
         "from slidercrank.service.workers.supervisor import Supervisor\n"
@@ -190,7 +190,7 @@ def test_workers_leave_when_their_supervisor_is_killed(store: Store) -> None:
         worker = int(supervisor.stdout.readline())
         until(lambda: store.job(job.id).records == 1, "first round")
         supervisor.kill()
-    until(lambda: gone(worker), "end of the worker")
+    until(lambda: has_ended(worker), "end of the worker")
     assert store.job(job.id).state == "queued"
 
 
@@ -217,7 +217,7 @@ def test_a_program_that_cannot_be_started_is_told(store: Store, caplog: pytest.L
 
 @pytest.mark.slow
 def test_draining_workers_are_not_replaced(store: Store) -> None:
-    jobs = [put_in(store, "rounds") for _ in range(3)]
+    jobs = [submit_made_up_job(store, "rounds") for _ in range(3)]
     with Supervisor(settings(store, drain=True), 2, program=MADE_UP) as supervisor:
         until(supervisor.is_finished, "end of the queue")
         assert supervisor.processes() == []

@@ -36,7 +36,7 @@ STUCK = replace(MACHINE, loads=(StrokeForce(outward=-9e4, inward=9e4),))
 RUNAWAY = replace(MACHINE, drive=Drive(motor=ConstantTorque(torque=30.0), flywheel=2.0))
 
 
-def shown(topic: ModuleType, numbers: Any) -> str:
+def printed_text(topic: ModuleType, numbers: Any) -> str:
     assert json.loads(json.dumps(numbers, allow_nan=False)) == numbers
     stream = io.StringIO()
     print_blocks(Console(file=stream, width=100), topic.blocks(numbers))
@@ -53,13 +53,13 @@ def test_the_start_is_told_with_its_steady_running() -> None:
     assert numbers["why_not_steady"] is None
     gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
     assert gained == pytest.approx(numbers["motor_work_J"] - numbers["load_work_J"], rel=1e-8)
-    text = shown(start_up, numbers)
+    text = printed_text(start_up, numbers)
     assert "runs steadily" in text
     assert "coefficient of speed fluctuation" in text
 
 
 def test_a_motor_that_cannot_start_is_told_as_such() -> None:
-    text: Any = shown(start_up, start_up.numbers(STUCK, LINKAGE))
+    text: Any = printed_text(start_up, start_up.numbers(STUCK, LINKAGE))
     assert "cannot overcome the load" in text
     assert "No steady running" in text
 
@@ -77,7 +77,7 @@ def test_the_flywheel_is_told_for_the_wanted_and_for_other_fluctuations() -> Non
     assert numbers["flywheels_kgm2"] == sorted(numbers["flywheels_kgm2"])
     assert numbers["fluctuations"][2] == 0.05
     assert numbers["flywheels_kgm2"][2] == numbers["flywheel_kgm2"]
-    assert "Flywheel on the crank shaft" in shown(flywheel, numbers)
+    assert "Flywheel on the crank shaft" in printed_text(flywheel, numbers)
     assert "constant torque" in flywheel.numbers(STROKES, LINKAGE)["motor"]
 
 
@@ -126,7 +126,7 @@ def test_a_start_needs_a_drive_and_a_flywheel_a_motor_that_runs_steadily() -> No
         flywheel.numbers(RUNAWAY, LINKAGE)
 
 
-def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float) -> tuple[Panel, ...]:
+def drawn_panels(topic: ModuleType, machine: Mechanism, folder: Path, **options: float) -> tuple[Panel, ...]:
     """Return the panels of a topic's figure, which is drawn too."""
     file = TOPICS[topic.__name__.split(".")[-2]].bind_to_design(machine, LINKAGE, options).draw(folder)
     assert file.stat().st_size > 10_000
@@ -134,7 +134,7 @@ def drawn(topic: ModuleType, machine: Mechanism, folder: Path, **options: float)
 
 
 def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:
-    speed, turning, torque, _ = drawn(start_up, MACHINE, tmp_path)
+    speed, turning, torque, _ = drawn_panels(start_up, MACHINE, tmp_path)
     run, running, _ = start_up.simulate_start(MACHINE, LINKAGE)
     assert running is not None
     np.testing.assert_array_equal(speed.lines[0].x, run.time)
@@ -143,12 +143,12 @@ def test_the_figure_of_the_start_shows_the_model(tmp_path: Path) -> None:
     assert np.all(np.diff(turning.lines[0].x) >= 0.0)
     assert turning.lines[0].y.max() == pytest.approx(running.speed.max() * 30.0 / np.pi, rel=1e-14)
     assert turning.note == f"fluctuation {running.fluctuation:.3g}"
-    assert len(drawn(start_up, STUCK, tmp_path)) == 2
+    assert len(drawn_panels(start_up, STUCK, tmp_path)) == 2
 
 
 @pytest.mark.parametrize("machine", [MACHINE, STROKES], ids=["motor", "constant torque"])
 def test_the_figure_of_the_flywheel_shows_the_model(machine: Mechanism, tmp_path: Path) -> None:
-    fluctuations, speeds = drawn(flywheel, machine, tmp_path, fluctuation=0.04)
+    fluctuations, speeds = drawn_panels(flywheel, machine, tmp_path, fluctuation=0.04)
     exact, _, chosen = fluctuations.lines
     assert chosen.y == pytest.approx([0.04], rel=1e-9)
     middle = len(exact.x) // 2
@@ -166,7 +166,7 @@ def test_the_heat_of_friction_is_told_of_a_start_with_friction_alone() -> None:
     gained = numbers["kinetic_energy_gained_J"] + numbers["potential_energy_gained_J"]
     spent = numbers["load_work_J"] + numbers["friction_work_J"]
     assert gained == pytest.approx(numbers["motor_work_J"] - spent, rel=1e-6)
-    assert "friction heat" in shown(start_up, numbers)
+    assert "friction heat" in printed_text(start_up, numbers)
     smooth: Any = start_up.numbers(MACHINE, LINKAGE, turns=3)
     assert smooth["friction_work_J"] == 0.0
-    assert "friction heat" not in shown(start_up, smooth)
+    assert "friction heat" not in printed_text(start_up, smooth)

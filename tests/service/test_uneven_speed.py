@@ -64,7 +64,7 @@ def test_speeds_come_from_a_file(over: str, pytestconfig: pytest.Config, tmp_pat
     assert machine.speed_profile.speed_ratio(at) == pytest.approx(1.0 + 0.05 * np.cos(at), abs=2e-6)
 
 
-def _recorded(folder: Path, times: np.ndarray, speeds: np.ndarray, digits: int = 12) -> None:
+def _write_record(folder: Path, times: np.ndarray, speeds: np.ndarray, digits: int = 12) -> None:
     """Write a record over time, its numbers to some digits."""
     rows = [f"{at:.{digits}g},{one:.{digits}g}" for at, one in zip(times, speeds, strict=True)]
     (folder / "speed.csv").write_text("\n".join(["time_s,speed_rpm", *rows, ""]))
@@ -79,7 +79,7 @@ def test_a_record_of_one_turn_is_one_though_its_numbers_are_rounded(
     job.write_text(job.read_text().replace('speed = "900 rpm"', f'speed = "{60.0 * way} rpm"'))
     times, speeds = np.linspace(0.0, 1.0, 41), np.full(41, 60.0 * way)
     for last in (1.0, 0.9999997, 0.9999):
-        _recorded(tmp_path, np.where(times == 1.0, last, times), speeds)
+        _write_record(tmp_path, np.where(times == 1.0, last, times), speeds)
         profile = load_job(job).mechanism.speed_profile
         assert isinstance(profile, SpeedTable)
         assert len(profile.angles) == 40  # the last point is the first, a turn later
@@ -93,7 +93,7 @@ def test_a_record_of_one_turn_at_an_uneven_speed_has_its_profile(pytestconfig: p
     at = np.linspace(0.0, 2.0 * math.pi, 6001)
     slow = 1.0 / (900.0 * math.pi / 30.0 * (1.0 + 0.05 * np.cos(at)))
     time = np.concatenate([[0.0], np.cumsum(0.5 * (slow[1:] + slow[:-1]) * np.diff(at))])[::100]
-    _recorded(tmp_path, time, 900.0 * (1.0 + 0.05 * np.cos(theta)), digits=5)
+    _write_record(tmp_path, time, 900.0 * (1.0 + 0.05 * np.cos(theta)), digits=5)
     profile = load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
     assert len(profile.angles) == 60
@@ -107,7 +107,7 @@ def test_points_about_the_end_of_the_first_turn_are_its_end(pytestconfig: pytest
     times = np.linspace(0.0, 2.0, 81)
     speeds = 60.0 + 0.02 * np.random.default_rng(3).standard_normal(81)
     speeds[40:] -= 0.02  # so that the turn ends just before the forty-first point
-    _recorded(tmp_path, times, speeds)
+    _write_record(tmp_path, times, speeds)
     profile = load_job(job).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
     assert profile.speed_ratio(np.linspace(0.0, 2.0 * math.pi, 2000)) == pytest.approx(1.0, abs=3e-3)
@@ -121,7 +121,7 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
     job = job_with('{ file = "speed.csv" }', pytestconfig, tmp_path)
     job.write_text(job.read_text().replace('speed = "900 rpm"', 'speed = "60 rpm"'))
     times = np.linspace(0.0, 1.0, lines)
-    _recorded(tmp_path, times, np.full(lines, 60.0), digits=9)
+    _write_record(tmp_path, times, np.full(lines, 60.0), digits=9)
     said = r"file: \"speed\.csv\" must have at most 10,000 significant points; got [\d,]+; .* keep one line in"
     with pytest.raises(InputError, match=said) as told:
         load_job(job)
@@ -129,7 +129,7 @@ def test_a_record_of_too_many_lines_is_refused_and_taken_once_it_is_thinned_out_
     found = re.search(r"keep one line in (\d+)", str(told.value))
     assert found is not None
     kept = np.unique([*range(0, lines, int(found[1])), lines - 1])
-    _recorded(tmp_path, times[kept], np.full(len(kept), 60.0), digits=9)
+    _write_record(tmp_path, times[kept], np.full(len(kept), 60.0), digits=9)
     profile = load_job(job).mechanism.speed_profile
     assert isinstance(profile, SpeedTable)
     assert 5000 <= len(profile.angles) <= 10_000
@@ -151,7 +151,7 @@ def test_one_harmonic_is_told_as_one() -> None:
 def test_a_record_that_lacks_a_part_of_the_turn_is_refused(
     points: int, last: float, said: str, pytestconfig: pytest.Config, tmp_path: Path
 ) -> None:
-    _recorded(tmp_path, np.linspace(0.0, last, points), np.full(points, 60.0))
+    _write_record(tmp_path, np.linspace(0.0, last, points), np.full(points, 60.0))
     with pytest.raises(InputError, match=rf"must cover at least one turn; {said}"):
         load_job(job_with('{ file = "speed.csv" }', pytestconfig, tmp_path))
 

@@ -27,7 +27,7 @@ from tests.service.conftest import Command
 FACES = [face for kind in DISPLAYED_KINDS for face in (kind.metric, kind.inch) if face is not None]
 
 
-def reads(symbol: str, unit: str) -> bool:
+def is_same_kind(symbol: str, unit: str) -> bool:
     """Whether a value in one unit is one of the kind of the other."""
     return to_si(f"1 {symbol}", replace(kind_of_any_unit(unit), limit=1e30)) > 0.0
 
@@ -40,7 +40,7 @@ def test_factors_and_symbols_are_those_that_job_files_are_read_with(face: object
 def test_both_units_of_a_kind_measure_the_same() -> None:
     for kind in DISPLAYED_KINDS:
         for face in (kind.metric, kind.inch):
-            assert face is None or reads(face.symbol, kind.unit)
+            assert face is None or is_same_kind(face.symbol, kind.unit)
     assert {kind for kind in KINDS if kind not in DISPLAYED_KINDS} == {RATIO}
 
 

@@ -23,7 +23,7 @@ from slidercrank.service.runs.result import Result
 from slidercrank.service.runs.run_folder import RunFolder
 from slidercrank.service.runs.stored_runs import read_run
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import client_of, put_in
+from tests.service.api.fixed_front import client_of, store_result
 from tests.service.conftest import Command
 from tests.service.weak_pins import MATERIAL, TABLES, result
 
@@ -50,7 +50,7 @@ def kept(runs: Path) -> Result:
     return read_run(path)
 
 
-def expected(row: Any) -> dict[str, float]:
+def expected_excess(row: Any) -> dict[str, float]:
     """Return by how much a row of a table goes beyond what is allowed."""
     return {f"{name}_MPa": row[f"{name}_MPa"] - allowed for name, allowed in ALLOWED.items()}
 
@@ -58,7 +58,7 @@ def expected(row: Any) -> dict[str, float]:
 def test_analyse_says_what_is_violated_and_by_how_much(job: Path, command: Command) -> None:
     size = [part for name, value in SIZE.items() for part in (f"--{name}", value)]
     found = json.loads(command("analyse", job, *size, "--json").stdout)
-    assert found["violated"] == pytest.approx(expected(found), rel=1e-12)
+    assert found["violated"] == pytest.approx(expected_excess(found), rel=1e-12)
     inch = json.loads(command("analyse", job, *size, "--json", "--units", "inch").stdout)["violated"]
     factor = 1e6 / PSI
     assert inch == pytest.approx({k.replace("MPa", "psi"): factor * v for k, v in found["violated"].items()}, rel=1e-9)
@@ -87,7 +87,7 @@ def test_a_front_says_it_of_each_design_and_only_of_those_beyond() -> None:
     whole = result()
     assert len(whole.designs) > 2
     for key, beyond in whole.violated.items():
-        assert beyond == pytest.approx([expected(row)[key] for row in whole.designs], rel=1e-9)
+        assert beyond == pytest.approx([expected_excess(row)[key] for row in whole.designs], rel=1e-9)
     stresses = np.array([row[f"{SHEAR}_MPa"] for row in whole.designs], dtype=np.float64)
     allowed = float(np.sort(stresses)[1:3].mean())
     material = {**MATERIAL, "yield_strength": f"{3.0**0.5 * allowed!r} MPa"}
@@ -111,10 +111,10 @@ def test_a_run_keeps_and_shows_it(kept: Result, command: Command) -> None:
 
 
 def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> None:
-    number = put_in(store, result(), TABLES)
+    number = store_result(store, result(), TABLES)
     with client_of(store) as client:
         found = client.post("/api/v1/analyse", json={"job": TABLES, **SIZE}).json()["analysis"]
-        assert found["violated"] == pytest.approx(expected(found), rel=1e-12)
+        assert found["violated"] == pytest.approx(expected_excess(found), rel=1e-12)
         path = f"/api/v1/jobs/{number}"
         front = client.get(f"{path}/front").json()
         assert front["violated"] == result().violated
@@ -127,7 +127,7 @@ def test_the_api_says_it_of_any_design_and_of_those_of_a_front(store: Store) -> 
         assert topic["violated"] == pytest.approx(of_one)
         lengths = {"crank_mm": 50.0, "rod_mm": 200.0, "offset_mm": 20.0, "angles": 0}
         changed = client.post(f"{path}/designs/2/what-if", json=lengths).json()
-        assert changed["violated"] == pytest.approx(expected(changed["design"]), rel=1e-12)
+        assert changed["violated"] == pytest.approx(expected_excess(changed["design"]), rel=1e-12)
         metric, own = result(), client.get(f"{path}/designs/2").json()
         assert front["violations"] == front_violations_in_words(metric)
         assert own["violations"] == violations_in_words(own["violated"], own["design"])

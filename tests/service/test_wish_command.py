@@ -21,7 +21,7 @@ from tests.service.conftest import Command
 QUESTIONS = {"time_ratio": "1.3", "transmission_angle": "50 deg"}
 
 
-def at(wishes: dict[str, str]) -> list[str]:
+def wish_options(wishes: dict[str, str]) -> list[str]:
     return [part for name, value in wishes.items() for part in ("--at", f"{name}={value}")]
 
 
@@ -29,7 +29,7 @@ def test_json_has_the_numbers_of_python(kept: Path, command: Command) -> None:
     (folder,) = (file.parent for file in kept.glob("*/front.json"))
     result = read_run(folder)
     expected = wish(front_of(problem_of(folder, result), result), QUESTIONS)
-    done = command("wish", "latest", "--runs", kept, *at(QUESTIONS), "--json")
+    done = command("wish", "latest", "--runs", kept, *wish_options(QUESTIONS), "--json")
     assert done.exit_code == 0, done.output
     found = json.loads(done.stdout)
     assert (found["wishes"], found["number"], found["possible"]) == (QUESTIONS, None, expected.possible)
@@ -44,14 +44,16 @@ def test_json_has_the_numbers_of_python(kept: Path, command: Command) -> None:
 
 def test_words_of_a_wish_and_of_classes(kept: Path, command: Command) -> None:
     front = json.loads(command("front", "latest", "--runs", kept, "--json").stdout)["designs"]
-    shown = command("wish", "latest", "--runs", kept, *at({"time_ratio": "1.0", "transmission_angle": "1 deg"}))
+    shown = command(
+        "wish", "latest", "--runs", kept, *wish_options({"time_ratio": "1.0", "transmission_angle": "1 deg"})
+    )
     assert shown.exit_code == 0, shown.output
     assert "The wish can be met and exceeded in every objective:" in shown.stdout
     assert "better than the desired 1 deg" in shown.stdout
     assert "stationary: residual" in shown.stdout
     least = front[2]["least_transmission_angle_deg"] - 1.0
     classes = {"time_ratio": "improve", "transmission_angle": f"may worsen to {least!r} deg"}
-    found = json.loads(command("wish", "latest", 3, "--runs", kept, *at(classes), "--json").stdout)
+    found = json.loads(command("wish", "latest", 3, "--runs", kept, *wish_options(classes), "--json").stdout)
     assert found["number"] == 3
     assert found["design"]["least_transmission_angle_deg"] == pytest.approx(least, rel=1e-9)
     assert found["design"]["time_ratio"] > front[2]["time_ratio"]
@@ -102,7 +104,7 @@ def test_wishes_are_listed_wherever_they_were_made_the_latest_first_and_each_onc
     made.append(made[0])
     answers = []
     for number, wishes in made:
-        done = command("wish", "latest", *number, "--runs", place, *at(wishes), "--json")
+        done = command("wish", "latest", *number, "--runs", place, *wish_options(wishes), "--json")
         assert done.exit_code == 0, done.output
         answers.append(json.loads(done.stdout))
     listed = json.loads(command("wish", "latest", "--runs", place, "--list", "--json").stdout)["made"]
@@ -123,7 +125,7 @@ def test_wishes_are_listed_wherever_they_were_made_the_latest_first_and_each_onc
 
 
 def test_a_wish_and_the_list_at_once_or_neither_is_told(kept: Path, command: Command) -> None:
-    for options, got in (([], "neither"), ([*at(QUESTIONS), "--list"], "both")):
+    for options, got in (([], "neither"), ([*wish_options(QUESTIONS), "--list"], "both")):
         done = command("wish", "latest", "--runs", kept, *options)
         assert done.exit_code == 2
         assert f"either a wish or --list; got {got}" in done.output
@@ -135,5 +137,5 @@ def test_a_run_without_a_store_answers_and_has_no_list(kept: Path, tmp_path: Pat
     for file in place.glob("slidercrank.db*"):
         file.unlink()
     (folder,) = (file.parent for file in place.glob("*/front.json"))
-    assert command("wish", folder, *at(QUESTIONS), "--json").exit_code == 0
+    assert command("wish", folder, *wish_options(QUESTIONS), "--json").exit_code == 0
     assert "no wishes yet; make one" in command("wish", folder, "--list").stdout

@@ -20,7 +20,7 @@ from slidercrank.service.store import Claim, Store
 from slidercrank.service.workers.heartbeat import Heartbeat
 from slidercrank.service.workers.worker import solve_claimed, work, worker_name
 from tests.service import fronts
-from tests.service.made_up_search import Search, found, search, until
+from tests.service.made_up_search import Search, made_up_front, search, until
 from tests.service.store.contents import end_lease, progress, search_record
 from tests.service.store.contents import progress as at_round
 
@@ -220,7 +220,7 @@ def test_a_cancelled_job_keeps_what_was_found(store: Store, searches: Any) -> No
         keep(search_record(0))
         store.cancel(job.id)
         until(cancelled)
-        return found(problem, "cancelled")
+        return made_up_front(problem, "cancelled")
 
     searches(long)
     assert work(store, lease=1.0, drain=True) == 1

@@ -16,7 +16,7 @@ from slidercrank.service.store import Limits, Store
 from slidercrank.service.workers.engines import EngineOptions
 from slidercrank.service.workers.worker import Terms, work
 from tests.service import fronts
-from tests.service.made_up_search import Search, found, search, until
+from tests.service.made_up_search import Search, made_up_front, search, until
 from tests.service.store.contents import progress as progress_at
 
 TABLES = tomllib.loads(fronts.JOB)
@@ -38,7 +38,7 @@ def searches(monkeypatch: pytest.MonkeyPatch) -> Callable[[Search], None]:
 def test_a_search_ends_at_its_limit_of_time_with_what_it_found(store: Store, searches: Any) -> None:
     def long(problem: Problem, *, cancelled: Any, **_: Any) -> ParetoFront:
         until(cancelled)
-        return found(problem, "cancelled")
+        return made_up_front(problem, "cancelled")
 
     searches(long)
     job = submit(store, TABLES, limits=Limits(seconds=0.05))
@@ -62,7 +62,7 @@ def test_a_job_that_is_cancelled_at_its_limit_was_cancelled(store: Store, search
         store.cancel(1)
         progress(progress_at(1))
         assert cancelled()
-        return found(problem, "cancelled")
+        return made_up_front(problem, "cancelled")
 
     searches(cancelled_at_once)
     submit(store, TABLES, limits=Limits(evaluations=1))

@@ -45,7 +45,7 @@ def answer(there: socket.socket) -> tuple[int, dict[str, object]]:
     return int(head.split()[1]), json.loads(body)
 
 
-def sent(there: socket.socket, *parts: bytes) -> tuple[int, dict[str, object]]:
+def send_parts(there: socket.socket, *parts: bytes) -> tuple[int, dict[str, object]]:
     with contextlib.suppress(ConnectionError):
         for part in parts:
             there.sendall(part)

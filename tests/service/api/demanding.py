@@ -36,7 +36,7 @@ def _memory(request: Request) -> Response:
     return PlainTextResponse(str(len(_bytes(request))))
 
 
-def _kept(request: Request) -> Response:
+def _keep_request(request: Request) -> Response:
     _KEPT.append(_bytes(request))
     return PlainTextResponse("kept")
 
@@ -58,7 +58,7 @@ def _killed(_: Request) -> Response:
     raise AssertionError
 
 
-async def _endless(_: Request) -> Response:
+async def _endless_response(_: Request) -> Response:
     async def parts() -> AsyncIterator[bytes]:
         yield str(os.getpid()).encode()
         while True:
@@ -73,17 +73,17 @@ def demanding() -> Iterator[Starlette]:
     endpoints = {
         "process": _process,
         "memory": _memory,
-        "kept": _kept,
+        "kept": _keep_request,
         "time": _time,
         "killed": _killed,
-        "endless": _endless,
+        "endless": _endless_response,
     }
     routes = [Route(f"/{kind}/{name}", of) for kind in _ROUTES for name, of in endpoints.items()]
     yield Starlette(routes=routes, exception_handlers={MemoryError: lambda *_: end_process_tree(EXHAUSTED)})
 
 
 @contextlib.contextmanager
-def noted(folder: Path) -> Iterator[Starlette]:
+def noting_application(folder: Path) -> Iterator[Starlette]:
     """Give the application, and leave a file for each process that makes it."""
     (folder / str(os.getpid())).touch()
     with demanding() as app:

@@ -81,7 +81,7 @@ def varied_in(place: Path) -> Iterator[tuple[Store, int]]:
         yield store, number
 
 
-def put_in(store: Store, result: Result, tables: dict[str, Any], **changes: Any) -> int:
+def store_result(store: Store, result: Result, tables: dict[str, Any], **changes: Any) -> int:
     """Put a result into a store as if a worker had found it, and return the number of its job."""
     store.submit(tables, name=result.name)
     claim = store.claim("test")

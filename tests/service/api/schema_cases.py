@@ -57,9 +57,9 @@ def run(place: Path, each: int, phases: str = ALL, seed: int = 1) -> Outcome:
     """
     report = place / "report.ndjson"
     with Store(place / "store.db", most_queued=1_000_000) as store:
-        found = _solved(store)
+        found = _example_result(store)
         settings = Settings(token=TOKEN, submissions_per_minute=0, limits=Limits(seconds=60.0))
-        with serving(create_app(store, settings)) as address, _lively(store, found):
+        with serving(create_app(store, settings)) as address, _end_jobs_meanwhile(store, found):
             command = [
                 *(sys.executable, "-m", "schemathesis.cli", "run", f"{address}/api/v1/openapi.json"),
                 *("--header", f"Authorization: Bearer {TOKEN}", "--checks", "all", "--exclude-checks", _UNCHECKED),
@@ -85,7 +85,7 @@ def run(place: Path, each: int, phases: str = ALL, seed: int = 1) -> Outcome:
     return Outcome(done.returncode, statuses.total(), statuses, time.monotonic() - start, done.stdout + done.stderr)
 
 
-def _solved(store: Store) -> Result:
+def _example_result(store: Store) -> Result:
     submit(store, EXAMPLE)
     work(store, drain=True)
     found = store.result(1)
@@ -98,7 +98,7 @@ def _solved(store: Store) -> Result:
 
 
 @contextlib.contextmanager
-def _lively(store: Store, found: Result) -> Iterator[None]:
+def _end_jobs_meanwhile(store: Store, found: Result) -> Iterator[None]:
     """While entered, end some of the jobs that come, each in its own way, and leave some as they are."""
     end, chance = threading.Event(), random.Random(1)
 

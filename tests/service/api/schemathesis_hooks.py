@@ -11,7 +11,7 @@ from slidercrank.service.api.job_requests import EXAMPLE
 
 
 @schemathesis.serializer("application/toml")
-def as_it_is(_context: schemathesis.SerializationContext, value: Any) -> bytes:
+def send_job_file_as_text(_context: schemathesis.SerializationContext, value: Any) -> bytes:
     """Send a job file as its text."""
     return value if isinstance(value, bytes) else str(value).encode(errors="replace")
 

@@ -47,7 +47,7 @@ def client_of(store: Store, **settings: Any) -> Iterator[httpx.Client]:
         yield client
 
 
-def refused(response: httpx.Response, status: int) -> str:
+def refusal_sentence(response: httpx.Response, status: int) -> str:
     """Return the sentence of a refusal, which is a whole problem document."""
     assert response.status_code == status, response.text
     assert response.headers["content-type"] == "application/problem+json"

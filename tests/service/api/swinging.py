@@ -10,7 +10,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import put_in
+from tests.service.api.fixed_front import store_result
 
 _FEW = {"method": "sobol", "evaluations": 200, "designs": 3, "seed": 1}
 ENGINE: dict[str, Any] = {
@@ -37,4 +37,4 @@ def support(**motion: Any) -> dict[str, Any]:
 def solved_at_once(store: Store, job: dict[str, Any]) -> int:
     """Solve a job with few designs and return its number in the store."""
     job = {**job, "optimiser": _FEW}
-    return put_in(store, result_of(solve(parse_job(job)), job["name"]), job)
+    return store_result(store, result_of(solve(parse_job(job)), job["name"]), job)

@@ -14,7 +14,7 @@ import pytest
 from slidercrank.service.store import Store
 from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in
+from tests.service.api.fixed_front import API, Solved, client_of, store_result
 
 ENDS = {
     ("variables.crank", "lower"): ("crank_mm", 20.0),
@@ -71,7 +71,7 @@ def test_designs_put_on_limits_at_random_are_found_there(client: httpx.Client, s
     for row in rows:
         for key, end in chance.sample(list(ENDS.values()), 3):
             row[key] = end + chance.choice((0.0, 0.0, 1e-3))
-    number = put_in(store, replace(solved.result, exact=None), tomllib.loads(fronts.JOB), designs=rows)
+    number = store_result(store, replace(solved.result, exact=None), tomllib.loads(fronts.JOB), designs=rows)
     assert found_in(client, number) == counted(rows)
 
 

@@ -35,7 +35,7 @@ def client(store: Store, solved: Solved) -> Iterator[httpx.Client]:
         yield opened
 
 
-def kept(client: httpx.Client, solved: Solved, **body: Any) -> dict[str, Any]:
+def bookmarked(client: httpx.Client, solved: Solved, **body: Any) -> dict[str, Any]:
     answer = client.post(f"{solved.path}/kept", json=body)
     assert answer.status_code == 201, answer.text
     found: dict[str, Any] = answer.json()
@@ -45,7 +45,7 @@ def kept(client: httpx.Client, solved: Solved, **body: Any) -> dict[str, Any]:
 def test_a_kept_what_if_has_the_numbers_of_the_what_if(client: httpx.Client, solved: Solved) -> None:
     row = solved.result.designs[2]
     lengths: dict[str, Any] = {key: row[key] for key in LENGTHS} | {"rod_mm": 650.0}
-    one = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", note="=1+1", star=True)
+    one = bookmarked(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", note="=1+1", star=True)
     expected = client.post(f"{solved.path}/designs/3/what-if", json={**lengths, "angles": 0}).json()
     assert (one["cells"], one["outside"], one["broken"]) == (expected["design"], ["rod_mm"], expected["broken"])
     assert (one["name"], one["note"], one["star"], one["design"], one["changed"]) == ("Long", "=1+1", True, 3, True)
@@ -53,33 +53,35 @@ def test_a_kept_what_if_has_the_numbers_of_the_what_if(client: httpx.Client, sol
 
 
 def test_a_design_of_the_front_and_one_of_dimensions_alone_are_kept(client: httpx.Client, solved: Solved) -> None:
-    first = kept(client, solved, design=2)
+    first = bookmarked(client, solved, design=2)
     assert (first["name"], first["changed"], first["broken"], first["outside"]) == ("Kept 1", False, [], [])
     dimensions = {key: first["cells"][key] for key in LENGTHS} | {"rod_mm": 650.0}
-    second = kept(client, solved, dimensions=dimensions)
+    second = bookmarked(client, solved, dimensions=dimensions)
     assert (second["design"], second["changed"], second["numbers"]) == (None, True, None)
-    third = kept(client, solved, design=2, dimensions={"rod_mm": 640.0})
+    third = bookmarked(client, solved, design=2, dimensions={"rod_mm": 640.0})
     assert {key: second["cells"][key] for key in LENGTHS} == pytest.approx(dimensions, rel=1e-12)
     assert third["numbers"] == pytest.approx(dimensions | {"rod_mm": 640.0}, rel=1e-12)
 
 
 def test_a_design_that_is_kept_twice_has_one_bookmark(client: httpx.Client, solved: Solved) -> None:
-    first = kept(client, solved, design=2, name="Stock", note="rod from stock", star=True)
+    first = bookmarked(client, solved, design=2, name="Stock", note="rod from stock", star=True)
     dimensions = {key: first["cells"][key] for key in LENGTHS}  # the design again, as a table gives it
-    again = kept(client, solved, dimensions=dimensions, decided=True, reason="least torque")
+    again = bookmarked(client, solved, dimensions=dimensions, decided=True, reason="least torque")
     expected = first | {"decided": True, "reason": "least torque", "decision": "Decided: Stock (least torque)"}
     assert again == expected
-    other = kept(client, solved, design=3, name="Longer", decided=True)
+    other = bookmarked(client, solved, design=3, name="Longer", decided=True)
     assert client.get(f"{solved.path}/kept").json()["designs"] == [first | {"reason": "least torque"}, other]
 
 
 def test_a_decision_names_the_requirements_that_the_design_misses(client: httpx.Client, solved: Solved) -> None:
-    met = kept(client, solved, design=2, name="Met", decided=True)
+    met = bookmarked(client, solved, design=2, name="Met", decided=True)
     assert met["decision"] == "Decided: Met"
-    missed = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", decided=True, reason="stock")
+    missed = bookmarked(
+        client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Long", decided=True, reason="stock"
+    )
     assert missed["broken"] == ["stroke_mm"]
     assert missed["decision"] == "Decided: Long (stock); misses stroke; outside the job: rod"
-    undecided = kept(client, solved, design=4, dimensions={"rod_mm": 650.0})
+    undecided = bookmarked(client, solved, design=4, dimensions={"rod_mm": 650.0})
     assert undecided["decision"] == ""
 
 
@@ -89,7 +91,7 @@ def test_the_name_of_a_kept_design_is_in_its_files_its_answers_and_the_list(
     path = f"{solved.path}/designs/3"
     assert client.get(f"{path}/requirements").json()["name"] == "design 3"
     before = client.get(f"{path}/linkage.svg")
-    one = kept(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Größe A", decided=True)
+    one = bookmarked(client, solved, design=3, dimensions={"rod_mm": 650.0}, name="Größe A", decided=True)
     query = {"angles": 0, **one["numbers"]}
     assert client.post(f"{path}/what-if", json=query).json()["name"] == "Größe A"
     assert client.post(f"{path}/what-if", json=query | {"rod_mm": 640.0}).json()["name"] == "design 3, changed"
@@ -126,8 +128,8 @@ def test_at_most_one_is_decided_for_and_the_table_says_why(store: Store, client:
 
 
 def test_notes_and_decisions_of_several_people_stay_in_the_history(client: httpx.Client, solved: Solved) -> None:
-    first = kept(client, solved, design=1, name="Short", note="fits", author="Anna", decided=True, reason="stiff")
-    second = kept(client, solved, design=2, name="Long")
+    first = bookmarked(client, solved, design=1, name="Short", note="fits", author="Anna", decided=True, reason="stiff")
+    second = bookmarked(client, solved, design=2, name="Long")
     path = f"{solved.path}/kept"
     client.patch(f"{path}/{first['number']}", json={"note": "too heavy", "author": "Ben"})
     client.patch(f"{path}/{first['number']}", json={"note": "too heavy", "decided": True})  # as it was: no entry
@@ -183,6 +185,6 @@ def test_a_kept_design_that_is_gone_is_not_found(client: httpx.Client, solved: S
         client.get("/api/v1/jobs/99/kept"),
     ):
         assert answer.status_code == 404, answer.text
-    kept(client, solved, design=1)
+    bookmarked(client, solved, design=1)
     assert client.patch(f"{solved.path}/kept/1", json={"name": ""}).status_code == 422
     assert client.patch(f"{solved.path}/kept/1", json={"colour": "red"}).status_code == 422

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in
+from tests.service.api.fixed_front import API, Solved, client_of, store_result
 
 
 def test_a_proof_is_that_of_the_command_line(solved: Solved) -> None:
@@ -40,9 +40,9 @@ def test_a_run_without_designs_is_proven_infeasible_and_one_that_cannot_be_bound
     tables = tomllib.loads(fronts.JOB)
     contrary = {**tables, "constraints": {**tables["constraints"], "transmission_angle": {"min": "80 deg"}}}
     empty: dict[str, Any] = {"status": "infeasible", "designs": [], "extremes": {}, "knee": None, "trade_offs": []}
-    none = put_in(store, solved.result, contrary, **empty)
+    none = store_result(store, solved.result, contrary, **empty)
     average = {**tables, "objectives": {**tables["objectives"], "rms_torque": "minimise"}}
-    unbounded = put_in(store, solved.result, average)
+    unbounded = store_result(store, solved.result, average)
     with client_of(store) as client:
         answer = client.get(f"{API}/jobs/{none}/certificate").json()
         assert answer["proven"] is True

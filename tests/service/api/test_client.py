@@ -237,7 +237,7 @@ def test_patience_ends(losing: Callable[[int], Client], store: Store) -> None:
     assert 1.0 < time.monotonic() - started < 20.0
 
 
-def follow(client: Client, number: int, after: int = 0) -> tuple[threading.Thread, list[int]]:
+def follow_events_in_thread(client: Client, number: int, after: int = 0) -> tuple[threading.Thread, list[int]]:
     """Begin to follow the events of a job in a thread."""
     seen: list[int] = []
 
@@ -264,7 +264,7 @@ def test_events_of_a_resumed_job_end_with_its_last_end(client: Client, store: St
     number = client.submit(TABLES)["id"]
     client.cancel(number)
     client.resume(number)
-    thread, seen = follow(client, number)
+    thread, seen = follow_events_in_thread(client, number)
     last = rounds(store, 3)
     thread.join(30.0)
     assert seen == list(range(1, last + 1))
@@ -272,7 +272,7 @@ def test_events_of_a_resumed_job_end_with_its_last_end(client: Client, store: St
 
 def test_events_end_with_the_job(client: Client, store: Store) -> None:
     number = client.submit(TABLES)["id"]
-    thread, seen = follow(client, number)
+    thread, seen = follow_events_in_thread(client, number)
     last = rounds(store, 5)
     thread.join(30.0)
     assert seen == list(range(1, last + 1))
@@ -293,7 +293,7 @@ def test_events_go_on_where_a_connection_broke(client: Client, store: Store, mon
 
     monkeypatch.setattr(Connection, "stream", stream)
     number = client.submit(TABLES)["id"]
-    thread, seen = follow(client, number)
+    thread, seen = follow_events_in_thread(client, number)
     last = rounds(store, 10)
     thread.join(30.0)
     assert seen == list(range(1, last + 1))
@@ -335,7 +335,7 @@ def test_events_outlast_a_restart_of_the_service(store: Store) -> None:
         port = int(address.rpartition(":")[2])
         client = Client(address)
         number = client.submit(TABLES)["id"]
-        thread, seen = follow(client, number)
+        thread, seen = follow_events_in_thread(client, number)
         claim = store.claim("worker")
         assert claim is not None
         while len(seen) < 2:
@@ -355,7 +355,7 @@ def test_patience_begins_anew_with_every_sign_of_life(store: Store, monkeypatch:
         client = Client(address, patience=20.0)
         number = client.submit(TABLES)["id"]
         client._connection.patience = 0.6
-        thread, seen = follow(client, number)
+        thread, seen = follow_events_in_thread(client, number)
         time.sleep(1.2)  # longer than the patience, and no event
         client._connection.patience = 20.0
         time.sleep(0.5)  # a sign of life, and with it that patience

@@ -11,8 +11,8 @@ import pytest
 
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, client_of, put_in
-from tests.service.api.serving import refused
+from tests.service.api.fixed_front import Solved, client_of, store_result
+from tests.service.api.serving import refusal_sentence
 from tests.service.store.contents import add, result
 
 
@@ -39,11 +39,11 @@ def test_some_columns_are_asked_for_by_quantity_or_key(solved: Solved, client: h
     found = client.get(f"{solved.path}/columns", params={"columns": "rod, peak_torque_Nm,rod"}).json()
     assert list(found["values"]) == ["rod_mm", "peak_torque_Nm"]
     assert [column["unit"] for column in found["columns"]] == ["mm", "N m"]
-    assert "there is no quantity or column 'x'" in refused(client.get(f"{solved.path}/columns?columns=x"), 422)
+    assert "there is no quantity or column 'x'" in refusal_sentence(client.get(f"{solved.path}/columns?columns=x"), 422)
 
 
 def test_infinity_is_a_word_and_what_is_not_defined_null(store: Store) -> None:
-    put_in(store, result(), tomllib.loads(fronts.JOB))
+    store_result(store, result(), tomllib.loads(fronts.JOB))
     with client_of(store) as client:
         found = client.get("/api/v1/jobs/1/columns").json()
     assert found["values"]["motion_error_mm"] == ["inf", None]
@@ -53,7 +53,7 @@ def test_infinity_is_a_word_and_what_is_not_defined_null(store: Store) -> None:
 def test_large_answers_are_compressed_where_that_is_accepted(store: Store, solved: Solved) -> None:
     rows = solved.result.designs * 50
     assert math.isfinite(float(rows[0]["rod_mm"] or 0.0))
-    put_in(store, solved.result, tomllib.loads(fronts.JOB), designs=rows)
+    store_result(store, solved.result, tomllib.loads(fronts.JOB), designs=rows)
     with client_of(store) as client:
         plain = client.get("/api/v1/jobs/1/columns", headers={"Accept-Encoding": "identity"})
         packed = client.get("/api/v1/jobs/1/columns", headers={"Accept-Encoding": "gzip, br"})
@@ -75,5 +75,5 @@ def test_what_a_client_has_is_not_sent_again(solved: Solved, client: httpx.Clien
 def test_a_job_without_a_result_has_no_columns(store: Store) -> None:
     add(store)
     with client_of(store) as client:
-        assert "has no result" in refused(client.get("/api/v1/jobs/1/columns"), 409)
-        assert "no job 9" in refused(client.get("/api/v1/jobs/9/columns"), 404)
+        assert "has no result" in refusal_sentence(client.get("/api/v1/jobs/1/columns"), 409)
+        assert "no job 9" in refusal_sentence(client.get("/api/v1/jobs/9/columns"), 404)

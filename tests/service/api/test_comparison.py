@@ -21,7 +21,7 @@ from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.questions.compare.analysis import differences_between_jobs
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in
+from tests.service.api.fixed_front import API, Solved, client_of, store_result
 
 TABLES = tomllib.loads(fronts.JOB)
 KEYS = ("time_ratio", "least_transmission_angle_deg")
@@ -40,7 +40,7 @@ def client(store: Store) -> Iterator[httpx.Client]:
         yield opened
 
 
-def moved(solved: Solved, chance: random.Random) -> list[dict[str, Any]]:
+def with_random_objectives(solved: Solved, chance: random.Random) -> list[dict[str, Any]]:
     """Return the designs with other values of the objectives, drawn at random."""
     return [{**row, KEYS[0]: chance.uniform(1, 2), KEYS[1]: chance.uniform(30, 60)} for row in solved.result.designs]
 
@@ -65,8 +65,8 @@ def test_sentences_count_the_designs_that_the_other_run_does_not_match(
 ) -> None:
     chance = random.Random(5)
     for _ in range(4):
-        rows = [moved(solved, chance) for _ in range(2)]
-        numbers = [put_in(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
+        rows = [with_random_objectives(solved, chance) for _ in range(2)]
+        numbers = [store_result(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
         sentences = client.get(f"{API}/comparison", params={"job": numbers}).json()["sentences"]
         for index in (0, 1):
             own, other, first, second = rows[index], rows[1 - index], numbers[index], numbers[1 - index]
@@ -97,7 +97,7 @@ def test_a_comparison_of_different_jobs_begins_by_saying_so(client: httpx.Client
     other["constraints"]["rod / (2.5 * crank)"] = {"min": 1}
     other["load"] = [{"force": "200 N", "opposes": "motion"}]
     other["optimiser"] = {"seed": 9}
-    numbers = [put_in(store, solved.result, TABLES), put_in(store, solved.result, other)]
+    numbers = [store_result(store, solved.result, TABLES), store_result(store, solved.result, other)]
     found = client.get(f"{API}/comparison", params={"job": numbers}).json()
     first, *rest = found["sentences"]
     subject, _, names = first.partition(": ")
@@ -115,7 +115,8 @@ def test_fronts_of_nested_ranges_are_said_to_be_samples(client: httpx.Client, st
     chance = random.Random(8)
     result = replace(solved.result, exact=None)
     own, *others = [
-        put_in(store, result, tables, designs=moved(solved, chance)) for tables in (TABLES, wider, TABLES, faster)
+        store_result(store, result, tables, designs=with_random_objectives(solved, chance))
+        for tables in (TABLES, wider, TABLES, faster)
     ]
     wide = f"The ranges of run {others[0]} contain those of run {own}, so its true front is nowhere worse: "
     same = "have the same ranges, so their true fronts are the same: "
@@ -129,8 +130,8 @@ def test_fronts_of_nested_ranges_are_said_to_be_samples(client: httpx.Client, st
 
 def test_the_best_of_each_objective_is_said_with_who_has_it(client: httpx.Client, store: Store, solved: Solved) -> None:
     better = [{**row, KEYS[0]: float(str(row[KEYS[0]])) + 1.0} for row in solved.result.designs]
-    first = put_in(store, solved.result, TABLES)
-    second = put_in(store, replace(solved.result, exact=None), TABLES, designs=better)
+    first = store_result(store, solved.result, TABLES)
+    second = store_result(store, replace(solved.result, exact=None), TABLES, designs=better)
     found = client.get(f"{API}/comparison", params={"job": [first, second]}).json()
     most = max(float(str(row[KEYS[0]])) for row in solved.result.designs)
     assert f"best time ratio: run {second} with {most + 1:.4g}, against {most:.4g} of run {first}" in found["sentences"]
@@ -142,8 +143,8 @@ def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
     store: Store, client: httpx.Client, solved: Solved
 ) -> None:
     chance = random.Random(6)
-    rows = [moved(solved, chance) for _ in range(2)]
-    numbers = [put_in(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
+    rows = [with_random_objectives(solved, chance) for _ in range(2)]
+    numbers = [store_result(store, replace(solved.result, exact=None), TABLES, designs=own) for own in rows]
     values = [np.array([[-float(str(row[key])) for key in KEYS] for row in own]) for own in rows]
     with Client(str(client.base_url).removesuffix("/api/v1")) as service:
         found = service.comparison(numbers, tolerance=0.01)
@@ -154,7 +155,7 @@ def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
         assert np.array(found["epsilon"]) == pytest.approx(expected.epsilon)
         assert found["dominates"] == expected.dominates.tolist()
         fewer = replace(solved.result, exact=None, objectives=solved.result.objectives[:1])
-        measures = service.comparison([numbers[0], put_in(store, fewer, TABLES)])
+        measures = service.comparison([numbers[0], store_result(store, fewer, TABLES)])
         assert measures.keys() == {"sentences", "differences"}
         assert measures["sentences"][0].startswith("best time ratio: ")
         with pytest.raises(InputError, match="compare may only be given tolerance; got of"):
@@ -166,8 +167,8 @@ def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
 def test_runs_without_designs_have_no_sentences_and_one_run_twice_is_refused(
     client: httpx.Client, store: Store, solved: Solved
 ) -> None:
-    first = put_in(store, solved.result, TABLES)
-    empty = put_in(store, replace(solved.result, designs=[], exact=None, extremes={}, knee=None), TABLES)
+    first = store_result(store, solved.result, TABLES)
+    empty = store_result(store, replace(solved.result, designs=[], exact=None, extremes={}, knee=None), TABLES)
     assert client.get(f"{API}/comparison", params={"job": [first, empty]}).json()["sentences"] == []
     for jobs, sentence in (
         ([first, first], "a run may be named only once"),

@@ -25,11 +25,11 @@ from slidercrank.service.api.computing import Computing
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.api.settings import Settings
 from slidercrank.service.store import Job, Store
-from tests.faults.serving import Serving, alive, says
+from tests.faults.serving import Serving, alive, runs_command_with_word
 from tests.service import fronts as made
-from tests.service.api.demanding import MOST, client_of, demanding, noted
-from tests.service.api.fixed_front import Solved, put_in
-from tests.service.api.serving import refused, serving
+from tests.service.api.demanding import MOST, client_of, demanding, noting_application
+from tests.service.api.fixed_front import Solved, store_result
+from tests.service.api.serving import refusal_sentence, serving
 
 pytestmark = pytest.mark.skipif(not hasattr(psutil.Process, "rlimit"), reason="limits are those of Linux")
 
@@ -62,7 +62,7 @@ def test_a_request_beyond_a_limit_gets_one_sentence_and_the_next_one_its_answer(
     asked: str, lacking: str, client: httpx.Client
 ) -> None:
     before = _process(client)
-    assert refused(client.get(f"/long/{asked}"), 422) == (
+    assert refusal_sentence(client.get(f"/long/{asked}"), 422) == (
         f"an answer may use at most 400 MB of memory and 0.5 s of processor time; this one needs more {lacking}; "
         "ask for less, or use a command such as slidercrank analyse, which has no limits"
     )
@@ -72,7 +72,7 @@ def test_a_request_beyond_a_limit_gets_one_sentence_and_the_next_one_its_answer(
 
 def test_a_process_that_is_killed_fails_its_own_request_alone(client: httpx.Client) -> None:
     answer = client.get("/long/killed")
-    assert "must not end early; it did (killed by SIGKILL); try again" in refused(answer, 503)
+    assert "must not end early; it did (killed by SIGKILL); try again" in refusal_sentence(answer, 503)
     assert answer.headers["retry-after"] == "5"
     resting = _process(client)
     resting.kill()
@@ -94,7 +94,7 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
         assert client.get("/quick/process").text not in processes
         monkeypatch.setattr(throttle, "_PATIENCE", 0.05)
         answer = client.get("/long/process")
-        assert "at most 2 long analyses can be made at a time; all were busy for 0.05 s; try again" in refused(
+        assert "at most 2 long analyses can be made at a time; all were busy for 0.05 s; try again" in refusal_sentence(
             answer, 503
         )
         assert answer.headers["retry-after"] == "5"
@@ -103,7 +103,7 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
 def test_opening_the_page_starts_one_process_ahead(store: Store, tmp_path: Path) -> None:
     started = tmp_path / "started"
     started.mkdir()
-    computing = Computing(partial(noted, started), limits=MOST, modules=[demanding.__module__])
+    computing = Computing(partial(noting_application, started), limits=MOST, modules=[demanding.__module__])
     with (
         contextlib.closing(computing),
         serving(create_app(store, computing=computing)) as address,
@@ -136,7 +136,7 @@ def test_an_analysis_has_no_more_time_than_its_limit(store: Store, tmp_path: Pat
     ):
         assert client.post("/analyse", json=design).status_code == 200
         long = client.post("/analyse", json=design | {"show": ["flywheel"]})
-        assert "1.5 s of processor time; this one needs more processor time" in refused(long, 422)
+        assert "1.5 s of processor time; this one needs more processor time" in refusal_sentence(long, 422)
         assert client.post("/analyse", json=design).status_code == 200
         assert client.get("/jobs").status_code == 200
 
@@ -146,7 +146,9 @@ def test_a_service_that_is_killed_leaves_no_process_that_computes(tmp_path: Path
     with Serving(f"sqlite:///{tmp_path}/store.db") as serving:
         serving.until_ready()
         serving.ask("/check", {"job": EXAMPLE})
-        computing = [process for process in serving.look_at_processes() if says(process, "forkserver")]
+        computing = [
+            process for process in serving.look_at_processes() if runs_command_with_word(process, "forkserver")
+        ]
         serving.stop_watching()
         serving.process.kill()
         assert len(computing) > 1
@@ -158,7 +160,9 @@ def test_a_service_that_ends_leaves_no_fork_server_for_any_time(tmp_path: Path) 
     with Serving(f"sqlite:///{tmp_path}/store.db") as serving:
         serving.until_ready()
         serving.ask("/check", {"job": EXAMPLE})
-        computing = [process for process in serving.look_at_processes() if says(process, "forkserver")]
+        computing = [
+            process for process in serving.look_at_processes() if runs_command_with_word(process, "forkserver")
+        ]
         assert len(computing) > 1
         serving.stop_watching()
         serving.process.terminate()
@@ -188,7 +192,7 @@ def test_every_endpoint_that_computes_has_a_process_for_it(
     def computed(*_: Any, **__: Any) -> None:
         raise AssertionError("computed in the process that takes requests")
 
-    number = put_in(store, solved.result, tomllib.loads(made.JOB))
+    number = store_result(store, solved.result, tomllib.loads(made.JOB))
     elsewhere: Any = _Elsewhere()
     monkeypatch.setattr(Kernel, "__call__", computed)
     monkeypatch.setattr("slidercrank.optimise.job.parse_job", computed)

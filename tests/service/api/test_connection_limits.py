@@ -14,7 +14,7 @@ import pytest
 from slidercrank.service.api import connection_limits
 from slidercrank.service.api.connection_limits import MOST_HEAD
 from slidercrank.service.store import Store
-from tests.service.api.connected import LIVE, answer, connected, sent, status_of
+from tests.service.api.connected import LIVE, answer, connected, send_parts, status_of
 from tests.service.api.serving import TOKEN, client_of
 from tests.service.store.contents import add
 
@@ -29,7 +29,7 @@ def open_service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Cli
 def test_an_endless_address_is_refused_before_it_ends(open_service: httpx.Client, size: int) -> None:
     begin = time.process_time()
     with connected(open_service) as there:
-        status, document = sent(there, b"GET /", b"a" * size, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        status, document = send_parts(there, b"GET /", b"a" * size, b" HTTP/1.1\r\nHost: localhost\r\n\r\n")
     assert status == document["status"] == 431
     assert "at most 65536 bytes" in str(document["detail"])
     assert time.process_time() - begin < 1.0  # 3.4 s for 40 MB where it was read to its end
@@ -46,7 +46,7 @@ def test_an_endless_address_is_refused_before_it_ends(open_service: httpx.Client
 )
 def test_endless_headers_are_refused(open_service: httpx.Client, headers: bytes) -> None:
     with connected(open_service) as there:
-        status, document = sent(there, LIVE, headers, b"\r\n\r\n")
+        status, document = send_parts(there, LIVE, headers, b"\r\n\r\n")
     assert status == document["status"] == 431
 
 
@@ -73,7 +73,7 @@ def test_what_comes_with_chunks_has_its_limits_too(open_service: httpx.Client, r
         assert open_service.get("/health/live").status_code == 200
         assert memory() - before < 300e6
     with connected(open_service) as there:
-        assert sent(there, asked[:-2] + token + b"\r\n", rest)[0] == 431
+        assert send_parts(there, asked[:-2] + token + b"\r\n", rest)[0] == 431
 
 
 def memory() -> int:
@@ -88,7 +88,7 @@ def test_what_is_not_http_gets_a_problem_document(open_service: httpx.Client) ->
         b"GET / HTTP/1.x\r\n\r\n",
     ):
         with connected(open_service) as there:
-            assert sent(there, noise)[0] == 400
+            assert send_parts(there, noise)[0] == 400
 
 
 def test_a_body_after_a_pipelined_request_is_no_head(open_service: httpx.Client) -> None:

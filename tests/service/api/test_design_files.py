@@ -21,8 +21,8 @@ from slidercrank.service.designs.display_units import convert_row
 from slidercrank.service.runs.result import rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in
-from tests.service.api.serving import refused
+from tests.service.api.fixed_front import API, Solved, client_of, store_result
+from tests.service.api.serving import refusal_sentence
 
 TABLES = tomllib.loads(fronts.JOB)
 KINDS = {
@@ -73,7 +73,7 @@ def test_the_dxf_is_the_design_of_the_table(solved: Solved, client: httpx.Client
     assert path.dxf.start.y == pytest.approx(design["offset_mm"], rel=1e-12)
 
 
-def kept(page: str, design: Mapping[str, Any]) -> list[str]:
+def columns_of_machine(page: str, design: Mapping[str, Any]) -> list[str]:
     """Return the columns of a design but for those that its report says its machine does not have."""
     (told,) = re.findall(r"Not defined for this machine: ([^<]*)\.</p>", page)
     found = [key for key in design if f", {find_column(key, list(design)).title}, " not in f", {told}, "]
@@ -91,7 +91,7 @@ def test_the_report_has_the_numbers_of_the_api_and_of_the_csv(solved: Solved, cl
     table = rows_from_csv(client.get(f"{solved.path}/export.csv").text)[2]
     assert table.pop("number") == 3
     assert list(design) == list(table)
-    assert list(stored) == kept(page, design)
+    assert list(stored) == columns_of_machine(page, design)
     for key, value in design.items():
         if value is None:  # not defined, as a position error without tolerances
             assert (key in stored, str(table[key])) == (False, "nan"), key
@@ -110,13 +110,13 @@ def test_a_report_is_in_the_units_that_are_asked_for(solved: Solved, client: htt
     stored = {key: text for text, key in cells}
     design = convert_row(client.get(f"{solved.path}/designs/3").json()["design"], "inch")
     assert "crank_in" in stored
-    assert list(stored) == kept(page, design)
+    assert list(stored) == columns_of_machine(page, design)
     for key, text in stored.items():
         value = design[key]
         if isinstance(value, float):
             assert float(text) == pytest.approx(value, rel=1e-12), key
     assert "mm" not in re.sub(r"<[^>]*>", " ", page.partition("Summary")[2].partition("</section>")[0]).split()
-    refused(client.get(f"{solved.path}/designs/3/report.html", params={"units": "feet"}), 422)
+    refusal_sentence(client.get(f"{solved.path}/designs/3/report.html", params={"units": "feet"}), 422)
 
 
 def test_drawings_and_motion_are_in_the_units_that_are_asked_for(solved: Solved, client: httpx.Client) -> None:
@@ -150,19 +150,19 @@ def test_a_report_is_kept_and_drawn_once(solved: Solved, client: httpx.Client, m
 def test_designs_that_are_not_there_are_refused(
     name: str, design: str, status: int, solved: Solved, client: httpx.Client
 ) -> None:
-    refused(client.get(f"{solved.path}/designs/{design}/{name}"), status)
+    refusal_sentence(client.get(f"{solved.path}/designs/{design}/{name}"), status)
 
 
 @pytest.mark.parametrize("angle", ["nan", "inf", "361", "-361", "x", ""])
 def test_crank_angles_that_are_none_are_refused(angle: str, solved: Solved, client: httpx.Client) -> None:
-    refused(client.get(f"{solved.path}/designs/1/linkage.svg", params={"crank_angle_deg": angle}), 422)
+    refusal_sentence(client.get(f"{solved.path}/designs/1/linkage.svg", params={"crank_angle_deg": angle}), 422)
 
 
 def test_a_service_without_figures_draws_for_cad_all_the_same(solved: Solved) -> None:
     with client_of(solved.store, Settings(figures=False)) as client:
         assert client.get(f"{solved.path}/designs/1/linkage.dxf").status_code == 200
         for name in ("motion.gif", "report.html", "report.pdf"):
-            assert "cannot draw figures" in refused(client.get(f"{solved.path}/designs/1/{name}"), 404)
+            assert "cannot draw figures" in refusal_sentence(client.get(f"{solved.path}/designs/1/{name}"), 404)
 
 
 def changed(solved: Solved) -> dict[str, float]:
@@ -214,7 +214,7 @@ def test_files_of_changed_lengths_have_their_numbers(
     page = files_of_changed["designs/3/report.html"].text
     cells = re.findall(r'<td class="right">([^<]*)</td><td>([a-zA-Z0-9_]+)</td></tr>', page)
     stored = {key: text for text, key in cells}
-    assert list(stored) == kept(page, design)
+    assert list(stored) == columns_of_machine(page, design)
     for key, text in stored.items():
         assert (float(text) == design[key]) if isinstance(design[key], float) else text == "", key
     assert "Not all requirements are met" in page
@@ -250,17 +250,17 @@ def test_the_lengths_of_the_design_itself_change_nothing(solved: Solved, client:
 def test_lengths_that_make_no_design_are_refused(
     name: str, query: dict[str, object], said: str, solved: Solved, client: httpx.Client
 ) -> None:
-    assert said in refused(client.get(f"{solved.path}/{name}", params=query), 422)  # type: ignore[arg-type]
+    assert said in refusal_sentence(client.get(f"{solved.path}/{name}", params=query), 422)  # type: ignore[arg-type]
 
 
 def test_other_lengths_are_those_of_one_design(solved: Solved, client: httpx.Client) -> None:
     answer = client.get(f"{solved.path}/figures/parallel_coordinates.png", params=changed(solved))
-    assert "other lengths and values only apply to a single design" in refused(answer, 422)
+    assert "other lengths and values only apply to a single design" in refusal_sentence(answer, 422)
 
 
 def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> None:
     name = r'$\frac{ <script>&amp; "50" ${data} $title é'
-    job = put_in(store, replace(solved.result, name=name), {**TABLES, "name": name})
+    job = store_result(store, replace(solved.result, name=name), {**TABLES, "name": name})
     with client_of(store) as client:
         for kind in ("linkage.dxf", "linkage.svg", "motion.html", "report.html"):
             answer = client.get(f"{API}/jobs/{job}/designs/1/{kind}")
@@ -271,4 +271,4 @@ def test_any_name_of_a_job_can_be_taken_away(solved: Solved, store: Store) -> No
 def test_a_job_without_a_result_has_no_designs_to_take_away(store: Store) -> None:
     store.submit(TABLES, name="x")
     with client_of(store) as client:
-        refused(client.get(f"{API}/jobs/1/designs/1/linkage.dxf"), 409)
+        refusal_sentence(client.get(f"{API}/jobs/1/designs/1/linkage.dxf"), 409)

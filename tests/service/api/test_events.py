@@ -17,8 +17,8 @@ from slidercrank.model.errors import StoreError
 from slidercrank.service.api import events
 from slidercrank.service.store import Claim, Store
 from tests.service.api.conftest import Serve
-from tests.service.api.serving import refused
-from tests.service.store.contents import add, progress, result, taken
+from tests.service.api.serving import refusal_sentence
+from tests.service.store.contents import add, claim_waiting_job, progress, result
 
 STREAM = {"Accept": "text/event-stream"}
 
@@ -73,7 +73,7 @@ def test_a_stream_tells_everything_and_ends_with_the_job(client: httpx.Client, s
     job = add(store)
     with streaming(client, job.id) as found:
         assert next(found)["data"] == {"state": "queued", "reason": ""}
-        worker = working(taken(store), 30, 0.01)
+        worker = working(claim_waiting_job(store), 30, 0.01)
         told = list(found)
     worker.join()
     assert numbers(told) == list(range(2, 34))
@@ -84,7 +84,7 @@ def test_a_stream_tells_everything_and_ends_with_the_job(client: httpx.Client, s
 
 def test_a_client_that_comes_back_misses_nothing(client: httpx.Client, store: Store) -> None:
     job = add(store)
-    worker = working(taken(store), 60, 0.01)
+    worker = working(claim_waiting_job(store), 60, 0.01)
     told: list[dict[str, Any]] = []
     while not told or told[-1]["data"].get("state") != "done":
         with streaming(client, job.id, told[-1]["number"] if told else None) as found:
@@ -96,7 +96,7 @@ def test_a_client_that_comes_back_misses_nothing(client: httpx.Client, store: St
 
 def test_an_ended_job_is_told_at_once_and_need_not_be_asked_again(client: httpx.Client, store: Store) -> None:
     job = add(store)
-    taken(store).finish(result())
+    claim_waiting_job(store).finish(result())
     with streaming(client, job.id) as found:
         assert numbers(found) == [1, 2, 3]
     with streaming(client, job.id, 1) as found:
@@ -110,9 +110,9 @@ def test_a_stream_of_a_resumed_job_goes_on_past_its_earlier_ends(client: httpx.C
     job = add(store)
     store.cancel(job.id)
     store.resume(job.id)
-    taken(store).fail("no memory", again=False)
+    claim_waiting_job(store).fail("no memory", again=False)
     store.resume(job.id)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     with streaming(client, job.id) as whole, streaming(client, job.id, 2) as rest:
         assert [next(whole)["number"] for _ in range(7)] == list(range(1, 8))
         claim.report(progress(1))
@@ -128,7 +128,7 @@ def test_more_events_than_are_kept_are_told_too(
     monkeypatch.setattr(events, "_PAGE", 7)
     monkeypatch.setattr(events, "_RECENT", 16)
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     with contextlib.ExitStack() as stack:
         first = stack.enter_context(streaming(client, job.id))
         assert next(first)["number"] == 1
@@ -140,7 +140,7 @@ def test_more_events_than_are_kept_are_told_too(
 
 def test_a_number_that_is_not_there_yet_keeps_no_other_stream_waiting(client: httpx.Client, store: Store) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     with streaming(client, job.id, 10**6) as ahead, streaming(client, job.id) as found:
         working(claim, 5).join()
         assert numbers(found) == list(range(1, 9))
@@ -192,7 +192,7 @@ def test_streams_go_on_after_the_database_was_away(
 
 def test_events_come_as_pages_of_json(client: httpx.Client, store: Store) -> None:
     job = add(store)
-    working(taken(store), 4).join()
+    working(claim_waiting_job(store), 4).join()
     everything = client.get(f"/jobs/{job.id}/events").json()
     assert numbers(everything["events"]) == list(range(1, 8))
     assert everything["last"] == 7
@@ -202,8 +202,8 @@ def test_events_come_as_pages_of_json(client: httpx.Client, store: Store) -> Non
     assert client.get(f"/jobs/{job.id}/events", headers={"Last-Event-ID": "5"}).json()["last"] == 7
     assert client.get(f"/jobs/{job.id}/events", params={"after": 99}).json() == {"events": [], "last": 7}
     for last in ("-1", "x", "9" * 40):
-        refused(client.get(f"/jobs/{job.id}/events", headers={**STREAM, "Last-Event-ID": last}), 422)
-    refused(client.get("/jobs/99/events", headers=STREAM), 404)
+        refusal_sentence(client.get(f"/jobs/{job.id}/events", headers={**STREAM, "Last-Event-ID": last}), 422)
+    refusal_sentence(client.get("/jobs/99/events", headers=STREAM), 404)
 
 
 def test_a_hundred_streams_ask_the_store_no_more_often_than_one(serve: Serve, store: Store) -> None:
@@ -211,7 +211,7 @@ def test_a_hundred_streams_ask_the_store_no_more_often_than_one(serve: Serve, st
     claims: list[Claim] = []
     for _ in range(10):
         add(store)
-        claims.append(taken(store))
+        claims.append(claim_waiting_job(store))
     asked: list[int] = []
     news = store.news
 

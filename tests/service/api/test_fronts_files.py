@@ -28,7 +28,7 @@ from slidercrank.service.designs.selection import numbered_rows
 from slidercrank.service.runs.result import csv_text, json_ready, rows_from_csv
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with, served
+from tests.service.api.fixed_front import API, Solved, client_of, rows_with, served, store_result
 
 TABLES = tomllib.loads(fronts.JOB)
 NAMES = ["scatter_matrix", "parallel_coordinates", "best_time_ratio", "best_transmission_angle", "knee"]
@@ -77,7 +77,7 @@ def test_exports_are_those_of_the_command_line_but_for_formulas(solved: Solved, 
 def test_text_is_never_a_formula_of_a_spreadsheet(start: str, solved: Solved, store: Store) -> None:
     text = f'{start}HYPERLINK("http://x","y")'
     rows = rows_with(solved.result.designs, choice_motor=text, slack_x_mm=-1.5, low_mm=-math.inf)
-    job = put_in(store, solved.result, TABLES, designs=rows)
+    job = store_result(store, solved.result, TABLES, designs=rows)
     with client_of(store) as client:
         back = rows_from_csv(client.get(f"{API}/jobs/{job}/export.csv").text)
     assert {row["choice_motor"] for row in back} == {f"'{text}"}
@@ -87,7 +87,7 @@ def test_text_is_never_a_formula_of_a_spreadsheet(start: str, solved: Solved, st
 
 def test_parquet_keeps_what_is_infinite(solved: Solved, store: Store) -> None:
     rows = rows_with(solved.result.designs, slack_x_mm=math.inf)
-    job = put_in(store, solved.result, TABLES, designs=rows)
+    job = store_result(store, solved.result, TABLES, designs=rows)
     with client_of(store) as client:
         table = pd.read_parquet(io.BytesIO(client.get(f"{API}/jobs/{job}/export.parquet").content))
     assert np.isposinf(table["slack_x_mm"]).all()
@@ -175,7 +175,7 @@ def test_a_service_without_figures_says_so(solved: Solved) -> None:
 
 def test_any_name_of_a_job_can_be_drawn(solved: Solved, store: Store) -> None:
     name = r"$\frac{ <script>&amp; 50 $"
-    job = put_in(store, replace(solved.result, name=name), {**TABLES, "name": name})
+    job = store_result(store, replace(solved.result, name=name), {**TABLES, "name": name})
     with client_of(store) as client:
         drawn = client.get(f"{API}/jobs/{job}/figures/knee.svg")
     assert drawn.status_code == 200
@@ -184,7 +184,7 @@ def test_any_name_of_a_job_can_be_drawn(solved: Solved, store: Store) -> None:
 
 def test_a_job_with_functions_of_its_own_has_numbers_but_no_analysis(solved: Solved, store: Store) -> None:
     own: dict[str, Any] = {**TABLES, "quantity": {"cost": {"function": "prices:cost", "unit": "", "title": "cost"}}}
-    job = put_in(store, solved.result, own)
+    job = store_result(store, solved.result, own)
     with client_of(store) as client:
         assert len(client.get(f"{API}/jobs/{job}/designs").json()["designs"]) == 8
         refused = client.get(f"{API}/jobs/{job}/designs/1/analysis")

@@ -16,7 +16,7 @@ from slidercrank.service.cli import app as command_line
 from slidercrank.service.runs.result import json_ready
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, client_of, put_in, rows_with
+from tests.service.api.fixed_front import API, Solved, client_of, rows_with, store_result
 
 TABLES = tomllib.loads(fronts.JOB)
 
@@ -34,7 +34,7 @@ def command(solved: Solved, *arguments: str) -> Any:
     return json.loads(done.stdout)
 
 
-def refused(solved: Solved, *arguments: str) -> str:
+def command_refusal(solved: Solved, *arguments: str) -> str:
     """Return the sentence with which `slidercrank front` refuses."""
     done = CliRunner().invoke(command_line, ["front", str(solved.folder), "--json", *arguments])
     assert done.exit_code in (2, 3)
@@ -149,7 +149,7 @@ def test_what_is_refused_is_told_in_the_words_of_the_command_line(
 ) -> None:
     answer = client.get(f"{solved.path}/{path}")
     assert (answer.status_code, answer.headers["content-type"]) == (status, "application/problem+json")
-    assert answer.json()["detail"] == refused(solved, *arguments)
+    assert answer.json()["detail"] == command_refusal(solved, *arguments)
 
 
 def test_conditions_that_no_design_meets_are_infeasible_and_wrong_ones_are_not(
@@ -211,7 +211,7 @@ def test_a_job_that_waits_has_no_front_yet(place: str, store: Store, empty: http
 
 def test_a_front_without_designs_says_why(solved: Solved, store: Store, empty: httpx.Client) -> None:
     nothing: dict[str, Any] = {"designs": [], "extremes": {}, "knee": None, "trade_offs": [], "hypervolume": 0.0}
-    job = put_in(store, solved.result, TABLES, **nothing, status="infeasible", message="no design meets all")
+    job = store_result(store, solved.result, TABLES, **nothing, status="infeasible", message="no design meets all")
     client = empty
     path = f"{API}/jobs/{job}"
     found = client.get(f"{path}/front").json()
@@ -227,7 +227,7 @@ def test_a_front_without_designs_says_why(solved: Solved, store: Store, empty: h
 
 def test_infinite_numbers_are_words_and_undefined_ones_null(solved: Solved, store: Store, empty: httpx.Client) -> None:
     rows = rows_with(solved.result.designs, slack_x_mm=math.inf, low_mm=-math.inf, none_mm=math.nan)
-    job = put_in(store, solved.result, TABLES, designs=rows)
+    job = store_result(store, solved.result, TABLES, designs=rows)
     client = empty
     (design,) = client.get(f"{API}/jobs/{job}/designs?limit=1").json()["designs"]
     assert (design["slack_x_mm"], design["low_mm"], design["none_mm"]) == ("inf", "-inf", None)
@@ -239,7 +239,7 @@ def test_infinite_numbers_are_words_and_undefined_ones_null(solved: Solved, stor
 
 
 def test_a_resumed_job_shows_what_it_found_last(solved: Solved, store: Store, empty: httpx.Client) -> None:
-    job = put_in(store, solved.result, TABLES, status="cancelled", message="cancelled")
+    job = store_result(store, solved.result, TABLES, status="cancelled", message="cancelled")
     client = empty
     path = f"{API}/jobs/{job}/designs"
     before = client.get(path).json()
@@ -255,7 +255,7 @@ def test_a_resumed_job_shows_what_it_found_last(solved: Solved, store: Store, em
 def test_fronts_at_hand_are_bounded_by_their_designs(solved: Solved, store: Store) -> None:
     from slidercrank.service.api.stored_fronts import StoredFronts
 
-    jobs = [put_in(store, solved.result, TABLES) for _ in range(4)]
+    jobs = [store_result(store, solved.result, TABLES) for _ in range(4)]
     kept = StoredFronts(store, most_designs=3 * len(solved.result.designs))
     found = [kept.get(job) for job in jobs]
     assert all(kept.get(job) is front for job, front in zip(jobs[1:], found[1:], strict=True))

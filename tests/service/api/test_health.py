@@ -9,7 +9,7 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from slidercrank.service.store import Store
-from tests.service.store.contents import add, taken
+from tests.service.store.contents import add, claim_waiting_job
 
 
 def figures(client: httpx.Client) -> dict[tuple[str, tuple[str, ...]], float]:
@@ -42,11 +42,11 @@ def test_no_worker_a_free_one_and_busy_ones_are_told_apart(client: httpx.Client,
     assert told() == (0, 0, 3, "no worker is running")
     store.register("one")
     assert told() == (1, 0, 3, "")
-    taken(store, "one")
+    claim_waiting_job(store, "one")
     assert told() == (1, 1, 2, "every worker is busy (1)")
     store.register("two")
     assert told() == (2, 1, 2, "")
-    held = taken(store, "two")
+    held = claim_waiting_job(store, "two")
     assert told() == (2, 2, 1, "every worker is busy (2)")
     held.hand_back("stopped")
     assert client.get("/jobs/2").json()["reason"] == "stopped"
@@ -73,7 +73,7 @@ def test_figures_tell_of_jobs_workers_and_requests(client: httpx.Client, store: 
     assert figures(client)["slidercrank_queue_seconds", ()] == 0.0
     for _ in range(3):
         add(store)
-    taken(store)
+    claim_waiting_job(store)
     store.register("one")
     for _ in range(5):
         client.get("/jobs/1")

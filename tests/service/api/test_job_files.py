@@ -18,7 +18,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.objectives.registry import FACTS, QUANTITIES
 from slidercrank.optimise.job import load_job, read_job
 from slidercrank.service.jobs.job_toml import job_toml
-from tests.service.api.serving import refused
+from tests.service.api.serving import refusal_sentence
 
 TOML = {"Content-Type": "application/toml"}
 SHIPPED = ("feeder", "sieve", "support", "compressor", "press", "servo_press", "tipper")
@@ -107,7 +107,7 @@ def test_what_toml_has_no_word_for_is_refused(value: object) -> None:
 
 
 def test_a_file_that_is_no_toml_is_said_with_its_line(shared: httpx.Client) -> None:
-    sentence = refused(shared.post("/parse", content=b"name = \n", headers=TOML), 422)
+    sentence = refusal_sentence(shared.post("/parse", content=b"name = \n", headers=TOML), 422)
     assert sentence.startswith(
         'line 1, name: there must be = and a value after a key; got name =; write name = "Vibrating sieve"'
     )
@@ -147,7 +147,7 @@ def test_a_catalogue_that_is_sent_as_a_table_gives_the_options_that_no_other_one
     ]
     assert found["option"][2]["constraints"] == {"room": {"min": "3 mm"}, "peak_torque": {"max": "40 N m"}}
     for wrong, said in (("", "empty"), ("name,peak_torque max (mm)\nA,1", "unit"), ("name,crank\nA,=1", "formula")):
-        assert said in refused(shared.post("/catalogue", json={"table": wrong}), 422)
+        assert said in refusal_sentence(shared.post("/catalogue", json={"table": wrong}), 422)
 
 
 def test_check_says_of_each_load_what_it_does_and_warns_of_one_that_pushes_with_the_stroke(

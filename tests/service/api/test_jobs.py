@@ -17,8 +17,8 @@ from slidercrank.service.api.job_requests import EXAMPLE, merge_patch
 from slidercrank.service.store import Artefact, Limits, Store
 from tests.service import fronts
 from tests.service.api.conftest import Serve
-from tests.service.api.serving import refused
-from tests.service.store.contents import add, progress, result, taken
+from tests.service.api.serving import refusal_sentence
+from tests.service.store.contents import add, claim_waiting_job, progress, result
 
 TOML = {"Content-Type": "application/toml"}
 
@@ -71,20 +71,20 @@ def test_a_job_file_in_toml_is_kept_as_it_was_given(client: httpx.Client, store:
     ],
 )
 def test_a_file_that_is_no_job_in_toml_is_refused(shared: httpx.Client, text: bytes) -> None:
-    assert "Error" not in refused(shared.post("/jobs", content=text, headers=TOML), 422)
+    assert "Error" not in refusal_sentence(shared.post("/jobs", content=text, headers=TOML), 422)
 
 
 def test_a_job_of_another_type_is_refused(shared: httpx.Client) -> None:
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data", ""):
         response = shared.post("/jobs", content=b"name = 'x'", headers={"Content-Type": kind} if kind else {})
-        assert "application/toml" in refused(response, 415)
+        assert "application/toml" in refusal_sentence(response, 415)
 
 
 def test_a_wrong_job_is_refused_with_the_sentence_of_the_command_line(shared: httpx.Client) -> None:
     wrong = {**EXAMPLE, "variables": {**EXAMPLE["variables"], "crank": ["20 kg", "200 mm"]}}  # type: ignore[dict-item]
     with pytest.raises(JobError) as error:
         parse_job(wrong)
-    assert refused(shared.post("/jobs", json={"job": wrong}), 422) == str(error.value)
+    assert refusal_sentence(shared.post("/jobs", json={"job": wrong}), 422) == str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -99,13 +99,13 @@ def test_a_wrong_job_is_refused_with_the_sentence_of_the_command_line(shared: ht
     ],
 )
 def test_a_wrong_submission_is_refused_by_its_key(shared: httpx.Client, body: dict[str, Any], sentence: str) -> None:
-    assert sentence in refused(shared.post("/jobs", json=body), 422)
+    assert sentence in refusal_sentence(shared.post("/jobs", json=body), 422)
 
 
 def test_a_file_of_the_client_is_not_opened(shared: httpx.Client) -> None:
     job = {**EXAMPLE, "target_motion": {"file": "/etc/passwd"}}
     for path, body in (("/jobs", {"job": job}), ("/check", {"job": job})):
-        sentence = refused(shared.post(path, json=body), 422)
+        sentence = refusal_sentence(shared.post(path, json=body), 422)
         assert "target_motion" in sentence
         assert "be sent with the job (API: files)" in sentence
         assert 'got file "/etc/passwd"; send it, or give only the points' in sentence
@@ -117,9 +117,11 @@ def test_functions_of_a_job_run_only_if_the_operator_allows_them(serve: Serve) -
         return {"job": {**EXAMPLE, "quantity": {"own": {"function": function}}, "objectives": objectives}}
 
     allowed = "tests.service.api.own_quantity:rod_over_crank"
-    assert "only functions that the operator allows" in refused(serve().post("/jobs", json=asking("os:remove")), 422)
+    assert "only functions that the operator allows" in refusal_sentence(
+        serve().post("/jobs", json=asking("os:remove")), 422
+    )
     permitting = serve(allowed_quantities=frozenset({allowed}))
-    sentence = refused(permitting.post("/jobs", json=asking("os:remove")), 422)
+    sentence = refusal_sentence(permitting.post("/jobs", json=asking("os:remove")), 422)
     assert f'got "os:remove"; choose from {allowed}, have it allowed (serve, worker or mcp with --allow-' in sentence
     assert permitting.post("/jobs", json=asking(allowed)).status_code == 201
 
@@ -131,9 +133,9 @@ def test_formulas_need_no_leave_of_the_operator(serve: Serve) -> None:
     client = serve()
     assert client.post("/jobs", json={"job": job}).status_code == 201
     both = {**job, "quantity": {"own": {"formula": "rod / crank", "function": "os:remove"}}}
-    assert "only functions that the operator allows" in refused(client.post("/jobs", json={"job": both}), 422)
+    assert "only functions that the operator allows" in refusal_sentence(client.post("/jobs", json={"job": both}), 422)
     wrong = {**job, "quantity": {"own": {"formula": "rod / cranc"}}}
-    assert "did you mean crank" in refused(client.post("/jobs", json={"job": wrong}), 422)
+    assert "did you mean crank" in refusal_sentence(client.post("/jobs", json={"job": wrong}), 422)
 
 
 def test_limits_are_those_of_the_service_unless_lower_ones_are_asked_for(serve: Serve) -> None:
@@ -141,7 +143,7 @@ def test_limits_are_those_of_the_service_unless_lower_ones_are_asked_for(serve: 
     assert submitted(client)["limits"] == {"seconds": 100.0, "evaluations": None, "memory_bytes": 10**9}
     assert submitted(client, limits={"seconds": 10})["limits"]["seconds"] == 10.0
     response = client.post("/jobs", json={"job": EXAMPLE, "limits": {"seconds": 101}})
-    assert "limits.seconds: must be at most 100.0 here; got 101.0" in refused(response, 422)
+    assert "limits.seconds: must be at most 100.0 here; got 101.0" in refusal_sentence(response, 422)
     toml = client.post("/jobs", content=fronts.JOB, headers=TOML).json()
     assert toml["limits"]["seconds"] == 100.0
     assert client.post("/jobs/2/clone", json={}).json()["limits"]["seconds"] == 10.0
@@ -152,7 +154,7 @@ def test_a_full_queue_is_told_with_when_to_come_again(serve: Serve, store: Store
     client = serve()
     submitted(client)
     response = client.post("/jobs", json={"job": EXAMPLE})
-    assert "at most 1 jobs may wait" in refused(response, 503)
+    assert "at most 1 jobs may wait" in refusal_sentence(response, 503)
     assert int(response.headers["retry-after"]) > 0
 
 
@@ -171,13 +173,13 @@ def test_submissions_at_once_with_one_key_make_one_job(serve: Serve, store: Stor
     assert sorted(number for _, _, number in made) == list(range(1, 11))
     assert store.count_by_state() == {"queued": 10}
     other = client.post("/jobs", json={"job": {**EXAMPLE, "name": "Other"}}, headers=headers)
-    assert "a key may only be used for one job" in refused(other, 422)
+    assert "a key may only be used for one job" in refusal_sentence(other, 422)
 
 
 @pytest.mark.parametrize("key", ["", "x" * 256, "a b", "\x80"])
 def test_a_key_that_is_none_is_refused(shared: httpx.Client, key: str) -> None:
     headers = [(b"Idempotency-Key", key.encode("latin-1"))]
-    refused(shared.post("/jobs", json={"job": EXAMPLE}, headers=headers), 422)
+    refusal_sentence(shared.post("/jobs", json={"job": EXAMPLE}, headers=headers), 422)
 
 
 def test_jobs_are_listed_by_pages_states_and_names(client: httpx.Client, store: Store) -> None:
@@ -195,25 +197,25 @@ def test_jobs_are_listed_by_pages_states_and_names(client: httpx.Client, store: 
     assert listed(limit=5) == ([5, 4, 3, 2, 1], None)
     assert listed(limit=2, sort="name") == ([1, 3], 3)
     assert listed(limit=3, sort="name", before=3) == ([5, 2, 4], None)
-    assert "query sort" in refused(client.get("/jobs", params={"sort": "size"}), 422)
+    assert "query sort" in refusal_sentence(client.get("/jobs", params={"sort": "size"}), 422)
     assert client.get("/jobs").json()["workers"] == "no worker, 4 waiting: start one with slidercrank worker"
     assert listed(name="feeder") == ([5, 3, 1], None)
     assert listed(name="feeder", state="queued") == ([5, 3], None)
     assert listed(state=["queued", "cancelled"], limit=4) == ([5, 4, 3, 2], 2)
-    assert "query state" in refused(client.get("/jobs", params={"state": "lost"}), 422)
+    assert "query state" in refusal_sentence(client.get("/jobs", params={"state": "lost"}), 422)
     for limit in (0, 1001, "x"):
-        refused(client.get("/jobs", params={"limit": limit}), 422)
+        refusal_sentence(client.get("/jobs", params={"limit": limit}), 422)
 
 
 def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> None:
     submitted(client)
-    assert "cancel it first" in refused(client.delete("/jobs/1"), 409)
-    assert "only a cancelled or failed job can continue" in refused(client.post("/jobs/1/resume"), 409)
+    assert "cancel it first" in refusal_sentence(client.delete("/jobs/1"), 409)
+    assert "only a cancelled or failed job can continue" in refusal_sentence(client.post("/jobs/1/resume"), 409)
     cancelled = client.post("/jobs/1/cancel")
     assert (cancelled.status_code, cancelled.json()["state"]) == (200, "cancelled")
     assert client.post("/jobs/1/cancel").json() == cancelled.json()
     assert client.post("/jobs/1/resume").json()["state"] == "queued"
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(progress(1))
     running = client.get("/jobs/1").json()
     assert running == store.job(1).record()
@@ -228,8 +230,8 @@ def test_a_job_goes_through_its_states(client: httpx.Client, store: Store) -> No
     assert client.delete("/jobs/1").status_code == 204
     for method, path in (("GET", ""), ("DELETE", ""), ("POST", "/cancel"), ("POST", "/resume"), ("GET", "/job"),
                          ("GET", "/files"), ("GET", "/files/job.json"), ("GET", "/events")):  # fmt: skip
-        assert "there is no job 1" in refused(client.request(method, f"/jobs/1{path}"), 404) or "files" in path
-    refused(client.post("/jobs/1/clone", json={}), 404)
+        assert "there is no job 1" in refusal_sentence(client.request(method, f"/jobs/1{path}"), 404) or "files" in path
+    refusal_sentence(client.post("/jobs/1/clone", json={}), 404)
 
 
 def test_a_copy_has_the_changes_and_the_rest_of_the_job(client: httpx.Client, store: Store) -> None:
@@ -245,7 +247,7 @@ def test_a_copy_has_the_changes_and_the_rest_of_the_job(client: httpx.Client, st
     other = client.post("/jobs/1/clone", json={"priority": -1, "limits": {}}).json()
     assert (other["priority"], other["limits"]["seconds"]) == (-1, None)
     wrong = client.post("/jobs/1/clone", json={"changes": {"variables": None}})
-    assert "variables: is missing" in refused(wrong, 422)
+    assert "variables: is missing" in refusal_sentence(wrong, 422)
     headers = {"Idempotency-Key": "a-copy"}
     copies = [client.post("/jobs/1/clone", json={}, headers=headers).json()["id"] for _ in range(2)]
     assert copies == [4, 4]
@@ -276,17 +278,17 @@ def test_a_merge_patch_does_what_its_standard_says(value: Any, changes: Any, bec
 
 
 def test_a_place_that_is_not_there_and_a_method_it_does_not_know_are_told(shared: httpx.Client) -> None:
-    assert "there is nothing at this address" in refused(shared.get("/job"), 404)
+    assert "there is nothing at this address" in refusal_sentence(shared.get("/job"), 404)
     response = shared.put("/jobs/1")
     assert response.headers["allow"] == "GET, DELETE"
-    assert "got PUT; use GET, DELETE" in refused(response, 405)
+    assert "got PUT; use GET, DELETE" in refusal_sentence(response, 405)
 
 
 @pytest.mark.parametrize("number", ["6%0C", "%206", "1_0", "6.0", "06", "+6", "six"])
 def test_a_number_in_an_address_is_written_in_digits(shared: httpx.Client, number: str) -> None:
-    assert "path number: must be a whole number; got" in refused(shared.get(f"/jobs/{number}"), 422)
+    assert "path number: must be a whole number; got" in refusal_sentence(shared.get(f"/jobs/{number}"), 422)
     query = number.replace("+", "%2B")
-    assert "query before: must be a whole number" in refused(shared.get(f"/jobs?before={query}"), 422)
+    assert "query before: must be a whole number" in refusal_sentence(shared.get(f"/jobs?before={query}"), 422)
 
 
 def test_files_keep_their_bytes_and_type(client: httpx.Client, store: Store) -> None:
@@ -294,13 +296,13 @@ def test_files_keep_their_bytes_and_type(client: httpx.Client, store: Store) -> 
     add(store, files=[Artefact(name="figure.png", media_type="image/png", content=content)])
     response = client.get("/jobs/1/files/figure.png")
     assert (response.content, response.headers["content-type"]) == (content, "image/png")
-    refused(client.get("/jobs/1/files/nothing.png"), 404)
+    refusal_sentence(client.get("/jobs/1/files/nothing.png"), 404)
 
 
 def test_a_running_job_shows_its_front_so_far_and_its_events_do_not(store: Store, client: httpx.Client) -> None:
     add(store)
     front = {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, math.inf]]}
-    taken(store).report(progress(1), front)
+    claim_waiting_job(store).report(progress(1), front)
     found = client.get("/jobs/1").json()["progress"]
     assert found["front"] == {"columns": ["time_ratio", "crank_mm"], "points": [[1.25, 40.0], [1.5, None]]}
     events = client.get("/jobs/1/events").json()["events"]

@@ -15,8 +15,8 @@ from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Row, StoredObjective
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
-from tests.service.api.serving import refused
-from tests.service.store.contents import ROWS, add, progress, result, taken
+from tests.service.api.serving import refusal_sentence
+from tests.service.store.contents import ROWS, add, claim_waiting_job, progress, result
 
 ROW = 600  # bytes at most
 AXES = ("time_ratio", "peak_torque_Nm", "least_transmission_angle_deg", "position_error_mm")
@@ -71,14 +71,14 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
         rows: list[Row] = [{one.column: float(cell) for one, cell in zip(wanted, row, strict=True)} for row in values]
         extremes = {name: int(random.integers(100)) for name in names}
         add(store, "Machine " + "x" * int(random.integers(24)))
-        claim = taken(store, worker="machine-28238-788875")
+        claim = claim_waiting_job(store, worker="machine-28238-788875")
         claim.report(progress(9), front_progress())
         if random.random() < 0.8:
             state = str(random.choice(["done", "cancelled"]))
             claim.finish(replace(result(state, rows), objectives=wanted, extremes=extremes, evaluations=1_000_000))
             if state == "cancelled" and random.random() < 0.5:  # goes on, with what it has found
                 store.resume(claim.job.id)
-                taken(store, worker="machine-28238-788875").report(progress(9), front_progress())
+                claim_waiting_job(store, worker="machine-28238-788875").report(progress(9), front_progress())
     assert min(store.count_by_state()[state] for state in ("running", "done", "cancelled")) > 3
     assert sum(job.summary is not None for job in store.jobs(states=["running"])) > 3
     assert max(sizes(client)) <= ROW
@@ -86,7 +86,7 @@ def test_rows_of_random_jobs_have_600_bytes_at_most_whatever_they_are_doing(clie
 
 def test_a_row_is_part_of_the_job(client: httpx.Client, store: Store) -> None:
     add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(progress(3), front_progress())
 
     def row() -> dict[str, Any]:
@@ -109,7 +109,7 @@ def test_points_are_of_the_front_found_or_of_that_so_far(client: httpx.Client, s
     """Jobs 1 to 8: done, queued, running with and without a round, failed, infeasible, one design, deleted."""
     for _ in range(8):
         add(store)
-    done, failed, infeasible, one, gone, running, fresh = (taken(store) for _ in range(7))
+    done, failed, infeasible, one, gone, running, fresh = (claim_waiting_job(store) for _ in range(7))
     so_far = front_progress(5)
     told = [point[:2] for point in so_far["points"]]
     for claim in (done, failed, running):
@@ -140,14 +140,14 @@ def test_an_undefined_value_of_a_point_is_null(client: httpx.Client, store: Stor
     error = StoredObjective(
         quantity="motion_error", sense="minimise", column="motion_error_mm", title="Error", unit="mm"
     )
-    taken(store).finish(replace(result(), objectives=(*result().objectives, error), extremes={}))
+    claim_waiting_job(store).finish(replace(result(), objectives=(*result().objectives, error), extremes={}))
     assert points(client, 1) == {1: [[1.25, None], [1.0, None]]}
 
 
 def test_a_browser_keeps_points_until_a_front_changes(client: httpx.Client, store: Store) -> None:
     for _ in range(2):
         add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     path = "/front-points?job=1&job=2"
 
     def again(tag: str) -> tuple[int, str]:
@@ -175,9 +175,9 @@ def test_a_browser_keeps_points_until_a_front_changes(client: httpx.Client, stor
 
 @pytest.mark.parametrize("query", ["", "job=0", "job=-1", "job=1.0", "job=one", f"job={2**53}", "job=1&job="])
 def test_numbers_that_no_job_has_are_refused(shared: httpx.Client, query: str) -> None:
-    assert "query job" in refused(shared.get(f"/front-points?{query}"), 422)
+    assert "query job" in refusal_sentence(shared.get(f"/front-points?{query}"), 422)
 
 
 def test_points_of_a_hundred_jobs_are_asked_for_at_most(shared: httpx.Client) -> None:
     assert points(shared, *range(1, 101)) == {1: []}
-    assert "query job" in refused(shared.get("/front-points", params={"job": range(1, 102)}), 422)
+    assert "query job" in refusal_sentence(shared.get("/front-points", params={"job": range(1, 102)}), 422)

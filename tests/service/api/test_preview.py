@@ -18,7 +18,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job.job_file import MOST
 from slidercrank.optimise.search.polish import polish
 from slidercrank.service.preview import possible_values
-from tests.service.api.serving import refused
+from tests.service.api.serving import refusal_sentence
 from tests.service.weak_pins import TABLES
 
 Job = dict[str, Any]
@@ -443,15 +443,15 @@ def test_a_job_of_too_many_values_is_refused_with_their_number_at_every_door(sha
         assert found["wrong"][0]["sentence"].startswith(rule)
         assert found["understood"] is found["example"] is found["allowed"] is None
         for path in ("/check", "/jobs", "/toml"):
-            assert refused(shared.post(path, json={"job": job}), 422) == found["wrong"][0]["sentence"]
+            assert refusal_sentence(shared.post(path, json={"job": job}), 422) == found["wrong"][0]["sentence"]
     text = b"[[load]]\n" * count
-    assert refused(shared.post("/check", content=text, headers={"Content-Type": "application/toml"}), 422).startswith(
-        rule
-    )
+    assert refusal_sentence(
+        shared.post("/check", content=text, headers={"Content-Type": "application/toml"}), 422
+    ).startswith(rule)
 
 
 def test_a_preview_is_of_a_job_and_nothing_else(shared: httpx.Client) -> None:
-    assert "body path: unknown" in refused(shared.post("/preview", json={"job": {}, "path": "x"}), 422)
+    assert "body path: unknown" in refusal_sentence(shared.post("/preview", json={"job": {}, "path": "x"}), 422)
 
 
 def test_formulas_of_a_job_have_their_units_or_their_mistakes_while_the_rest_is_missing(shared: httpx.Client) -> None:

@@ -14,7 +14,7 @@ from slidercrank.objectives.units import quote
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.store import Artefact, Store
 from tests.service.api.conftest import Serve
-from tests.service.api.serving import TOKEN, refused
+from tests.service.api.serving import TOKEN, refusal_sentence
 from tests.service.store.contents import add
 
 RIGHT = {"Authorization": f"Bearer {TOKEN}"}
@@ -23,7 +23,7 @@ RIGHT = {"Authorization": f"Bearer {TOKEN}"}
 @pytest.mark.parametrize("host", ["attacker.example", "127.0.0.1.attacker.example", "localhost.:80", ""])
 def test_a_foreign_host_is_refused(guarded: httpx.Client, host: str) -> None:
     response = guarded.get("/jobs", headers={"Host": host, **RIGHT})
-    assert "called by one of its names" in refused(response, 403)
+    assert "called by one of its names" in refusal_sentence(response, 403)
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "LOCALHOST:8000", "localhost", "[::1]:80"])
@@ -34,14 +34,14 @@ def test_every_name_of_this_machine_is_known(guarded: httpx.Client, host: str) -
 def test_the_operator_gives_the_service_other_names(serve: Serve) -> None:
     client = serve(hosts=("jobs.example",))
     assert client.get("/jobs", headers={"Host": "jobs.example:8443"}).status_code == 200
-    refused(client.get("/jobs"), 403)
+    refusal_sentence(client.get("/jobs"), 403)
 
 
 @pytest.mark.parametrize("origin", ["http://attacker.example", "null", "http://127.0.0.1:1", "file://", "http://["])
 def test_a_foreign_origin_is_refused_even_with_the_token(guarded: httpx.Client, origin: str) -> None:
     for method in ("GET", "POST", "DELETE"):
         response = guarded.request(method, "/jobs/1", headers={"Origin": origin, **RIGHT})
-        assert "pages of other sites may not" in refused(response, 403)
+        assert "pages of other sites may not" in refusal_sentence(response, 403)
 
 
 def test_its_own_origin_is_let_in(guarded: httpx.Client) -> None:
@@ -57,7 +57,7 @@ def test_a_missing_or_wrong_token_is_refused(guarded: httpx.Client, given: str) 
     headers = [(b"Authorization", given.encode("latin-1"))] if given else []
     for path in ("/jobs", "/metrics", "/health/ready", "/openapi.json", "/nothing", "/jobs/1/events"):
         response = guarded.get(path, headers=headers)
-        assert "must carry the token" in refused(response, 401)
+        assert "must carry the token" in refusal_sentence(response, 401)
         assert response.headers["www-authenticate"] == "Bearer"
 
 
@@ -71,7 +71,7 @@ def root(client: httpx.Client) -> str:
 
 
 def test_the_printed_address_lets_a_browser_in_and_hides_the_token(guarded: httpx.Client) -> None:
-    refused(guarded.get(root(guarded)), 401)
+    refusal_sentence(guarded.get(root(guarded)), 401)
     response = guarded.get(root(guarded), params={"token": TOKEN})
     assert response.status_code == 303
     assert response.headers["location"] == "/"
@@ -81,7 +81,7 @@ def test_the_printed_address_lets_a_browser_in_and_hides_the_token(guarded: http
     assert "SameSite=strict" in cookie
     assert TOKEN not in cookie
     session = guarded.cookies[cookie.partition("=")[0]]
-    refused(httpx.get(f"{guarded.base_url}jobs", headers={"Authorization": f"Bearer {session}"}), 401)
+    refusal_sentence(httpx.get(f"{guarded.base_url}jobs", headers={"Authorization": f"Bearer {session}"}), 401)
     assert guarded.get("/jobs").status_code == 200  # by the cookie that the client has now
     assert guarded.get(root(guarded)).status_code == 200
 
@@ -89,7 +89,7 @@ def test_the_printed_address_lets_a_browser_in_and_hides_the_token(guarded: http
 @pytest.mark.parametrize("token", ["", "wrong", f"{TOKEN}&token={TOKEN}"])
 def test_an_address_with_another_token_sets_no_cookie(guarded: httpx.Client, token: str) -> None:
     response = guarded.get(f"{root(guarded)}?token={token}")
-    refused(response, 401)
+    refusal_sentence(response, 401)
     assert "set-cookie" not in response.headers
 
 
@@ -97,7 +97,7 @@ def test_a_cookie_of_another_service_on_this_machine_does_not_count(serve: Serve
     other = serve(token="another-long-random-text")
     set_by_other = other.get(root(other), params={"token": "another-long-random-text"}).cookies
     guarded.cookies.update(set_by_other)
-    refused(guarded.get("/jobs"), 401)
+    refusal_sentence(guarded.get("/jobs"), 401)
     guarded.get(root(guarded), params={"token": TOKEN})
     guarded.cookies.update(set_by_other)
     assert guarded.get("/jobs").status_code == 200, "both are sent by a browser; neither hides the other"
@@ -146,7 +146,7 @@ def test_what_goes_wrong_unexpectedly_is_logged_and_not_shown(
     monkeypatch.setattr(store, "job", broken)
     with caplog.at_level(logging.ERROR):
         response = client.get("/jobs/1")
-    assert "secret" not in refused(response, 500)
+    assert "secret" not in refusal_sentence(response, 500)
     assert "the password of job 1 is secret" in caplog.text
     assert response.headers["x-content-type-options"] == "nosniff"
 
@@ -157,12 +157,12 @@ def test_a_store_deleted_or_replaced_while_it_is_served_is_noticed_at_once(
     assert client.post("/jobs", json={"job": EXAMPLE}).status_code == 201
     file = tmp_path / "store.db"
     away = file.rename(tmp_path / "away.db")
-    assert "was deleted, moved or replaced" in refused(client.get("/health/ready"), 503)
-    refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
+    assert "was deleted, moved or replaced" in refusal_sentence(client.get("/health/ready"), 503)
+    refusal_sentence(client.post("/jobs", json={"job": EXAMPLE}), 503)
     assert not file.exists(), "no empty one is made in its place"
     assert caplog.text.count("was deleted, moved or replaced") == 1, "told once, not at every request"
     file.touch()
-    refused(client.get("/jobs"), 503)
+    refusal_sentence(client.get("/jobs"), 503)
     away.replace(file)
     assert client.get("/jobs/1").json()["state"] == "queued"
 
@@ -177,8 +177,8 @@ def test_a_store_that_may_no_longer_be_written_is_noticed_and_used_again_once_it
     for mode in (0o400, 0o000):
         file.chmod(mode)
         for _ in range(3):
-            sentence = refused(client.get("/health/ready"), 503)
-            refused(client.post("/jobs", json={"job": EXAMPLE}), 503)
+            sentence = refusal_sentence(client.get("/health/ready"), 503)
+            refusal_sentence(client.post("/jobs", json={"job": EXAMPLE}), 503)
         assert f"is no longer; chmod u+rw {file}" in sentence
         assert caplog.text.count("must stay readable and writable") == 1
         file.chmod(0o600)
@@ -192,7 +192,7 @@ def test_a_function_that_is_no_text_is_refused(serve: Serve) -> None:
         for function in functions:
             job = {**EXAMPLE, "quantity": {"x": {"function": function}}}
             for path in ("/jobs", "/check"):
-                sentence = refused(client.post(path, json={"job": job}), 422)
+                sentence = refusal_sentence(client.post(path, json={"job": job}), 422)
                 assert sentence.startswith("quantity.x.function: must "), sentence
                 assert f"got {quote(function)}; " in sentence
 
@@ -205,7 +205,7 @@ def test_a_database_that_is_gone_is_told_with_when_to_come_again(
         file.unlink()
     for path in ("/jobs", "/jobs/1", "/health/ready", "/metrics"):
         response = client.get(path)
-        assert "was deleted, moved or replaced" in refused(response, 503)
+        assert "was deleted, moved or replaced" in refusal_sentence(response, 503)
         assert int(response.headers["retry-after"]) > 0
     assert client.get("/health/live").status_code == 200
 
@@ -214,8 +214,8 @@ def test_submissions_beyond_the_rate_are_told_when_to_come_again(serve: Serve, s
     client = serve(submissions_per_minute=2)
     answers = [client.post("/jobs", json={"job": EXAMPLE}) for _ in range(3)]
     assert [answer.status_code for answer in answers] == [201, 201, 429]
-    assert "at most 2 jobs" in refused(answers[2], 429)
+    assert "at most 2 jobs" in refusal_sentence(answers[2], 429)
     assert 1 <= int(answers[2].headers["retry-after"]) <= 30
     assert client.get("/jobs").status_code == 200, "reading goes on"
-    refused(client.post("/jobs/1/clone", json={}), 429)
+    refusal_sentence(client.post("/jobs/1/clone", json={}), 429)
     assert store.count_by_state() == {"queued": 2}

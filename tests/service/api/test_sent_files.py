@@ -11,7 +11,7 @@ import httpx
 
 from slidercrank.optimise.job import read_job
 from slidercrank.service.api.job_requests import EXAMPLE
-from tests.service.api.serving import refused
+from tests.service.api.serving import refusal_sentence
 from tests.service.conftest import Command
 
 TRACE = "Kurbelwinkel [°];Kraft [N]\n0;-20\n90;-1.000,5\n"
@@ -49,6 +49,6 @@ def test_a_file_that_is_missing_or_broken_is_refused_in_a_sentence(shared: httpx
         ({"trace.csv": "data:text/csv;base64,?"}, "files.trace.csv: must be a text or base64; got a broken one"),
         ({"trace.csv": "a;b\n1;2\n"}, 'the columns have no units; got "a", "b"'),
     ):
-        assert words in refused(shared.post("/check", json={**asked, "files": files}), 422)
-    sentence = refused(shared.post("/check", json={"job": asked["job"]}), 422)
+        assert words in refusal_sentence(shared.post("/check", json={**asked, "files": files}), 422)
+    sentence = refusal_sentence(shared.post("/check", json={"job": asked["job"]}), 422)
     assert "load #1: a file must be in the folder of the job file, or be sent with the job (API: files)" in sentence

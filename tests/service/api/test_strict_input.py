@@ -12,7 +12,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.api.strict_input import read_json
 from slidercrank.service.api.throttle import RateLimit
-from tests.service.api.serving import refused
+from tests.service.api.serving import refusal_sentence
 
 JSON = {"Content-Type": "application/json"}
 
@@ -24,7 +24,7 @@ def post(client: httpx.Client, text: str | bytes, path: str = "/jobs") -> httpx.
 
 def test_an_oversized_body_is_refused(shared: httpx.Client) -> None:
     body = json.dumps({"job": EXAMPLE}) + " " * 1_048_576
-    assert "at most 1048576 bytes" in refused(post(shared, body), 413)
+    assert "at most 1048576 bytes" in refusal_sentence(post(shared, body), 413)
 
 
 def test_an_oversized_body_in_chunks_is_refused_before_it_has_all_come(shared: httpx.Client) -> None:
@@ -41,7 +41,7 @@ def test_an_oversized_body_in_chunks_is_refused_before_it_has_all_come(shared: h
     except httpx.WriteError:  # the service hung up while the client was still sending
         pass
     else:
-        refused(response, 413)
+        refusal_sentence(response, 413)
     assert sent < 1_000 * 65_536  # a tenth: what the sockets' buffers hold on the way depends on the machine
 
 
@@ -54,33 +54,33 @@ def test_a_body_as_large_as_allowed_is_read_also_in_chunks(shared: httpx.Client)
 
 @pytest.mark.parametrize("deep", ["[" * 33 + "]" * 33, "[" * 500_000, '{"a":' * 100_000, '{"a":' * 40 + "1" + "}" * 40])
 def test_deep_json_is_refused(shared: httpx.Client, deep: str) -> None:
-    refused(post(shared, deep), 400)
-    refused(post(shared, f'{{"job": {deep}}}', "/check"), 400)
+    refusal_sentence(post(shared, deep), 400)
+    refusal_sentence(post(shared, f'{{"job": {deep}}}', "/check"), 400)
 
 
 @pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999", "-1e400"])
 def test_numbers_that_are_not_finite_are_refused(shared: httpx.Client, number: str) -> None:
-    assert "a number must be finite" in refused(post(shared, f'{{"job": {{}}, "priority": {number}}}'), 400)
+    assert "a number must be finite" in refusal_sentence(post(shared, f'{{"job": {{}}, "priority": {number}}}'), 400)
 
 
 @pytest.mark.parametrize("number", [str(2**53 + 1), "-" + "9" * 30, "9" * 5_000, "9" * 1_000_000])
 def test_huge_integers_are_refused(shared: httpx.Client, number: str) -> None:
-    assert "at most 2^53" in refused(post(shared, f'{{"job": {{"a": {number}}}}}'), 400)
+    assert "at most 2^53" in refusal_sentence(post(shared, f'{{"job": {{"a": {number}}}}}'), 400)
 
 
 @pytest.mark.parametrize("path", ["/jobs/99999999999999999999", "/jobs/" + "9" * 5_000, "/jobs?before=" + "9" * 400])
 def test_huge_numbers_in_addresses_are_refused(shared: httpx.Client, path: str) -> None:
-    assert len(refused(shared.get(path), 422)) < 500
+    assert len(refusal_sentence(shared.get(path), 422)) < 500
 
 
 @pytest.mark.parametrize("text", [r'"\u0000"', r'{"a\u0000b": 1}', r'["\ud800"]', r'{"\udfff": 1}'])
 def test_nul_and_half_characters_in_json_are_refused(shared: httpx.Client, text: str) -> None:
-    assert "no NUL" in refused(post(shared, f'{{"job": {text}}}'), 400)
+    assert "no NUL" in refusal_sentence(post(shared, f'{{"job": {text}}}'), 400)
 
 
 @pytest.mark.parametrize("path", ["/jobs?name=%00", "/jobs/1/files/%00", "/%00", "/jobs?name=a%00b&limit=1"])
 def test_nul_in_addresses_is_refused(shared: httpx.Client, path: str) -> None:
-    assert "must not contain NUL" in refused(shared.get(path), 400)
+    assert "must not contain NUL" in refusal_sentence(shared.get(path), 400)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_nul_in_addresses_is_refused(shared: httpx.Client, path: str) -> None:
 def test_bodies_that_are_no_submission_are_refused(shared: httpx.Client, text: bytes) -> None:
     response = post(shared, text)
     assert response.status_code in (400, 422)
-    refused(response, response.status_code)
+    refusal_sentence(response, response.status_code)
 
 
 def test_moderate_json_is_read_as_it_is() -> None:

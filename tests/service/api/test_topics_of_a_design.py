@@ -22,7 +22,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
         yield opened
 
 
-def printed(solved: Solved, name: str, *options: str) -> str:
+def printed_numbers(solved: Solved, name: str, *options: str) -> str:
     place = ["--runs", str(solved.folder.parent), "--design", "2"]
     done = CliRunner().invoke(command_line, ["analyse", "latest", *place, "--show", name, *options])
     assert done.exit_code == 0, done.stderr
@@ -39,13 +39,13 @@ def test_numbers_and_text_are_those_of_the_command_line(client: httpx.Client, so
     answer = client.get(f"{solved.path}/designs/2/topics/{name}")
     assert answer.status_code == 200, answer.text
     found = answer.json()
-    expected = json.loads(printed(solved, name, "--json"))[name]
+    expected = json.loads(printed_numbers(solved, name, "--json"))[name]
     assert found["numbers"].keys() == expected.keys()
     for key, value in expected.items():
         alike = pytest.approx(value, rel=1e-5, abs=1e-5) if isinstance(value, float) else value
         if not isinstance(value, dict | list):
             assert found["numbers"][key] == alike, key
-    text = " ".join(printed(solved, name).split())
+    text = " ".join(printed_numbers(solved, name).split())
     assert found["told"]
     for block in found["told"]:
         assert block["sentence"] in text

@@ -28,7 +28,7 @@ def client(solved: Solved) -> Iterator[httpx.Client]:
         yield opened
 
 
-def printed(solved: Solved, *options: str) -> dict[str, Any]:
+def printed_record(solved: Solved, *options: str) -> dict[str, Any]:
     """Return the record of the command line."""
     done = CliRunner().invoke(command_line, ["wish", "latest", *options, "--runs", str(solved.folder.parent), "--json"])
     found: dict[str, Any] = json.loads(done.stdout)
@@ -40,7 +40,9 @@ def test_the_record_is_that_of_the_command_line(units: str, client: httpx.Client
     answer = client.post(f"{solved.path}/wish", json={"at": AT}, params={"units": units})
     assert answer.status_code == 200, answer.text
     found = answer.json()
-    expected = printed(solved, *(part for name in AT for part in ("--at", f"{name}={AT[name]}")), "--units", units)
+    expected = printed_record(
+        solved, *(part for name in AT for part in ("--at", f"{name}={AT[name]}")), "--units", units
+    )
     assert (found["job"], found["number"], found["sentences"]) == (solved.number, None, expected["sentences"])
     assert [column["key"] for column in found["columns"]] == list(expected["design"])
     for key, value in expected["design"].items():

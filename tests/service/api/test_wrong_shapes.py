@@ -13,7 +13,7 @@ import httpx
 import pytest
 
 from tests.service.api.conftest import Serve
-from tests.service.api.serving import refused
+from tests.service.api.serving import refusal_sentence
 
 PYTHON = re.compile(
     r"None|NoneType|\bdict|\btuple\b|\bstr\b|\bint\b|\bfloat\b|instance|pydantic|(Input|input|String|string) should|"
@@ -66,7 +66,7 @@ def places(part: Any, at: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
         yield from places(item, (*at, key))
 
 
-def put(at: tuple[Any, ...], value: Any) -> dict[str, Any]:
+def job_with_value_at(at: tuple[Any, ...], value: Any) -> dict[str, Any]:
     """Return the full job with another value at a place."""
     job = deepcopy(FULL)
     if at[0] != "quantity":
@@ -83,11 +83,11 @@ def test_no_message_about_a_job_of_wrong_shape_is_in_words_of_python(serve: Serv
     every = [(at, value) for at in places(FULL) for value in WRONG]
     said = 0
     for at, value in rng.sample(every, 150):
-        answer = client.post("/check", json={"job": put(at, value)})
+        answer = client.post("/check", json={"job": job_with_value_at(at, value)})
         assert answer.status_code in (200, 422), (at, value, answer.text)
         if answer.status_code == 422:
             said += 1
-            for line in refused(answer, 422).split("\n  "):
+            for line in refusal_sentence(answer, 422).split("\n  "):
                 assert not PYTHON.search(line), (at, value, line)
                 assert re.search(r"^\d+ problems$|got |missing|unknown key ", line), (at, value, line)
     assert said > 100
@@ -107,13 +107,15 @@ def test_no_message_about_a_job_of_wrong_shape_is_in_words_of_python(serve: Serv
     ],
 )
 def test_what_stands_in_place_of_a_function_is_told(shared: httpx.Client, part: object, said: str) -> None:
-    assert refused(shared.post("/check", json={"job": {**FULL, "quantity": {"x": part}}}), 422).startswith(said)
+    assert refusal_sentence(shared.post("/check", json={"job": {**FULL, "quantity": {"x": part}}}), 422).startswith(
+        said
+    )
 
 
 @pytest.mark.parametrize("kind", ["application/toml", "text/plain", "multipart/form-data", ""])
 @pytest.mark.parametrize("path", ["/preview", "/toml", "/analyse", "/jobs/1/clone"])
 def test_a_body_that_is_no_json_is_told_what_is_taken(shared: httpx.Client, path: str, kind: str) -> None:
-    sentence = refused(shared.post(path, content='name = "x"', headers={"Content-Type": kind}), 422)
+    sentence = refusal_sentence(shared.post(path, content='name = "x"', headers={"Content-Type": kind}), 422)
     assert sentence.startswith("body: must be a JSON object of type application/json; got ")
     if kind == "application/toml":  # what the remedy names is there
         assert "POST /api/v1/parse" in sentence
@@ -123,6 +125,6 @@ def test_a_body_that_is_no_json_is_told_what_is_taken(shared: httpx.Client, path
 
 @pytest.mark.parametrize("body", [[], 3, "x", True, [{}], {"job": []}, {"job": None}, {"job": {}, "priority": None}])
 def test_a_body_of_wrong_shape_is_refused_in_plain_words(shared: httpx.Client, body: object) -> None:
-    sentence = refused(shared.post("/check", json=body), 422)
+    sentence = refusal_sentence(shared.post("/check", json=body), 422)
     assert re.match(r"body( job| priority)?: must be a ", sentence)
     assert not PYTHON.search(sentence)

@@ -9,7 +9,7 @@ from playwright.sync_api import Page
 
 from slidercrank.service.runs.result import Result
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import put_in
+from tests.service.api.fixed_front import store_result
 from tests.service.store.contents import progress
 
 WIDTHS = (390, 820, 1280, 1920)
@@ -39,8 +39,8 @@ class View:
 
 def fill(store: Store, results: tuple[Result, Result], tables: dict[str, Any]) -> list[View]:
     """Put runs in all states into an empty store, and return the views on them. results: of runs 1 and 2."""
-    first, second = (put_in(store, one, tables) for one in results)
-    none = put_in(
+    first, second = (store_result(store, one, tables) for one in results)
+    none = store_result(
         store,
         results[0],
         {**tables, "name": "Press, quick return"},

@@ -11,7 +11,7 @@ from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.service.runs.result import Result, StoredObjective, rows_of_columns
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import put_in
+from tests.service.api.fixed_front import store_result
 
 _OBJECTIVES = (
     ("time_ratio", "maximise", "time_ratio", "time ratio", ""),
@@ -56,4 +56,4 @@ def large_result(count: int = 10_000) -> Result:
 
 def put_large(store: Store, count: int = 10_000) -> int:
     """Put such a front into a store; return the number of its job."""
-    return put_in(store, large_result(count), tomllib.loads(fronts.JOB))
+    return store_result(store, large_result(count), tomllib.loads(fronts.JOB))

@@ -24,7 +24,7 @@ def opened(pages: Pages, solved: Solved) -> Iterator[tuple[Page, str]]:
         yield found
 
 
-def shown(number: str) -> str:
+def number_on_page(number: str) -> str:
     """Return a number of the command as the page writes it: 1.3e-26 is 1.3·10⁻²⁶."""
     power = re.compile(r"e([-+]?)0?(\d+)")
     raised = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -47,7 +47,7 @@ def test_every_analysis_has_a_tab_with_what_the_api_tells(opened: tuple[Page, st
     told = httpx.get(f"{path}/motor", timeout=60.0).json()["told"]
     for block in told:
         for row in block["rows"]:
-            expect(panel.locator("tr", has_text=row[0]).first).to_contain_text(shown(row[1]))
+            expect(panel.locator("tr", has_text=row[0]).first).to_contain_text(number_on_page(row[1]))
     picture = page.get_by_role("img", name="Figure: Motor")
     expect(picture).to_have_js_property("complete", True, timeout=30_000)
     assert picture.evaluate("image => image.naturalWidth") > 100

@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 
 from slidercrank.service.designs.violations import front_violations_in_words
 from slidercrank.service.store import Store
-from tests.service.api.fixed_front import API, put_in
+from tests.service.api.fixed_front import API, store_result
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Pages, watched
 from tests.service.weak_pins import TABLES, result
@@ -23,7 +23,7 @@ LENGTHS = {"crank_mm": 51.0, "rod_mm": 200.0, "offset_mm": 20.0}
 def opened(pages: Pages, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Page, str, str]]:
     """Return a page, its address and that of a job with weak pins in the API."""
     with Store(tmp_path_factory.mktemp("weak") / "store.db") as store, watched(pages, store) as (page, address):
-        number = put_in(store, result(), TABLES)
+        number = store_result(store, result(), TABLES)
         yield page, f"{address}/#/jobs/{number}", f"{address}{API}/jobs/{number}"
 
 

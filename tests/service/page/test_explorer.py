@@ -17,7 +17,7 @@ from playwright.sync_api import Locator, Page, expect
 from slidercrank.service.runs.result import Row, result_of
 from slidercrank.service.store import Store
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, put_in, served
+from tests.service.api.fixed_front import Solved, served, store_result
 from tests.service.fronts import JOB
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
@@ -52,11 +52,11 @@ def expect_designs(page: Page, numbers: list[int]) -> None:
 
 def field(page: Page, label: str) -> Locator:
     """Return the field of a limit, in the menu of its axis, which is open then."""
-    opened(page, page.get_by_label(label))
+    open_axis_menu(page, page.get_by_label(label))
     return page.get_by_role("textbox", name=label)
 
 
-def opened(page: Page, within: Locator) -> Locator:
+def open_axis_menu(page: Page, within: Locator) -> Locator:
     """Open the menu of the axis that something is in."""
     if not within.first.is_visible():
         page.locator(".axis-head", has=within).locator("summary").click()
@@ -211,7 +211,7 @@ def test_a_column_that_is_constant_but_for_a_last_bit_is_drawn_as_one_value(
 ) -> None:
     rows = [{**row, "stroke_mm": (280.0, 280.00000000000006)[n % 2]} for n, row in enumerate(solved.result.designs)]
     with Store(tmp_path / "store.db") as store:
-        put_in(store, solved.result, tomllib.loads(JOB), designs=rows)
+        store_result(store, solved.result, tomllib.loads(JOB), designs=rows)
         page = open_page(store, f"#/jobs/1{query}")
         expect(page.get_by_text("8 of 8 designs listed")).to_be_visible()
         page.get_by_text("Axes", exact=True).click()
@@ -471,7 +471,7 @@ def test_a_line_drawn_by_hand_keeps_what_is_in_it(open_page: Open, large: tuple[
 
 def test_a_front_whose_loaded_stroke_is_fast_says_so_and_shows_the_slow_stroke(open_page: Open, store: Store) -> None:
     found = fronts.front(fronts.FOUR[:2], designs=4)
-    number = put_in(store, result_of(found, "x"), tomllib.loads(fronts.JOB))
+    number = store_result(store, result_of(found, "x"), tomllib.loads(fronts.JOB))
     page = open_page(store, f"#/jobs/{number}")
     expect(page.locator("main")).to_contain_text("Warning: in 4 of 4 designs the loaded stroke")
     table = page.locator("table.designs")

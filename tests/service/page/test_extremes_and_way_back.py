@@ -28,7 +28,7 @@ def number(cell: Locator) -> float:
     return float(cell.inner_text().replace("−", "-"))
 
 
-def told(solved: Solved, *arguments: str) -> Any:
+def command_numbers(solved: Solved, *arguments: str) -> Any:
     run = ("latest", "--runs", str(solved.folder.parent), "--design", str(DESIGN), "--json")
     done = CliRunner().invoke(command_line, [arguments[0], *run, *arguments[1:]])
     assert done.exit_code == 0, done.stderr
@@ -63,7 +63,7 @@ def field(page: Page, name: str) -> Locator:
 
 
 def test_extremes_are_those_of_the_command_line_in_either_system(page: Page, solved: Solved) -> None:
-    record = told(solved, "analyse", "--show", "extremes")["extremes"]
+    record = command_numbers(solved, "analyse", "--show", "extremes")["extremes"]
     page.locator("section.extremes").scroll_into_view_if_needed()
     curves = table(page, "Extreme values over the turn")
     expect(curves).to_be_visible(timeout=30_000)
@@ -93,7 +93,7 @@ def test_the_way_back_is_that_of_the_command_line(page: Page, solved: Solved) ->
     page.get_by_role("button", name="Find crank angles").click()
     expect(found).to_contain_text("crank acceleration")
     motion = (f"--slider-position={middle} mm", "--slider-velocity=-1.5 m/s", "--slider-acceleration=4 m/s^2")
-    expected = told(solved, "inverse", *motion)["solutions"]
+    expected = command_numbers(solved, "inverse", *motion)["solutions"]
     angles = [float(str(cell.get_attribute("data-value"))) for cell in found.locator("tbody th").all()]
     assert angles == pytest.approx([solution["crank_angle_deg"] for solution in expected], rel=1e-6)
     for row, solution in zip(found.evaluate(CELLS), expected, strict=True):
@@ -154,7 +154,7 @@ def test_what_cannot_be_is_said_in_a_sentence(page: Page) -> None:
 
 
 def test_at_a_dead_centre_the_speed_is_undefined_and_says_so(page: Page, solved: Solved) -> None:
-    record = told(solved, "analyse", "--show", "extremes")["extremes"]
+    record = command_numbers(solved, "analyse", "--show", "extremes")["extremes"]
     outermost = record["curves"]["slider_position"]["greatest_mm"]
     field(page, "Slider position").fill(repr(outermost))
     field(page, "Slider velocity").fill("0")

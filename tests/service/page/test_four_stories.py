@@ -22,12 +22,12 @@ from slidercrank.service.workers.worker import work
 from tests.service.api.fixed_front import Solved, served
 from tests.service.page.conftest import Open, watch
 from tests.service.page.test_run import FRONT, TABLES
-from tests.service.store.contents import progress, taken
+from tests.service.store.contents import claim_waiting_job, progress
 
 PATIENCE = 60_000.0  # ms, beside other work
 
 
-def typed(field: Locator, text: str) -> None:
+def type_over(field: Locator, text: str) -> None:
     """Type over what a field has."""
     field.press("Control+a")
     field.press_sequentially(text)
@@ -48,10 +48,10 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
 ) -> None:
     page = open_page(store, "", reduced_motion="reduce")
     page.get_by_role("navigation", name="Main").get_by_role("link", name="New run").press("Enter")
-    typed(page.get_by_label("name", exact=True), "Press for bushings")
-    typed(page.get_by_label("stroke, exactly"), "60")
-    typed(page.get_by_label("crank, to", exact=True), "=stroke")
-    typed(page.get_by_label("designs", exact=True), "12")
+    type_over(page.get_by_label("name", exact=True), "Press for bushings")
+    type_over(page.get_by_label("stroke, exactly"), "60")
+    type_over(page.get_by_label("crank, to", exact=True), "=stroke")
+    type_over(page.get_by_label("designs", exact=True), "12")
     expect(page.get_by_role("complementary").get_by_role("status")).to_have_text("Ready to start.", timeout=PATIENCE)
     page.get_by_role("button", name="Start the search").press("Enter")
     page.wait_for_url("**/#/jobs/1")
@@ -68,7 +68,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     expect(page.locator("#what-if-crank_mm")).to_have_value(re.compile(r"^\d+(\.5)?$"), timeout=PATIENCE)
     page.get_by_role("button", name="Decide for this design").press("Enter", timeout=PATIENCE)
     expect(page.get_by_label("Name of the design")).to_be_focused()
-    typed(page.get_by_label("Name of the design"), "Rounded A")
+    type_over(page.get_by_label("Name of the design"), "Rounded A")
     page.keyboard.press("Tab")
     page.keyboard.type("round numbers")
     page.keyboard.press("Enter")
@@ -134,7 +134,7 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         line = theirs.locator(".kept tbody tr")
         expect(line).to_have_count(1, timeout=PATIENCE)
         theirs.get_by_role("button", name="Decide for Design 2").press("Enter")
-        typed(theirs.get_by_label("Reason"), "fits the old frame")
+        type_over(theirs.get_by_label("Reason"), "fits the old frame")
         theirs.keyboard.press("Enter")
         expect(theirs.locator(".decision")).to_contain_text("(fits the old frame)", timeout=PATIENCE)
         expect(mine.locator(".decision")).to_contain_text("Decided: Design 2 (fits the old frame)", timeout=PATIENCE)
@@ -148,7 +148,7 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
 ) -> None:
     wrong: list[str] = []
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     with contextlib.closing(browser.new_context(reduced_motion="reduce")) as context:
         page = context.new_page()
         with served(store) as address:
@@ -166,7 +166,7 @@ def test_operating_a_service_that_starts_anew_while_a_run_is_watched_by_keyboard
             expect(page.get_by_role("heading", name="Stopped early")).to_be_visible(timeout=PATIENCE)
             page.get_by_role("button", name="Resume run 1").press("Enter")
             expect(page.get_by_role("heading", name="Front so far")).to_be_visible(timeout=PATIENCE)
-            again = taken(store)
+            again = claim_waiting_job(store)
             again.finish(solved.result)
             expect(page.get_by_text("8 of 8 designs listed")).to_be_visible(timeout=PATIENCE)
             page.go_back()

@@ -30,7 +30,7 @@ TOUCH = """() => {
 """Touch every field without changing it."""
 
 
-def whole(sieve: Job) -> Job:
+def job_with_every_field(sieve: Job) -> Job:
     """Return a job with one of everything that the form has fields for."""
     return sieve | {
         "variables": {
@@ -80,7 +80,7 @@ def whole(sieve: Job) -> Job:
     }
 
 
-def through(page: Page, job: Job, tmp_path: Path) -> None:
+def pass_through_form(page: Page, job: Job, tmp_path: Path) -> None:
     """Bring a job into the form, touch every field, and compare."""
     file = tmp_path / "job.json"
     file.write_text(json.dumps(job))
@@ -105,10 +105,10 @@ def test_every_job_that_ships_and_those_of_the_tests_stay_word_for_word_with_eve
     jobs = [with_catalogues(tomllib.loads(file.read_text()), file.parent) for file in files]
     assert len(jobs) >= 5
     sieve = next(job for job in jobs if job["name"] == "Vibrating sieve")
-    parse_job(whole(sieve))
+    parse_job(job_with_every_field(sieve))
     page = form(store, "#/new")
-    for job in [*jobs, whole(sieve)]:
-        through(page, job, tmp_path)
+    for job in [*jobs, job_with_every_field(sieve)]:
+        pass_through_form(page, job, tmp_path)
 
 
 def test_points_of_a_load_are_pasted_from_a_table_with_their_units_and_mistakes_are_said_with_their_line(

@@ -16,7 +16,7 @@ from tests.service.api.swinging import solved_at_once
 from tests.service.page.accessibility import findings
 from tests.service.page.conftest import Pages, watched
 from tests.service.page.looks import faults
-from tests.service.page.test_swing_design import put
+from tests.service.page.test_swing_design import move_slider
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +35,7 @@ def number(page: Page, key: str) -> float:
     return float(page.locator(f'section.numbers [data-key="{key}"]').first.get_attribute("data-value") or "nan")
 
 
-def turned(page: Page, parts: str) -> tuple[float, float, float]:
+def placement_of_group(page: Page, parts: str) -> tuple[float, float, float]:
     """Return where a group of the drawing is laid, px, and how it is turned counter-clockwise, deg."""
     text = page.locator(f"section.stage svg.moving {parts}").get_attribute("transform") or ""
     x, y, angle = map(float, re.findall(r"-?[\d.]+", text))
@@ -47,10 +47,10 @@ def test_a_lever_moves_between_the_ends_of_its_swing(service: tuple[Page, str]) 
     page.goto(f"{address}/#/jobs/1/designs/1")
     lengths = {end: number(page, f"{end}_cylinder_length_mm") for end in ("least", "greatest")}
     for place, angle, length in ((0, "−20°", lengths["least"]), (180, "50°", lengths["greatest"])):
-        put(page, "Back and forth", place)
+        move_slider(page, "Back and forth", place)
         expect(page.locator("output.angle")).to_have_text(angle)
         expect(page.locator("output.where")).to_have_text(f"cylinder {float(f'{length:.4g}'):g} mm")
-        *_, drawn = turned(page, "g:has(> path.crank)")
+        *_, drawn = placement_of_group(page, "g:has(> path.crank)")
         assert drawn == pytest.approx(float(angle.removesuffix("°").replace("−", "-")), abs=0.01)
     expect(page.locator("section.stage svg.still .ghost")).to_have_count(2)
     expect(page.locator("section.stage svg.still .bearing")).to_have_count(2)
@@ -63,12 +63,12 @@ def test_the_cylinder_is_drawn_to_scale(service: tuple[Page, str]) -> None:
     """From the foot of its line to the pin it is as long as said, and the foot lies off the pivot by the offset."""
     page, address = service
     page.goto(f"{address}/#/jobs/1/designs/1")
-    put(page, "Back and forth", 180)
-    x, y, lever = turned(page, "g:has(> path.crank)")
+    move_slider(page, "Back and forth", 180)
+    x, y, lever = placement_of_group(page, "g:has(> path.crank)")
     pins = page.locator("section.stage svg.moving g:has(> path.crank) circle.pin")
     crank = float(pins.nth(1).get_attribute("cx") or "nan")
     scale = crank / number(page, "crank_mm")
-    foot = turned(page, "g.turning-cylinder")
+    foot = placement_of_group(page, "g.turning-cylinder")
     box = page.locator("section.stage svg.moving g.turning-cylinder path").evaluate("node => node.getBBox().width")
     assert box == pytest.approx(scale * number(page, "greatest_cylinder_length_mm"), rel=1e-3)
     pin = page.locator("section.stage svg.moving g.turning-cylinder circle.pin")

@@ -18,7 +18,7 @@ def number(page: Page, title: str) -> float:
     return float(page.get_by_label(title, exact=True).input_value())
 
 
-def fact(page: Page, name: str) -> Locator:
+def locate_fact(page: Page, name: str) -> Locator:
     return page.locator(f".facts dt:text-is('{name}') + dd")
 
 
@@ -61,11 +61,11 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     page.get_by_label("Speed", exact=True).fill("-90")
     r, l, e = 50.8, 160.0, 30.0
     excess = math.degrees(math.asin(e / (l - r)) - math.asin(e / (l + r)))
-    expect(fact(page, "Time ratio")).to_have_text(f"{(180 + excess) / (180 - excess):.4g}, slow outward")
-    expect(fact(page, "Outward stroke")).to_contain_text(f"{180 + excess:.4g}°")
+    expect(locate_fact(page, "Time ratio")).to_have_text(f"{(180 + excess) / (180 - excess):.4g}, slow outward")
+    expect(locate_fact(page, "Outward stroke")).to_contain_text(f"{180 + excess:.4g}°")
     expect(page.locator(".stroke-angle.outward text")).to_have_text(f"{180 + excess:.4g}°")
     least = math.degrees(math.acos((r + e) / l))
-    expect(fact(page, "Least transmission angle")).to_have_text(f"{least:.4g}°")
+    expect(locate_fact(page, "Least transmission angle")).to_have_text(f"{least:.4g}°")
     expect(page.locator(".curves .chart .curve")).to_have_count(4)
     angles = [2.0 * math.pi * k / 100_000 for k in range(100_000)]
     omega = -3.0 * math.pi
@@ -75,7 +75,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
         for angle, rise in zip(angles, rises, strict=True)
     ]
     ends = [f"{end:.4g}".replace("-", "−") for end in (min(speeds), max(speeds))]
-    expect(fact(page, "Slider velocity")).to_have_text(f"{ends[0]} to {ends[1]}\xa0m/s")
+    expect(locate_fact(page, "Slider velocity")).to_have_text(f"{ends[0]} to {ends[1]}\xa0m/s")
     require_accessible(page)
 
     crank, slider, guide = (
@@ -121,7 +121,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     for typed in ("NaN", "0", "-50", ""):
         offset.fill("30")
         expect(page.locator(".curves .chart .curve")).to_have_count(4)
-        expect(fact(page, "Stroke")).to_be_visible()
+        expect(locate_fact(page, "Stroke")).to_be_visible()
         page.get_by_label("Crank", exact=True).fill(typed)
         expect(page.get_by_label("Crank", exact=True)).to_have_accessible_description(re.compile("length"))
         require_no_mechanism(page)
@@ -142,7 +142,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
 
     page.goto(shared)
     page.reload()
-    expect(fact(page, "Stroke")).to_be_visible()
+    expect(locate_fact(page, "Stroke")).to_be_visible()
     lengths = [number(page, title) for title in ("Crank", "Rod", "Offset")]
     page.get_by_role("link", name="Search from here").press("Enter")
     ready(page)

@@ -18,15 +18,15 @@ DRAWN = """async (places) => {
 }"""
 
 
-def drawn(page: Page, places: list[list[float | str | None]]) -> Any:
+def drawn_points(page: Page, places: list[list[float | str | None]]) -> Any:
     return page.evaluate(DRAWN, places)
 
 
 def test_a_design_without_a_value_is_left_out_and_leaves_the_axes_as_they_are(open_page: Open, store: Store) -> None:
     page = open_page(store, "#/help")
     whole: list[list[float | str | None]] = [[100.0, 140.0], [103.0, 150.0], [105.0, 160.0]]
-    count, ticks = drawn(page, whole)
+    count, ticks = drawn_points(page, whole)
     assert count == 3
-    assert drawn(page, [*whole, [None, 155.0], [104.0, None], [None, None], ["inward", 150.0]]) == [count, ticks]
-    assert drawn(page, [[None, None]])[0] == 0
-    assert drawn(page, [])[0] == 0
+    assert drawn_points(page, [*whole, [None, 155.0], [104.0, None], [None, None], ["inward", 150.0]]) == [count, ticks]
+    assert drawn_points(page, [[None, None]])[0] == 0
+    assert drawn_points(page, [])[0] == 0

@@ -46,7 +46,7 @@ def opened(pages: Pages, tmp_path_factory: pytest.TempPathFactory) -> Iterator[t
             yield found
 
 
-def plain(text: str) -> tuple[str, list[float]]:
+def text_and_numbers(text: str) -> tuple[str, list[float]]:
     """Return a text without its numbers, and these; the page writes powers of ten as 2.3·10⁻⁵."""
     text = POWER.sub(lambda found: f"e{found[1].translate(RAISED)}", text)
     text = text.replace("\u00a0", " ").replace("−", "-").strip()
@@ -58,7 +58,9 @@ def require_alike(shown: list[list[str]], told: list[list[str]], *, within: floa
     """Compare rows of texts: the words, and the numbers. within: relative."""
     assert len(shown) == len(told)
     for row, other in zip(shown, told, strict=True):
-        for (words, numbers), (expected, values) in zip(map(plain, row), map(plain, other), strict=True):
+        for (words, numbers), (expected, values) in zip(
+            map(text_and_numbers, row), map(text_and_numbers, other), strict=True
+        ):
             assert words == expected
             assert numbers == pytest.approx(values, rel=within, abs=1e-12), other
 
@@ -120,7 +122,7 @@ def rows_of(place: Locator) -> list[list[str]]:
     return rows
 
 
-def asked(address: str, path: str, **given: Any) -> Any:
+def api_record(address: str, path: str, **given: Any) -> Any:
     return httpx.get(f"{address}{API}/jobs/1/designs/{DESIGN}/{path}", params=given, timeout=60.0).json()
 
 
@@ -130,7 +132,7 @@ def test_a_topic_shows_what_the_service_writes_in_either_system(opened: tuple[Pa
     page, address = opened
     shown = {}
     for system, units in SYSTEMS.items():
-        answer = asked(address, f"topics/{name}", units=units)
+        answer = api_record(address, f"topics/{name}", units=units)
         if "told" not in answer:
             expect(open_question(page, address, name, system).locator(".question")).to_contain_text("Change the job")
             continue
@@ -156,7 +158,7 @@ def test_a_command_has_a_form_and_its_answer_on_the_page(
     opened: tuple[Page, str], name: str, fields: dict[str, float], number: Any
 ) -> None:
     page, address = opened
-    answer = asked(address, name, **fields)
+    answer = api_record(address, name, **fields)
     unit = {"counterweight": 4.4482216152605, "law": 0.1129848290276167}.get(name, 25.4)
     for system, units in SYSTEMS.items():
         place = open_question(page, address, name, system) if name != "swing" else tab_of(page, address, system)
@@ -169,7 +171,7 @@ def test_a_command_has_a_form_and_its_answer_on_the_page(
         rows = rows_of(place)
         require_alike(rows, data_rows(answer["blocks"], units))
         size = number(answer[name]) / (unit if system == "inch" else 1.0)
-        values = [value for row in rows for cell in row for value in plain(cell)[1]]
+        values = [value for row in rows for cell in row for value in text_and_numbers(cell)[1]]
         assert any(value == pytest.approx(size, rel=5e-4) for value in values), (size, rows)
     labels = place.locator("form label").all_inner_texts()
     declared = DESIGN_QUESTIONS[name].inputs
@@ -195,7 +197,7 @@ def test_a_form_needs_what_the_question_needs_and_names_the_unit_of_the_reader(o
     expect(place).to_contain_text("Limit must be above 0")
     page.get_by_label("Units").select_option("inch")
     expect(place.locator("label").first).to_have_text("Position error allowed  in")
-    refused = asked(address, "allocate", limit_mm=-1.0)
+    refused = api_record(address, "allocate", limit_mm=-1.0)
     assert refused["status"] == 422
 
 

@@ -18,10 +18,10 @@ from slidercrank.service.store import Store
 from slidercrank.service.store.schema import jobs
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, put_in, served
+from tests.service.api.fixed_front import Solved, served, store_result
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open, watch
-from tests.service.store.contents import add, progress, result, taken
+from tests.service.store.contents import add, claim_waiting_job, progress, result
 
 TABLES = tomllib.loads(fronts.JOB)
 FRONT: dict[str, Any] = {
@@ -35,7 +35,7 @@ def test_a_run_is_watched_until_its_front_is_there(open_page: Open, store: Store
     page = open_page(store, "#/jobs/1")
     expect(page.get_by_role("banner").last).to_be_visible()
     expect(page.get_by_text("Waiting for a worker.")).to_be_visible()
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(replace(progress(1), hypervolume=0.0), FRONT)
     expect(page.get_by_text("None of these meets every requirement yet")).to_be_visible()
     claim.report(progress(2), FRONT)
@@ -66,20 +66,20 @@ def test_a_page_says_as_soon_as_a_worker_has_the_job(open_page: Open, store: Sto
     expect(page.get_by_text("Waiting for a worker. No worker is running.")).to_be_visible()
     store.register("first")
     submit(store, TABLES)
-    taken(store, "first")
+    claim_waiting_job(store, "first")
     expect(page.get_by_text("Waiting for a worker.")).to_be_hidden(timeout=5_000)
     page = open_page(store, "#/jobs/2")
     expect(page.get_by_text("Waiting for a worker. Every worker is busy (1).")).to_be_visible()
     store.register("second")
     expect(page.get_by_text("Waiting for a worker. Every worker is busy (1).")).to_be_hidden(timeout=5_000)
-    taken(store)
+    claim_waiting_job(store)
     expect(page.get_by_text("Waiting for a worker.")).to_be_hidden(timeout=2_000)
     expect(page.get_by_text("The front appears after the first round.")).to_be_visible()
 
 
 def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     page = open_page(store, own_clock=True)
     page.clock.install()
     page.goto(f"{page.url}#/jobs/1")
@@ -96,7 +96,7 @@ def test_an_estimate_that_is_not_renewed_vanishes(open_page: Open, store: Store)
 
 def test_long_stages_between_rounds_are_shown_with_how_far_they_are(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     page = open_page(store, "#/jobs/1")
     claim.report(progress(9), FRONT)
     expect(page.get_by_text("9 of 9")).to_be_visible()
@@ -114,16 +114,16 @@ def test_long_stages_between_rounds_are_shown_with_how_far_they_are(open_page: O
 
 def test_a_run_that_was_stopped_twice_is_watched_to_its_end(open_page: Open, store: Store, solved: Solved) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(progress(2), FRONT)
     store.cancel(1)
     claim.finish(replace(solved.result, status="cancelled"))
     store.resume(1)
-    taken(store).fail("no memory", again=False)
+    claim_waiting_job(store).fail("no memory", again=False)
     page = open_page(store, "#/jobs/1")
     page.get_by_role("button", name="Resume run 1").click()
     expect(page.get_by_role("heading", name="Front so far")).to_be_visible()
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(progress(3), FRONT)
     expect(page.get_by_text("3 of 9")).to_be_visible()
     expect(page.locator(".facts")).not_to_contain_text("8 designs")  # those of the search that was stopped
@@ -139,7 +139,7 @@ def test_a_run_that_was_stopped_twice_is_watched_to_its_end(open_page: Open, sto
 
 def test_a_search_that_says_nothing_at_first_is_explained(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     page = open_page(store, own_clock=True)
     page.clock.install()
     page.goto(f"{page.url}#/jobs/1")
@@ -165,7 +165,7 @@ def test_a_worker_solves_a_run_that_is_watched(open_page: Open, store: Store) ->
 
 def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, store: Store, solved: Solved) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     page = open_page(store, "#/jobs/1")
     page.get_by_role("button", name="Stop run 1").click()
     expect(page.get_by_text("stopping")).to_be_visible()
@@ -178,7 +178,9 @@ def test_a_running_job_is_cancelled_and_keeps_what_it_found(open_page: Open, sto
 
 
 def test_a_run_without_a_solution_says_what_contradicts(open_page: Open, store: Store) -> None:
-    put_in(store, result("infeasible", []), TABLES, message="time ratio 1.5 caps the transmission angle at 27.46 deg")
+    store_result(
+        store, result("infeasible", []), TABLES, message="time ratio 1.5 caps the transmission angle at 27.46 deg"
+    )
     page = open_page(store, "#/jobs/1")
     expect(page.get_by_role("heading", name="No design meets all requirements")).to_be_visible()
     told = page.get_by_text("caps the transmission angle")
@@ -189,7 +191,7 @@ def test_a_run_without_a_solution_says_what_contradicts(open_page: Open, store: 
 
 def test_a_run_that_failed_says_so_and_what_to_do(open_page: Open, store: Store) -> None:
     add(store)
-    taken(store).fail("no memory", again=False)
+    claim_waiting_job(store).fail("no memory", again=False)
     page = open_page(store, "#/jobs/1")
     expect(page.get_by_role("heading", name="The run stopped with an error")).to_be_visible()
     expect(page.get_by_text("no memory")).to_be_visible()
@@ -200,7 +202,7 @@ def test_a_run_that_failed_says_so_and_what_to_do(open_page: Open, store: Store)
 @pytest.mark.slow
 def test_a_lost_connection_comes_back(browser: Browser, store: Store) -> None:
     submit(store, TABLES)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     wrong: list[str] = []
     page = browser.new_context().new_page()
     with served(store) as address:

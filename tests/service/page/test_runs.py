@@ -16,10 +16,10 @@ from slidercrank.service.runs.result import StoredObjective
 from slidercrank.service.store import Store
 from slidercrank.service.store.bookmarks_and_wishes import bookmark_design
 from tests.service import fronts
-from tests.service.api.fixed_front import Solved, put_in
+from tests.service.api.fixed_front import Solved, store_result
 from tests.service.page.accessibility import require_accessible
 from tests.service.page.conftest import Open
-from tests.service.store.contents import ROWS, add, progress, result, taken
+from tests.service.store.contents import ROWS, add, claim_waiting_job, progress, result
 
 TABLES = tomllib.loads(fronts.JOB)
 # Of each answer with points, bytes that were sent, and those of its body.
@@ -63,7 +63,7 @@ def test_a_run_is_shown_with_its_state_in_words_and_its_best_values(open_page: O
         unit="mm",
     )
     extremes = {**found.extremes, "position_error": 0}
-    put_in(store, replace(found, objectives=(*found.objectives, error), extremes=extremes), TABLES)
+    store_result(store, replace(found, objectives=(*found.objectives, error), extremes=extremes), TABLES)
     page = open_page(store)
     item = page.get_by_role("listitem")
     expect(item).to_contain_text("done")
@@ -82,7 +82,7 @@ def test_the_list_changes_as_jobs_do(open_page: Open, store: Store) -> None:
     submit(store, TABLES)
     item = page.get_by_role("listitem")
     expect(item).to_contain_text("queued")
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     columns, points = ["time_ratio", "crank_mm"], [[1.2, 30.0], [1.3, 40.0], [1.4, 60.0]]
     claim.report(progress(3), {"columns": columns, "points": points[:2]})
     expect(item).to_contain_text("round 3 of 9")
@@ -106,7 +106,7 @@ def test_a_run_is_cancelled_and_resumed_from_the_list(open_page: Open, store: St
 
 
 def test_deleting_asks_first(open_page: Open, store: Store) -> None:
-    put_in(store, result(), TABLES)
+    store_result(store, result(), TABLES)
     page = open_page(store)
     page.get_by_label("More for run 1").click()
     page.get_by_role("button", name="Delete run 1").click()
@@ -169,7 +169,7 @@ def test_runs_are_sorted_by_keyboard_with_decision_and_workers_in_sight(open_pag
     for name in ("Press", "Feeder", "Sieve"):
         add(store, name)
     bookmark_design(store, 2, dimensions=(0.04, 0.1, 0.0), name="Rounded A", decided=True)
-    claim = taken(store, worker="bench-7")
+    claim = claim_waiting_job(store, worker="bench-7")
     claim.finish(result())
     page = open_page(store)
     names = page.get_by_role("listitem").locator(".name")
@@ -199,7 +199,7 @@ def pictures_asked_for(page: Page) -> list[list[int]]:
     return asked
 
 
-def in_sight(page: Page) -> set[int]:
+def runs_with_visible_pictures(page: Page) -> set[int]:
     """Return the numbers of the runs of whose pictures something is seen."""
     return set(
         page.evaluate(
@@ -214,7 +214,7 @@ def in_sight(page: Page) -> set[int]:
 @pytest.mark.slow
 def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: Open, store: Store) -> None:
     for _ in range(200):
-        put_in(store, result(), TABLES)
+        store_result(store, result(), TABLES)
     page = open_page(store, "#/help")
     page.route(
         "**/api/v1/jobs?*", lambda route: route.continue_(url=route.request.url.replace("limit=25", "limit=200"))
@@ -224,7 +224,7 @@ def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: O
     pictures = page.get_by_role("img", name="the front: 2 designs")
     expect(page.get_by_role("listitem").filter(has_text="Compare run")).to_have_count(200)
     expect(pictures.first).to_be_visible()
-    first = in_sight(page)
+    first = runs_with_visible_pictures(page)
     assert 4 < len(first) < 20
     assert asked == [sorted(first, reverse=True)]
     expect(pictures).to_have_count(len(first))
@@ -235,19 +235,19 @@ def test_of_200_runs_only_those_in_sight_are_asked_for_their_fronts(open_page: O
         page.wait_for_function(
             "() => new Promise((done) => requestAnimationFrame(() => setTimeout(() => done(true), 50)))"
         )
-        seen |= in_sight(page)
+        seen |= runs_with_visible_pictures(page)
     expect(pictures).to_have_count(len(seen))
     assert sorted(number for request in asked for number in request) == sorted(seen)  # each once
     page.get_by_role("listitem").filter(has_text="run 1 ·").scroll_into_view_if_needed()
     expect(page.get_by_role("listitem").filter(has_text="run 1 ·").get_by_role("img")).to_be_visible()
     asked_for = {number for request in asked for number in request}
-    assert asked_for <= seen | in_sight(page)
+    assert asked_for <= seen | runs_with_visible_pictures(page)
     assert len(asked_for) < 90
 
 
 def test_pictures_stay_while_rows_are_drawn_anew(open_page: Open, store: Store) -> None:
     for _ in range(3):
-        put_in(store, result(), TABLES)
+        store_result(store, result(), TABLES)
     page = open_page(store, "#/help", own_clock=True)
     page.clock.install()
     asked = pictures_asked_for(page)
@@ -260,7 +260,7 @@ def test_pictures_stay_while_rows_are_drawn_anew(open_page: Open, store: Store) 
 
 
 def test_points_of_pictures_are_sent_once(open_page: Open, store: Store) -> None:
-    put_in(store, result(rows=ROWS * 50), TABLES)
+    store_result(store, result(rows=ROWS * 50), TABLES)
     page = open_page(store)
     sent: list[list[int]] = []
     for _ in range(2):
@@ -276,7 +276,7 @@ def test_points_of_pictures_are_sent_once(open_page: Open, store: Store) -> None
 
 
 def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, store: Store) -> None:
-    put_in(store, result(), TABLES)
+    store_result(store, result(), TABLES)
     page = open_page(store, "#/help", expected=("503",), own_clock=True)
     page.clock.install()
     page.route("**/front-points?*", lambda route: route.fulfill(status=503, json={"detail": "away"}))
@@ -292,8 +292,10 @@ def test_pictures_that_the_service_could_not_give_come_later(open_page: Open, st
 @pytest.mark.slow
 def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> None:
     add(store)
-    taken(store).fail("its worker was killed", again=False)
-    put_in(store, replace(result("infeasible", rows=[]), message="time ratio is at most 1.2; got min 1.5"), TABLES)
+    claim_waiting_job(store).fail("its worker was killed", again=False)
+    store_result(
+        store, replace(result("infeasible", rows=[]), message="time ratio is at most 1.2; got min 1.5"), TABLES
+    )
     add(store)
     page = open_page(store, "#/help")
     asked = pictures_asked_for(page)
@@ -308,8 +310,8 @@ def test_runs_without_a_front_have_no_picture(open_page: Open, store: Store) -> 
 
 def test_two_runs_are_compared(open_page: Open, store: Store, solved: Solved) -> None:
     better = [{**row, "time_ratio": float(row["time_ratio"]) + 1.0} for row in solved.result.designs]  # type: ignore[arg-type]
-    put_in(store, solved.result, TABLES)
-    put_in(store, solved.result, TABLES, designs=better)
+    store_result(store, solved.result, TABLES)
+    store_result(store, solved.result, TABLES, designs=better)
     page = open_page(store)
     link = page.get_by_role("link", name="Compare 2 runs")
     page.get_by_label("Compare run 1").check()

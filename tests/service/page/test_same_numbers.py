@@ -18,7 +18,7 @@ from slidercrank.optimise.job import load_job
 from slidercrank.service.store import Store
 from slidercrank.service.store.damage_check_and_backup import back_up
 from tests.service import fronts
-from tests.service.api.fixed_front import API, Solved, put_in
+from tests.service.api.fixed_front import API, Solved, store_result
 from tests.service.page.accessibility import findings
 from tests.service.page.conftest import Pages, watched
 
@@ -53,7 +53,7 @@ def opened(pages: Pages, solved: Solved, tmp_path_factory: pytest.TempPathFactor
     path = tmp_path_factory.mktemp("same") / "store.db"
     back_up(solved.store, path)
     with Store(path) as store, watched(pages, store) as (page, address):
-        STRONG_JOB.append(put_in(store, solved.result, tomllib.loads(fronts.JOB) | STRONG))
+        STRONG_JOB.append(store_result(store, solved.result, tomllib.loads(fronts.JOB) | STRONG))
         yield page, address, f"{address}{API}/jobs/{solved.number}"
 
 

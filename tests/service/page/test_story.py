@@ -57,9 +57,9 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     expect(page.locator(".verdict")).to_contain_text("Misses a requirement: stroke")
     page.get_by_role("button", name="Reset").click()
 
-    drawing = ezdxf.readfile(taken_away(page, "DXF", tmp_path))  # type: ignore[attr-defined]
+    drawing = ezdxf.readfile(downloaded_file(page, "DXF", tmp_path))  # type: ignore[attr-defined]
     assert not drawing.audit().has_errors
-    report = taken_away(page, "Report", tmp_path).read_text(encoding="utf-8")
+    report = downloaded_file(page, "Report", tmp_path).read_text(encoding="utf-8")
     assert f"design {number}" in report.lower()
     page.goto(brushed)
     expect(page.get_by_text("6 of 12 designs listed")).to_be_visible()
@@ -77,7 +77,7 @@ def test_from_a_preset_to_drawing_table_report_and_a_link(form: Open, store: Sto
     elsewhere.context.close()
 
 
-def taken_away(page: Page, name: str, folder: Path) -> Path:
+def downloaded_file(page: Page, name: str, folder: Path) -> Path:
     """Return a file of the design on the page, downloaded."""
     page.get_by_role("navigation", name="Exports").get_by_text("Export", exact=True).click()
     with page.expect_download() as download:

@@ -31,7 +31,7 @@ RIGHT = f"{LEFT} + node.getBBox().width"
 """Ends of an element in the units of its picture."""
 
 
-def put(page: Page, name: str, place: int) -> None:
+def move_slider(page: Page, name: str, place: int) -> None:
     page.get_by_role("slider", name=name, exact=True).fill(str(place))
 
 
@@ -40,9 +40,9 @@ def test_a_design_moves_between_the_ends_of_its_swing(service: tuple[Page, str])
     page.goto(f"{address}/#/jobs/1/designs/1")
     told = page.locator("output.angle")
     for place, angle in ((0, "11°"), (180, "101°"), (359, "11°")):
-        put(page, "Back and forth", place)
+        move_slider(page, "Back and forth", place)
         expect(told).to_have_text(angle)
-    put(page, "Back and forth", 0)
+    move_slider(page, "Back and forth", 0)
     turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
     assert float(turned.split("rotate(")[1].rstrip(")")) == pytest.approx(-11.16, abs=0.01)
     expect(page.locator("svg.still .ghost")).to_have_count(2)
@@ -75,7 +75,7 @@ def test_the_stage_draws_the_body_and_the_actuator(service: tuple[Page, str]) ->
     along = float(crank["centre"].split()[0]) * {"m": 1e3, "mm": 1.0}[crank["centre"].split()[1]]
     long = float(page.locator('section.numbers [data-key="crank_mm"]').first.get_attribute("data-value") or "nan")
     for place in (0, 180):
-        put(page, "Back and forth", place)
+        move_slider(page, "Back and forth", place)
         box = page.locator("section.stage g.body > rect").evaluate(
             "node => [node.x, node.width].map(of => of.baseVal.value)"
         )
@@ -92,14 +92,14 @@ def test_the_stage_draws_the_cylinder_to_scale(service: tuple[Page, str]) -> Non
     """At the top the piston leaves a ninth of the stroke, of an engine that compresses ten times."""
     page, address = service
     page.goto(f"{address}/#/jobs/2/designs/1")
-    put(page, "Crank angle", 0)
+    move_slider(page, "Crank angle", 0)
     expect(page.locator("output.angle")).to_have_text("0°")
     piston = page.locator("section.stage svg.moving rect.slider")
     (wall,) = page.locator("section.stage svg.still path.cylinder").all()
     edges = wall.evaluate("node => { const box = node.getBBox(); return [box.x, box.x + box.width, box.height]; }")
     right = {}
     for at in (0, 90):  # a cycle is two turns
-        put(page, "Crank angle", at)
+        move_slider(page, "Crank angle", at)
         right[at] = piston.evaluate(RIGHT)
         assert piston.evaluate("node => node.height.baseVal.value") == pytest.approx(edges[2], abs=0.1)
     stroke = right[0] - right[90]
@@ -126,7 +126,7 @@ def test_curves_of_two_turns_are_both_there(service: tuple[Page, str]) -> None:
     chart = page.locator('figure[data-key="torque_Nm"]')
     expect(chart.locator(".axes text", has_text="720°")).to_have_count(1)
     expect(chart.locator(".centre")).to_have_count(4)
-    put(page, "Crank angle", 270)
+    move_slider(page, "Crank angle", 270)
     expect(page.locator("output.angle")).to_have_text("540°")
     turned = page.locator("svg.moving g:has(> path.crank)").get_attribute("transform") or ""
     assert math.isclose(abs(float(turned.split("rotate(")[1].rstrip(")"))), 180.0, abs_tol=0.01)

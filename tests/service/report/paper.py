@@ -41,7 +41,7 @@ def paper(content: bytes) -> list[Page]:
     return [_page(number, page) for number, page in enumerate(pypdfium2.PdfDocument(content))]
 
 
-def drawn(content: bytes, dots: float) -> list[Image]:
+def pages_as_pictures(content: bytes, dots: float) -> list[Image]:
     """Return the pages of a PDF as pictures (h, w, 3) with so many dots an inch."""
     document = pypdfium2.PdfDocument(content)
     return [page.render(scale=dots / 72, rev_byteorder=True).to_numpy()[:, :, :3] for page in document]
@@ -54,12 +54,12 @@ def _page(number: int, page: Any) -> Page:
     boxes = [each.get_bounds() for each in objects]
     text = page.get_textpage()
     pieces = [text.get_rect(index) for index in range(text.count_rects())]
-    outside = [box for box in pieces if not any(_within(box, other) for other in boxes)]
+    outside = [box for box in pieces if not any(_centre_is_within(box, other) for other in boxes)]
     texts = [(text.get_text_bounded(*box).strip(), box) for box in outside]
     ordered = sorted(insets, key=lambda inset: -inset.bottom)
     return Page(number, [(words, box) for words, box in texts if words], ordered, text.get_text_range())
 
 
-def _within(box: Box, other: Box) -> bool:
+def _centre_is_within(box: Box, other: Box) -> bool:
     across, up = 0.5 * (box[0] + box[2]), 0.5 * (box[1] + box[3])
     return other[0] <= across <= other[2] and other[1] <= up <= other[3]

@@ -19,7 +19,7 @@ from slidercrank.service.report.pdf import pdf_file
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import result_of
 from tests.service import fronts
-from tests.service.report.paper import A4, Inset, drawn, paper
+from tests.service.report.paper import A4, Inset, pages_as_pictures, paper
 
 Image = NDArray[np.uint8]
 Shares = NDArray[np.float64]
@@ -38,7 +38,7 @@ def figures() -> dict[str, tuple[Figure, Inset, Image]]:
     content = pdf_file(report)
     pictures = [block for section in report.sections for block in section.blocks if isinstance(block, Picture)]
     places = [(page.number, inset) for page in paper(content) for inset in page.insets]
-    sheets = drawn(content, DOTS)
+    sheets = pages_as_pictures(content, DOTS)
     found: dict[str, tuple[Figure, Inset, Image]] = {}
     for number, inset in places:
         # Pictures stand where there is room for them: one is told by the title above it.
@@ -86,7 +86,9 @@ def around(blocks: Shares) -> Shares:
     return np.asarray(np.max(shifted, axis=0))
 
 
-def seen(figure: Figure, inset: Inset, picture: Image, axes: int, x: float, y: float, colour: str) -> bool:
+def is_colour_on_paper(
+    figure: Figure, inset: Inset, picture: Image, axes: int, x: float, y: float, colour: str
+) -> bool:
     """Return whether a colour is on paper within two dots of a point of the axes of a figure."""
     figure.set_dpi(DOTS * inset.scale)
     across, up = figure.axes[axes].transData.transform((x, y))
@@ -117,7 +119,7 @@ def test_curves_over_the_cycle_reach_their_end() -> None:
         assert isinstance(line, Line2D)
         x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
         for angle in (100.0, 200.0, 350.0):
-            assert seen(figure, inset, picture, place, angle, float(np.interp(angle, x, y)), BLUE), angle
+            assert is_colour_on_paper(figure, inset, picture, place, angle, float(np.interp(angle, x, y)), BLUE), angle
 
 
 def test_every_design_is_a_point_in_every_panel_of_the_scatter_matrix() -> None:
@@ -138,4 +140,4 @@ def test_every_design_is_a_point_in_every_panel_of_the_scatter_matrix() -> None:
         assert len(offsets) == 20
         assert len(bare) >= 10
         for x, y in bare:
-            assert seen(figure, inset, picture, place, x, y, INK), (place, x, y)
+            assert is_colour_on_paper(figure, inset, picture, place, x, y, INK), (place, x, y)

@@ -59,7 +59,7 @@ def report() -> Report:
 
 
 @cache
-def printed() -> list[Page]:
+def printed_report() -> list[Page]:
     return paper(pdf_file(report()))
 
 
@@ -125,7 +125,7 @@ def named(title: str) -> Section:
 
 def test_both_files_say_everything() -> None:
     page = text_of(html())
-    words = re.sub(r"\s", "", "".join(sheet.whole for sheet in printed()))
+    words = re.sub(r"\s", "", "".join(sheet.whole for sheet in printed_report()))
     for text in texts(report()):
         assert text in page, text
         assert re.sub(r"\s", "", text) in words, text
@@ -210,8 +210,8 @@ def test_the_page_is_whole_and_nothing_in_it_runs_or_is_fetched() -> None:
 
 
 def test_nothing_on_a_page_of_the_pdf_is_cut_or_covers_something_else() -> None:
-    assert 4 <= len(printed()) <= 12
-    for page in printed():
+    assert 4 <= len(printed_report()) <= 12
+    for page in printed_report():
         for text, (left, bottom, right, top) in page.texts:
             assert left > 0.6 * INCH, text
             assert right < A4[0] - 0.6 * INCH, text
@@ -227,7 +227,7 @@ def test_nothing_on_a_page_of_the_pdf_is_cut_or_covers_something_else() -> None:
 
 
 def test_the_drawing_is_on_the_first_page_and_no_page_but_the_last_is_half_empty() -> None:
-    first, *others, _ = printed()
+    first, *others, _ = printed_report()
     assert len(first.insets) == 1
     assert "The linkage, to scale" in first.whole
     for page in (first, *others):
@@ -243,8 +243,8 @@ def test_the_pdf_is_whole_and_the_same_report_gives_the_same() -> None:
     assert len(content) < 2_000_000
     assert b"/StructTreeRoot" in content  # tagged
     for word in ("Summary", "Prepared", "crank", "Größe"):
-        assert any(word in page.whole for page in printed()), word
-    assert any("crank angle, deg" in page.whole for page in printed())  # texts of figures are texts too
+        assert any(word in page.whole for page in printed_report()), word
+    assert any("crank angle, deg" in page.whole for page in printed_report())  # texts of figures are texts too
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ def add(store: Store, name: str = "Feeder", **options: Any) -> Job:
     return store.submit(TABLES, name=name, **options)
 
 
-def taken(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
+def claim_waiting_job(store: Store, worker: str = "first", *, lease: float = 60.0) -> Claim:
     """Return the claim of a job that waits."""
     claim = store.claim(worker, lease=lease)
     assert claim is not None
@@ -45,7 +45,7 @@ def search_record(number: int) -> Record:
     return Record(Identity("0f" * 16, '{"slidercrank": "1"}'), number, number, 0.1 * number, floats.view(np.int64))
 
 
-def same(one: Record, other: Record) -> bool:
+def is_same_record(one: Record, other: Record) -> bool:
     """Whether two records are the same, bit for bit."""
     return replace(one, words=_NONE) == replace(other, words=_NONE) and one.words.tobytes() == other.words.tobytes()
 
@@ -85,7 +85,7 @@ def end_lease(address: str, job: int) -> None:
     database.close()
 
 
-def everything(address: str) -> dict[str, list[tuple[Any, ...]]]:
+def all_rows(address: str) -> dict[str, list[tuple[Any, ...]]]:
     """Return all rows of all tables."""
     database = Database(address)
     with database.reading() as connection:

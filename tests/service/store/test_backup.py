@@ -12,7 +12,15 @@ from slidercrank.model.errors import InputError, StoreError
 from slidercrank.service.store import Store
 from slidercrank.service.store.damage_check_and_backup import back_up, damages
 from slidercrank.service.store.database import Database
-from tests.service.store.contents import add, everything, progress, result, same, search_record, taken
+from tests.service.store.contents import (
+    add,
+    all_rows,
+    claim_waiting_job,
+    is_same_record,
+    progress,
+    result,
+    search_record,
+)
 
 
 def copy(file: Path, target: Path) -> None:
@@ -28,21 +36,21 @@ def test_a_restored_store_has_everything_and_its_jobs_go_on(tmp_path: Path) -> N
     file, backup = tmp_path / "store.db", tmp_path / "backup.db"
     with Store(file) as store:
         add(store)
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         claim.keep_record(search_record(0))
         claim.report(progress(1))
         claim.hand_back("the backup comes")
-        before = everything(str(file))
+        before = all_rows(str(file))
         copy(file, backup)
         add(store, "after the backup")
     assert [path.name for path in sorted(tmp_path.glob("backup*"))] == ["backup.db"]
     for path in tmp_path.glob("store.db*"):
         path.unlink()
     shutil.copy(backup, file)
-    assert everything(str(file)) == before
+    assert all_rows(str(file)) == before
     with Store(file) as store:
-        claim = taken(store)
-        assert same(claim.evaluation_records()[0], search_record(0))
+        claim = claim_waiting_job(store)
+        assert is_same_record(claim.evaluation_records()[0], search_record(0))
         claim.finish(result())
         assert store.job(1).state == "done"
 

@@ -15,40 +15,40 @@ from slidercrank.service.store import Artefact, Claim, Store
 from tests.service.store.contents import (
     ROWS,
     add,
+    all_rows,
+    claim_waiting_job,
     end_lease,
-    everything,
+    is_same_record,
     progress,
     result,
-    same,
     search_record,
-    taken,
 )
 
 
 def test_a_job_whose_lease_has_ended_goes_on_from_its_records(store: Store, address: str) -> None:
     add(store)
-    lost = taken(store)
+    lost = claim_waiting_job(store)
     for number in (1, 2):
         lost.keep_record(search_record(number))
         lost.report(progress(number))
     lost.keep_record(search_record(3))  # never written: its round was not told
     assert store.claim("second") is None
     end_lease(address, lost.job.id)
-    again = taken(store, "second")
+    again = claim_waiting_job(store, "second")
     assert (again.job.id, again.job.fence, again.job.worker) == (lost.job.id, 2, "second")
     found = again.evaluation_records()
     assert len(found) == again.job.records == 2
-    assert all(same(one, search_record(number)) for number, one in enumerate(found, 1))
+    assert all(is_same_record(one, search_record(number)) for number, one in enumerate(found, 1))
     assert again.job.progress is not None
     assert again.job.progress["evaluations"] == 32
     again.keep_record(search_record(3))
     again.report(progress(3))
-    assert same(again.evaluation_records()[2], search_record(3))
+    assert is_same_record(again.evaluation_records()[2], search_record(3))
 
 
 def test_repeating_earlier_rounds_is_told_and_is_not_to_have_begun(store: Store) -> None:
     add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.report(replace(progress(0), stage=REPEATING, step=4, steps=12))
     assert not claim.has_started, "so that a job that is cancelled meanwhile ends at once"
     event = store.events(claim.job.id)[-1]
@@ -74,23 +74,25 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
     write: str, claimed_again: bool, store: Store, address: str
 ) -> None:
     add(store)
-    paused = taken(store)
+    paused = claim_waiting_job(store)
     paused.keep_record(search_record(1))
     paused.report(progress(1))
     paused.keep_record(search_record(2))
     end_lease(address, paused.job.id)
     paused._renewed -= paused.lease + 1.0  # as its own clock tells it
     if claimed_again:
-        taken(store, "second").renew()  # it has now written as often as the first: only the fence tells them apart
-    before = everything(address)
+        claim_waiting_job(
+            store, "second"
+        ).renew()  # it has now written as often as the first: only the fence tells them apart
+    before = all_rows(address)
     with pytest.raises(LeaseLost, match="claim 1 of job 1 has lost it"):
         WRITES[write](paused)
-    assert everything(address) == before
+    assert all_rows(address) == before
 
 
 def test_every_write_renews_the_lease(store: Store) -> None:
     job = add(store)
-    claim = taken(store, lease=60.0)
+    claim = claim_waiting_job(store, lease=60.0)
     for write in ("report", "renew", "say", "write_files"):
         claim.lease += 600.0
         before = store.job(job.id).lease_until
@@ -104,16 +106,16 @@ def test_every_write_renews_the_lease(store: Store) -> None:
 
 def test_progress_is_written_with_its_record_or_not_at_all(store: Store, address: str) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(1))
     claim.report(progress(1))
-    before = everything(address)
+    before = all_rows(address)
     claim.keep_record(search_record(2))
     claim._records = 0  # the next record takes the number of the first, which the database refuses
     claim.lease = 0.0  # at once, not after many tries
     with pytest.raises(RunError, match="the store must be a database that can be"):
         claim.report(progress(2))
-    assert everything(address) == before
+    assert all_rows(address) == before
     assert [event.data["round"] for event in store.events(job.id) if event.kind == "progress"] == [1]
 
 
@@ -122,7 +124,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
     job = add(store)
     with pytest.raises(RunError, match="has no result: it is queued"):
         store.result(job.id)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(1))
     found = result(status, [] if status == "infeasible" else None)
     claim.finish(found, [Artefact(name="versions.json", media_type="application/json", content=b"{}\0")])
@@ -142,7 +144,7 @@ def test_what_was_found_is_read_as_it_was_written(status: str, store: Store) -> 
 
 def test_an_error_is_tried_again_later_and_in_the_end_set_aside(store: Store) -> None:
     job = add(store, most_attempts=2)
-    taken(store).fail("the disk was full", again=True, delay=60.0)
+    claim_waiting_job(store).fail("the disk was full", again=True, delay=60.0)
     waiting = store.job(job.id)
     assert (waiting.state, waiting.reason) == ("queued", "the disk was full (attempt 1 of 2)")
     assert waiting.due - waiting.submitted >= 60.0
@@ -150,7 +152,7 @@ def test_an_error_is_tried_again_later_and_in_the_end_set_aside(store: Store) ->
     store.cancel(job.id)
     store.resume(job.id)  # due at once, with all its attempts
     for number in (1, 2):
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         assert claim.job.attempts == number
         claim.fail("the disk was full", again=True)
     failed = store.job(job.id)
@@ -162,7 +164,7 @@ def test_any_text_is_taken(store: Store) -> None:
     job = add(store, "nul \0 and surrogate \ud800")
     assert job.name == "nul ? and surrogate ?"
     assert store.jobs(name="\0") == store.jobs(name="?") == [job]
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.add_message("\0\ud800")
     claim.fail("\0\ud800" + "x" * 10_000, again=False)
     failed = store.job(job.id)
@@ -175,27 +177,27 @@ def test_any_text_is_taken(store: Store) -> None:
 
 def test_what_cannot_succeed_is_not_tried_again(store: Store) -> None:
     job = add(store)
-    taken(store).fail("the stroke must be positive", again=False)
+    claim_waiting_job(store).fail("the stroke must be positive", again=False)
     assert (store.job(job.id).state, store.job(job.id).reason) == ("failed", "the stroke must be positive")
 
 
 def test_a_job_that_stops_its_workers_is_set_aside_and_the_next_one_claimed(store: Store, address: str) -> None:
     poison, good = add(store, most_attempts=2), add(store)
     for worker in ("first", "second"):
-        assert taken(store, worker).job.id == poison.id
+        assert claim_waiting_job(store, worker).job.id == poison.id
         end_lease(address, poison.id)
-    assert taken(store, "third").job.id == good.id
+    assert claim_waiting_job(store, "third").job.id == good.id
     aside = store.job(poison.id)
     assert aside.state == "failed"
     assert "its worker stopped without a report 2 times in a row, the last one was second" in aside.reason
     assert store.resume(poison.id).attempts == 0
-    assert taken(store).job.id == poison.id
+    assert claim_waiting_job(store).job.id == poison.id
 
 
 def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) -> None:
     job = add(store, most_attempts=2)
     for number in range(5):
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         claim.keep_record(search_record(number))
         claim.report(progress(number))
         end_lease(address, job.id)
@@ -205,22 +207,22 @@ def test_a_job_that_goes_forward_is_not_set_aside(store: Store, address: str) ->
 def test_a_job_handed_back_goes_on_without_counting_the_attempt(store: Store) -> None:
     job = add(store, most_attempts=1)
     for _ in range(3):
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         assert claim.job.attempts == 1
         claim.hand_back("the machine goes down")
     assert (store.job(job.id).state, store.job(job.id).reason) == (
         "queued",
         "the machine goes down",
     )
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(1))
     claim.hand_back("the machine goes down")
-    assert same(taken(store).evaluation_records()[0], search_record(1))
+    assert is_same_record(claim_waiting_job(store).evaluation_records()[0], search_record(1))
 
 
 def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: Store, address: str) -> None:
     job = add(store)
-    gone = taken(store)
+    gone = claim_waiting_job(store)
     gone.keep_record(search_record(1))
     gone.report(progress(1))
     end_lease(address, job.id)
@@ -229,13 +231,13 @@ def test_a_job_whose_worker_is_gone_is_cancelled_at_once_and_can_go_on(store: St
     with pytest.raises(LeaseLost):
         gone.report(progress(2))
     store.resume(job.id)
-    assert same(taken(store, "second").evaluation_records()[0], search_record(1))
+    assert is_same_record(claim_waiting_job(store, "second").evaluation_records()[0], search_record(1))
 
 
 @pytest.mark.parametrize("hears", ["look", "renew", "report"])
 def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: str, store: Store) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(1))
     claim.report(progress(1))
     assert not claim.cancel_asked
@@ -246,8 +248,8 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
     claim.finish(result("cancelled"))
     assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
     assert not store.resume(job.id).cancel_asked
-    again = taken(store, "second")
-    assert same(again.evaluation_records()[0], search_record(1))
+    again = claim_waiting_job(store, "second")
+    assert is_same_record(again.evaluation_records()[0], search_record(1))
     again.finish(result("done", ROWS[:1]))
     assert len(store.result(job.id).designs) == 1
     with pytest.raises(InputError, match="only a cancelled or failed job can continue; job 1 is done"):
@@ -257,7 +259,7 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
 
 def test_events_have_no_gaps_whoever_writes_them(store: Store) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
 
     def tell(number: int) -> None:
         claim.add_message(f"message {number}")
@@ -275,7 +277,7 @@ def test_events_have_no_gaps_whoever_writes_them(store: Store) -> None:
 
 def test_a_file_replaces_the_one_of_its_name(store: Store) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     for content in (b"old", b"new"):
         claim.write_files(Artefact(name="front.csv", media_type="text/csv", content=content))
     assert store.artefact(job.id, "front.csv") == Artefact(name="front.csv", media_type="text/csv", content=b"new")

@@ -18,10 +18,10 @@ from slidercrank.service.store.listing import Order
 from tests.service.store.contents import (
     TABLES,
     add,
-    everything,
+    all_rows,
+    claim_waiting_job,
     result,
     search_record,
-    taken,
 )
 
 
@@ -38,7 +38,7 @@ def test_a_submitted_job_waits_and_is_what_was_submitted(store: Store) -> None:
 
 def test_jobs_are_listed_latest_first_in_pages_by_state_and_by_name(store: Store) -> None:
     numbers = [add(store, name).id for name in ("Feeder", "Sieve", "feeder 100 %")]
-    taken(store)
+    claim_waiting_job(store)
     assert [job.id for job in store.jobs()] == numbers[::-1]
     assert [job.id for job in store.jobs(limit=2)] == numbers[:0:-1]
     assert [job.id for job in store.jobs(before=numbers[1])] == numbers[:1]
@@ -56,7 +56,7 @@ def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> No
     for number in random.choice(numbers, 7, replace=False):
         store.cancel(int(number))
     for _ in range(4):
-        taken(store)
+        claim_waiting_job(store)
     for number in random.choice(numbers, 6, replace=False):
         bookmark_design(store, int(number), dimensions=(0.04, 0.1, 0.0), name="Rounded", decided=bool(number % 2))
     keys: dict[Order, Callable[[Job], Any]] = {
@@ -84,7 +84,7 @@ def test_every_order_of_jobs_is_that_of_its_key_page_by_page(store: Store) -> No
 def test_the_highest_priority_is_claimed_first_then_the_oldest(store: Store) -> None:
     low, first, second = add(store, priority=-1), add(store), add(store)
     high = add(store, priority=5)
-    assert [taken(store).job.id for _ in range(4)] == [high.id, first.id, second.id, low.id]
+    assert [claim_waiting_job(store).job.id for _ in range(4)] == [high.id, first.id, second.id, low.id]
     assert store.claim("first") is None
 
 
@@ -114,13 +114,13 @@ def test_a_waiting_job_is_cancelled_at_once(store: Store) -> None:
 
 def test_only_an_ended_job_is_deleted_and_nothing_of_it_stays(store: Store, address: str) -> None:
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(1))
     with pytest.raises(InputError, match="job 1 is running; cancel it first"):
         store.delete(job.id)
     claim.finish(result("cancelled"), [Artefact(name="a", media_type="text/plain", content=b"")])
     store.delete(job.id)
-    assert all(not rows for rows in everything(address).values())
+    assert all(not rows for rows in all_rows(address).values())
     with pytest.raises(InputError, match="there is no job 1"):
         store.job(job.id)
     assert add(store).id == job.id + 1  # a number never comes back
@@ -132,7 +132,7 @@ def test_no_more_jobs_wait_than_may(store: Store) -> None:
     add(store)
     with pytest.raises(QueueFull, match="at most 2 jobs may wait; 2 do"):
         add(store)
-    taken(store)
+    claim_waiting_job(store)
     add(store)
 
 
@@ -170,7 +170,7 @@ def test_workers_are_known_while_they_are_there(store: Store) -> None:
     add(store)
     seen = {worker.id: worker.seen for worker in store.workers()}
     time.sleep(0.01)  # a clock that counts milliseconds has to go on
-    taken(store, "first").renew()
+    claim_waiting_job(store, "first").renew()
     assert [worker.id for worker in store.workers()] == ["first", "second"]
     assert store.workers()[0].seen > seen["first"]
     assert 0.0 <= store.workers()[1].silent < 60.0

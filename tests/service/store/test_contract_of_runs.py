@@ -12,18 +12,18 @@ from sqlalchemy import update
 from slidercrank.model.errors import InputError, LeaseLost, NotFound, RunError
 from slidercrank.service.store import Artefact, Claim, Limits, Store
 from slidercrank.service.store.schema import jobs
-from tests.service.store.contents import ROWS, TABLES, add, progress, result, search_record, taken
+from tests.service.store.contents import ROWS, TABLES, add, claim_waiting_job, progress, result, search_record
 
 FILE = Artefact(name="job.toml", media_type="application/toml", content=b"name = 'Feeder'\n")
 
 
-def begun(store: Store, run: str = "20260131-142501-feeder") -> Claim:
+def claim_of_own_job(store: Store, run: str = "20260131-142501-feeder") -> Claim:
     """Return the claim of a job that its submitter solves itself."""
     return store.begin(TABLES, name="Feeder", run=run, worker="desk", lease=60.0, files=[FILE])
 
 
 def test_a_job_begun_by_its_submitter_is_running_in_its_hands(store: Store) -> None:
-    claim = begun(store)
+    claim = claim_of_own_job(store)
     job = store.job(claim.job.id)
     assert (job.state, job.worker, job.attempts, job.most_attempts, job.fence) == ("running", "desk", 1, 1, 1)
     assert store.claim("other") is None
@@ -36,7 +36,7 @@ def test_a_job_begun_by_its_submitter_is_running_in_its_hands(store: Store) -> N
 
 
 def test_the_name_of_a_run_belongs_to_one_job(store: Store) -> None:
-    first, second, third = (begun(store).job.run for _ in range(3))
+    first, second, third = (claim_of_own_job(store).job.run for _ in range(3))
     assert (first, second, third) == (
         "20260131-142501-feeder",
         "20260131-142501-feeder-2",
@@ -56,7 +56,7 @@ def test_jobs_submitted_in_the_same_second_have_runs_of_their_own(store: Store) 
 
 
 def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
-    first = begun(store)
+    first = claim_of_own_job(store)
     first.keep_record(search_record(1))
     first.finish(result("cancelled"))
     again = store.reclaim(first.job.id, worker="desk", lease=60.0)
@@ -70,7 +70,7 @@ def test_a_cancelled_job_can_be_taken_up_at_once(store: Store) -> None:
 
 
 def test_a_running_job_is_taken_from_its_worker_only_where_that_is_known_to_be_gone(store: Store) -> None:
-    lost = begun(store)
+    lost = claim_of_own_job(store)
     lost.keep_record(search_record(1))
     lost.report(progress(1))
     with pytest.raises(InputError, match="job 1 is running"):
@@ -95,7 +95,7 @@ def test_no_more_jobs_are_claimed_than_may_run(store: Store) -> None:
 def test_limits_are_kept(store: Store) -> None:
     limits = Limits(seconds=2.5, evaluations=10**12, memory=2**40)
     assert add(store, limits=limits).limits == limits
-    assert taken(store).job.limits == limits
+    assert claim_waiting_job(store).job.limits == limits
     assert add(store).limits == Limits()
 
 
@@ -108,7 +108,7 @@ def test_a_limit_that_is_none_is_refused(name: str, limit: float) -> None:
 
 def test_a_list_shows_what_a_job_found(store: Store) -> None:
     add(store)
-    taken(store).finish(replace(result(), extremes={"time_ratio": 0}))
+    claim_waiting_job(store).finish(replace(result(), extremes={"time_ratio": 0}))
     assert store.jobs()[0].summary == {
         "designs": 2,
         "hypervolume": 0.5,
@@ -123,7 +123,7 @@ def test_a_list_shows_what_a_job_found(store: Store) -> None:
 def test_a_summary_has_few_points_with_the_first_and_the_last(store: Store) -> None:
     rows = [{**ROWS[0], "time_ratio": float(number)} for number in range(1000)]
     add(store)
-    taken(store).finish(result(rows=rows))
+    claim_waiting_job(store).finish(result(rows=rows))
     summary = store.jobs()[0].summary
     assert summary is not None
     points = [point[0] for point in summary["points"]]
@@ -134,7 +134,7 @@ def test_a_summary_has_few_points_with_the_first_and_the_last(store: Store) -> N
 
 def test_the_record_of_a_result_has_columns_in_place_of_designs(store: Store) -> None:
     add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     with pytest.raises(RunError, match="job 1 has no result: it is running"):
         store.result_record(1)
     claim.finish(result())

@@ -7,12 +7,12 @@ import time
 import pytest
 
 from slidercrank.service.store import Store
-from tests.service.store.contents import add, progress, result, taken
+from tests.service.store.contents import add, claim_waiting_job, progress, result
 
 
 def test_news_are_the_events_after_the_one_that_is_known(store: Store) -> None:
     one, other, third = (add(store).id for _ in range(3))
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     for number in range(1, 6):
         claim.report(progress(number))
     news = store.news({one: 3, other: 1, third: 0})
@@ -25,7 +25,7 @@ def test_news_are_the_events_after_the_one_that_is_known(store: Store) -> None:
 
 def test_news_are_told_at_most_so_many_at_a_time_and_none_is_left_out(store: Store) -> None:
     job = add(store).id
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     for number in range(1, 8):
         claim.report(progress(number))
     claim.finish(result())
@@ -55,5 +55,5 @@ def test_the_longest_wait_is_that_of_the_oldest_job_that_may_be_claimed(store: S
     add(store)
     time.sleep(0.05)
     assert 0.05 <= store.longest_wait() < 30.0
-    taken(store).fail("later", again=True, delay=60.0)
+    claim_waiting_job(store).fail("later", again=True, delay=60.0)
     assert store.longest_wait() == pytest.approx(0.0), "it may not be claimed yet"

@@ -20,7 +20,7 @@ from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, exact, jobs
 from tests.service.api.serving import client_of
 from tests.service.conftest import Command
-from tests.service.store.contents import add, result, taken
+from tests.service.store.contents import add, claim_waiting_job, result
 
 PARTS = {
     "job": jobs.c.tables,
@@ -40,7 +40,7 @@ def solved(store: Store, monkeypatch: pytest.MonkeyPatch) -> Store:
     found = ExactDesigns(np.array([[0.1, 0.3, 0.0], [0.2, 0.4, 0.0]]), (), (slopes, slopes), (np.zeros((0, 2)),) * 2)
     for each in (replace(result(), exact=found), result()):
         add(store)
-        taken(store).finish(each)
+        claim_waiting_job(store).finish(each)
     return store
 
 

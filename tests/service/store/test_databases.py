@@ -31,7 +31,7 @@ from slidercrank.service.store.queue import claim_next
 from slidercrank.service.store.schema import metadata
 from tests.service.conftest import Command
 from tests.service.fronts import job_file
-from tests.service.store.contents import add, end_lease, everything, progress, result, search_record, taken
+from tests.service.store.contents import add, all_rows, claim_waiting_job, end_lease, progress, result, search_record
 from tests.service.store.postgresql import Cluster
 
 
@@ -213,7 +213,7 @@ def test_a_write_that_fails_for_a_while_takes_effect_once(
     assert failing.left == 0
     kinds = [event.data.get("state", event.kind) for event in store.events(job.id)]
     assert kinds == ["queued", "running", "progress", "progress", "progress", "done"]
-    assert len(everything(address)["designs"]) == 2
+    assert len(all_rows(address)["designs"]) == 2
 
 
 def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -223,10 +223,10 @@ def test_a_write_is_not_tried_beyond_the_lease(store: Store, address: str, monke
     failing = Failing(store, monkeypatch)
     failing.left = sys.maxsize
     claim.lease = 0.05
-    before = everything(address)
+    before = all_rows(address)
     with pytest.raises(StoreError, match="the disk is full"):
         claim.report(progress(1))
-    assert everything(address) == before
+    assert all_rows(address) == before
     failing.left = 0
     end_lease(address, job.id)
     assert store.claim("second") is not None
@@ -241,16 +241,16 @@ def test_a_full_disk_loses_nothing_and_the_job_goes_on_when_there_is_room(tmp_pa
         job = add(store)
         claim = store.claim("first")
         assert claim is not None
-        before = everything(str(tmp_path / "store.db"))
-        room(store, 50)
+        before = all_rows(str(tmp_path / "store.db"))
+        limit_pages_of_file(store, 50)
         large = Artefact(name="large", media_type="text/plain", content=b"x" * 10_000_000)
         claim.patient = lambda _: False
         with pytest.raises(StoreError, match=r"database or disk is full; .* free; free some space"):
             claim.write_files(large)
-        assert everything(str(tmp_path / "store.db")) == before
+        assert all_rows(str(tmp_path / "store.db")) == before
         with store.reading() as connection:
             assert connection.scalar(text("PRAGMA integrity_check")) == "ok"
-        room(store, 100_000)
+        limit_pages_of_file(store, 100_000)
         claim.write_files(large)
         assert store.artefact(job.id, "large") == large
 
@@ -266,7 +266,7 @@ def test_a_file_that_is_opened_twice_keeps_its_log_when_another_process_ends(tmp
         assert add(store).id == 2
 
 
-def room(store: Store, pages: int) -> None:
+def limit_pages_of_file(store: Store, pages: int) -> None:
     """Let SQLite's file have at most so many pages, as on a disk that is full."""
     with store.writing() as connection:  # one thread has one connection, so that this one is used again
         connection.execute(text(f"PRAGMA max_page_count={pages}"))
@@ -505,7 +505,7 @@ def test_a_store_that_cannot_be_written_can_be_looked_at(used: bool) -> None:
         folder = Path(name)
         with Store(folder / "store.db") as opened:
             add(opened)
-            taken(opened).finish(result())
+            claim_waiting_job(opened).finish(result())
             if not used:
                 opened.close()
             before = sorted(folder.iterdir())

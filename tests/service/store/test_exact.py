@@ -35,7 +35,7 @@ def made_up(count: int, seed: int) -> ExactDesigns:
     )
 
 
-def same(one: ExactDesigns, other: ExactDesigns) -> bool:
+def are_identical(one: ExactDesigns, other: ExactDesigns) -> bool:
     """Whether all numbers are the same, bit for bit, in arrays of the same shapes."""
 
     def arrays(exact: ExactDesigns) -> list[tuple[tuple[int, ...], bytes]]:
@@ -52,7 +52,7 @@ def same(one: ExactDesigns, other: ExactDesigns) -> bool:
 @pytest.mark.parametrize("count", [0, 1, 7])
 def test_exact_designs_come_back_bit_for_bit(count: int) -> None:
     given = made_up(count, seed=count)
-    assert same(unpacked_exact(packed_exact(given)), given)
+    assert are_identical(unpacked_exact(packed_exact(given)), given)
 
 
 def test_damaged_exact_designs_are_refused() -> None:

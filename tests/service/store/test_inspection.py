@@ -13,13 +13,13 @@ from slidercrank.service.store.damage_check_and_backup import clock_ahead, damag
 from slidercrank.service.store.database import Database
 from slidercrank.service.store.schema import designs, events, jobs
 from slidercrank.service.store.schema_version import stored_and_known_version
-from tests.service.store.contents import add, progress, result, search_record, taken
+from tests.service.store.contents import add, claim_waiting_job, progress, result, search_record
 
 UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
 """The servers of the tests run so."""
 
 
-def found(address: str) -> list[str]:
+def damage_found(address: str) -> list[str]:
     """Return the damage that is found."""
     database = Database(address)
     wrong = damages(database)
@@ -34,18 +34,18 @@ def used(store: Store, address: str, monkeypatch: pytest.MonkeyPatch) -> str:
     for _ in range(4):
         add(store)
     for status in ("done", "cancelled", "infeasible"):
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         claim.keep_record(search_record(0))
         claim.report(progress(1))
         claim.finish(result(status, rows=[] if status == "infeasible" else None))
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(search_record(0))
     claim.report(progress(1))
     return address
 
 
 def test_a_store_in_use_has_no_damages(used: str) -> None:
-    assert found(used) == []
+    assert damage_found(used) == []
 
 
 def test_rows_that_are_missing_or_too_many_are_named(used: str) -> None:
@@ -55,7 +55,7 @@ def test_rows_that_are_missing_or_too_many_are_named(used: str) -> None:
         connection.execute(insert(events).values(job=2, number=99, at=0.0, kind="message", data="{}"))
         connection.execute(update(jobs).where(jobs.c.id == 4).values(records=3))
     database.close()
-    assert found(used) == [
+    assert damage_found(used) == [
         "job 1 should have 2 designs but has 1",
         "job 2 should have 4 events but has 5",
         "job 4 should have 3 records but has 1",

@@ -17,7 +17,7 @@ from slidercrank.service.store.database_clock import JUMP, SETTLING, ClockJumps
 from slidercrank.service.workers.heartbeat import Heartbeat
 from slidercrank.service.workers.worker import solve_claimed, work
 from tests.service.store.clocks import Clock
-from tests.service.store.contents import add, progress, result, search_record, taken
+from tests.service.store.contents import add, claim_waiting_job, progress, result, search_record
 
 HOURS = [7200.0, -7200.0, 1200.0, -1200.0]
 steps = pytest.mark.parametrize("step", HOURS, ids=[f"{step / 60:+.0f} min" for step in HOURS])
@@ -41,7 +41,7 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: Clock, step: float) -> None:
     job = add(store)
     store.register("first")
-    claim = taken(store, "first", lease=30.0)
+    claim = claim_waiting_job(store, "first", lease=30.0)
     assert store.claim("second") is None  # it has seen the clock as it was
     with Heartbeat(claim):
         clock.ahead = step
@@ -58,7 +58,7 @@ def test_a_job_stays_with_its_worker_when_the_clock_is_set(store: Store, clock: 
 @steps
 def test_a_write_between_a_jump_and_the_next_renewal_is_taken(store: Store, clock: Clock, step: float) -> None:
     add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     clock.ahead = step
     claim.report(progress(1))
     left = store.job(1).lease_until
@@ -72,7 +72,7 @@ def test_the_job_of_a_dead_worker_goes_to_another_one_when_the_clock_was_set(
 ) -> None:
     job = add(store)
     store.register("first")
-    lost = taken(store, "first", lease=30.0)
+    lost = claim_waiting_job(store, "first", lease=30.0)
     lost.report(progress(1))
     clock.ahead = step
     with Store(address) as other:  # one that has not seen the jump
@@ -108,12 +108,12 @@ def test_a_job_that_its_worker_leaves_is_free_at_once_whatever_the_clock_says(
     monkeypatch.setattr("slidercrank.service.workers.worker._solve_and_end", lose)
     store.register("first")
     job = add(store)
-    solve_claimed(store, taken(store, "first", lease=30.0), lambda: False)
+    solve_claimed(store, claim_waiting_job(store, "first", lease=30.0), lambda: False)
     clock.ahead = -86_400.0
     store.register("first")  # it lives, so that nothing else tells that it has left the job
     assert store.has_waiting_jobs()
     with Store(address) as other:
-        again = taken(other, "second")
+        again = claim_waiting_job(other, "second")
         assert (again.job.id, again.job.fence) == (job.id, 2)
         solve_claimed(store, Claim(store, replace(again.job, fence=1), 30.0), lambda: False)
     left = store.job(job.id).lease_until
@@ -164,7 +164,7 @@ def test_a_worker_that_drains_waits_for_a_job_that_is_not_due_yet(store: Store, 
 
 def test_a_job_that_is_tried_again_is_due_within_a_minute(store: Store) -> None:
     job = add(store, most_attempts=100)
-    taken(store).fail("an error", again=True, delay=1e30)
+    claim_waiting_job(store).fail("an error", again=True, delay=1e30)
     assert store.job(job.id).due - time.time() < 61.0
     assert store.claim("second") is None
 

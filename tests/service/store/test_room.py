@@ -12,7 +12,7 @@ from slidercrank.service.store.database import Full
 from slidercrank.service.store.database_clock import SETTLING, ClockJumps
 from slidercrank.service.workers.heartbeat import DEAF, Budget, Heartbeat
 from tests.service.made_up_search import until
-from tests.service.store.contents import add, end_lease, progress, same, search_record, taken
+from tests.service.store.contents import add, claim_waiting_job, end_lease, is_same_record, progress, search_record
 from tests.service.store.small_disk import Disk, large_record
 
 LEASE = 0.2
@@ -21,7 +21,7 @@ LEASE = 0.2
 def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Store) -> None:
     disk = Disk(store)
     job = add(store, most_attempts=1)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     claim.keep_record(large_record(1))
     disk.fill()
     leases: set[float | None] = set()
@@ -52,14 +52,14 @@ def test_a_round_without_room_keeps_its_lease_for_as_long_as_it_waits(store: Sto
         0,
         1,
     )
-    assert same(claim.evaluation_records()[0], large_record(1))
+    assert is_same_record(claim.evaluation_records()[0], large_record(1))
 
 
 def test_a_job_stays_with_its_worker_while_not_even_its_lease_can_be_renewed(store: Store, address: str) -> None:
     with Store(address) as other:
         disk = Disk(store, other)
         job = add(store, most_attempts=1)
-        claim = taken(store)
+        claim = claim_waiting_job(store)
         claim.keep_record(large_record(1))
         end_lease(address, job.id)
         disk.fill(to_the_last_byte=True)
@@ -84,7 +84,7 @@ def test_another_worker_goes_on_with_a_job_whose_worker_died_on_a_full_disk(
     monkeypatch.setattr("slidercrank.service.store.database_clock.SETTLING", 0.2)
     disk = Disk(store)
     add(store)
-    taken(store, lease=LEASE).keep_record(large_record(1))
+    claim_waiting_job(store, lease=LEASE).keep_record(large_record(1))
     disk.fill(to_the_last_byte=True)
     until(store.has_waiting_jobs)
     with pytest.raises(Full):
@@ -97,7 +97,7 @@ def test_another_worker_goes_on_with_a_job_whose_worker_died_on_a_full_disk(
 def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(store: Store) -> None:
     disk = Disk(store)
     job = add(store)
-    claim = taken(store, lease=LEASE)
+    claim = claim_waiting_job(store, lease=LEASE)
     claim.keep_record(search_record(1))
     claim.report(progress(1))
     claim.keep_record(large_record(2))
@@ -105,7 +105,7 @@ def test_a_job_is_given_back_without_the_records_for_which_there_is_no_room(stor
     claim.hand_back("its worker stopped; another one continues")
     waiting = store.job(job.id)
     assert (waiting.state, waiting.records, waiting.attempts) == ("queued", 1, 0)
-    assert [same(one, search_record(1)) for one in store.evaluation_records(job.id)] == [True]
+    assert [is_same_record(one, search_record(1)) for one in store.evaluation_records(job.id)] == [True]
 
 
 def test_nothing_is_claimed_on_a_disk_without_room_though_the_claim_would_fit(
@@ -143,7 +143,7 @@ def test_a_search_that_waits_for_room_does_not_count_as_deaf(store: Store, monke
     monkeypatch.setattr("slidercrank.service.workers.heartbeat._STOP_PATIENCE", 0.0)
     monkeypatch.setattr("slidercrank.service.workers.heartbeat.end_process_tree", left.append)
     job = add(store)
-    claim = taken(store)
+    claim = claim_waiting_job(store)
     heartbeat = Heartbeat(claim, budget=Budget(Limits(seconds=1e-9)), grace=10.0)
     claim.waits = "waits: the store needs free space on its disk"
     heartbeat._check_unresponsive_search()

@@ -12,10 +12,10 @@ from slidercrank.service.store import Store
 from .audit import keep_audit
 from .crew import crew
 from .feed import Feed
-from .found import undisturbed
-from .full import whole
+from .full_disk import is_intact
 from .kills import finish
 from .small_disk import small_disk
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _ROOM = 60_000  # bytes that are left at most
@@ -26,7 +26,7 @@ _LASTS = (1.0, 2.0)  # of the time in which all attempts of a job could be used 
 _SIZE = "12m"  # a store takes its write-ahead log into its file at 4 MB, and needs room for both
 
 
-def room(count: int, seed: int) -> Verdict:
+def fill_store_disk(count: int, seed: int) -> Verdict:
     """Fill the disk of a store `count` times while workers solve jobs; return the final states of the jobs."""
     chance = random.Random(seed)
     expected = undisturbed()
@@ -53,7 +53,7 @@ def room(count: int, seed: int) -> Verdict:
                 for one in store.events(job, limit=1_000_000):
                     if one.data.get("state") == "running" and any(begin < one.at < end for begin, end in full):
                         verdict.violate("lost", f"job {job} was claimed on a full disk")
-        if not whole(address):
+        if not is_intact(address):
             verdict.violate("lost", "the file is damaged")
     if not verdict.failed:
         verdict.violate("lost", "no write failed, so that nothing was tried")

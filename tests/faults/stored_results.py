@@ -20,7 +20,7 @@ from .jobs import KINDS, Found, tables
 _OF_THE_RUN = ("seconds", "run")
 
 
-def found(address: str) -> dict[int, Found]:
+def results_in_store(address: str) -> dict[int, Found]:
     """Return the result of each job of a store that has ended with one."""
     database = Database(address)
     with database.reading() as connection:
@@ -47,5 +47,5 @@ def undisturbed() -> dict[str, Found]:
         with Store(file) as store:
             numbers = {submit(store, tables(kind)).id: kind for kind in KINDS}
             work(store, drain=True)
-        every = found(str(file))
+        every = results_in_store(str(file))
     return {kind: every[number] for number, kind in numbers.items()}

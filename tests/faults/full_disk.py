@@ -12,9 +12,9 @@ from slidercrank.service.store import Store
 from .audit import keep_audit
 from .crew import crew
 from .feed import Feed
-from .found import undisturbed
 from .kills import LEASE, finish
 from .places import place
+from .stored_results import undisturbed
 from .verdict import Verdict, judge
 
 _ROOM = 40_000  # bytes that are left at most
@@ -22,7 +22,7 @@ _JOURNAL = 100_000  # bytes that the journal may have, which has to go on
 _LASTS = (0.1, 2.5)  # s
 
 
-def full(count: int, seed: int) -> Verdict:
+def fill_disk_at_random(count: int, seed: int) -> Verdict:
     """Fill the disk `count` times while workers solve jobs, and return what came of the jobs."""
     chance = random.Random(seed)
     expected = undisturbed()
@@ -40,7 +40,7 @@ def full(count: int, seed: int) -> Verdict:
                 _limit(workers.pids(), most)
                 time.sleep(chance.uniform(*_LASTS))
                 _limit(workers.pids(), None)
-                damaged += not whole(where.address)
+                damaged += not is_intact(where.address)
             feed.fill()
             finish(feed, workers)
             verdict = judge(where.address, feed.jobs, expected, journal)
@@ -51,7 +51,7 @@ def full(count: int, seed: int) -> Verdict:
     return verdict
 
 
-def whole(file: str) -> bool:
+def is_intact(file: str) -> bool:
     """Whether SQLite finds nothing wrong in a file."""
     connection = sqlite3.connect(file)
     try:
