@@ -1,4 +1,4 @@
-/** The shell: header, preferences, and the view that the address names. */
+/** Frame of the page: header, preferences, and the view named by the address. */
 
 import { isAbort } from "./lib/api.js";
 import { read } from "./lib/address.js";
@@ -12,8 +12,8 @@ import { sentenceOf } from "./lib/refusals.js";
 import { renewTimes } from "./jobs/times.js";
 
 /**
- * The views. Each module exports title (text) and show(place, {parts, query, signal}): it fills `place`, may return a promise,
- * and stops its work once `signal` is aborted. Errors that it throws are shown in its place.
+ * Views. Each module exports title (text) and show(place, {parts, query, signal}), which fills `place`, may return a promise, and stops
+ * once `signal` is aborted. Its errors are shown in the place of the view.
  * @type {{ name: string, match: (parts: string[]) => boolean, load: () => Promise<Page.View> }[]}
  */
 const VIEWS = [
@@ -55,7 +55,7 @@ const NAVIGATION = [
   ["Help", "#/help"],
 ];
 
-const RENEW = 20_000; // ms between two looks at the times on the page
+const RENEW = 20_000; // ms between updates of the times on the page
 
 let leaving = new AbortController();
 
@@ -80,7 +80,7 @@ async function showView({ again = false } = {}) {
     document.title = `${module.title} · slidercrank`;
     await module.show(place, { parts, query, signal });
     restore();
-    // Do not take the focus from a reader who already uses the view: an open menu closes when it loses the focus.
+    // Leave the focus alone if it is already in the view: an open menu closes when it loses the focus.
     if (changed && !again && !signal.aborted && !focused(main)) main.focus({ preventScroll: true });
   } catch (error) {
     if (signal.aborted || isAbort(error)) return;
@@ -155,7 +155,7 @@ function showPreferences() {
 }
 
 document.querySelector(".skip")?.addEventListener("click", (event) => {
-  event.preventDefault(); // the address belongs to the views
+  event.preventDefault(); // addresses with # belong to the views
   byId("main").focus();
 });
 window.addEventListener("hashchange", () => showView());
@@ -163,6 +163,6 @@ setInterval(renewTimes, RENEW);
 watchDownloads();
 rememberScroll();
 showPreferences();
-const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // the view reports errors of the service
+const units = Promise.all([readySystem(), readyKinds()]).catch(() => {}); // views report errors of the service
 if (system() === "inch") units.then(() => showView());
 else showView();

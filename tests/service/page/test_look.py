@@ -175,7 +175,7 @@ def test_a_crank_that_locks_stops_at_the_ends_of_its_arc(form: Open, store: Stor
 
 def test_a_crank_dragged_outwards_stays_in_the_picture(form: Open, store: Store) -> None:
     page = form(store, "#/look?crank_mm=50&rod_mm=150&offset_mm=40", viewport={"width": 1280, "height": 900})
-    expect(fact(page, "Stroke")).to_be_visible()
+    expect(locate_fact(page, "Stroke")).to_be_visible()
     grip = page.get_by_role("slider", name=re.compile("^Crank pin"))
     x, y = place_of(grip)
     page.mouse.move(x, y)

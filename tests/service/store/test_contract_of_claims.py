@@ -81,9 +81,8 @@ def test_a_worker_that_wakes_after_its_lease_writes_nothing(
     end_lease(address, paused.job.id)
     paused._renewed -= paused.lease + 1.0  # as its own clock tells it
     if claimed_again:
-        claim_waiting_job(
-            store, "second"
-        ).renew()  # it has now written as often as the first: only the fence tells them apart
+        second = claim_waiting_job(store, "second")
+        second.renew()  # it has now written as often as the first: only the fence tells them apart
     before = all_rows(address)
     with pytest.raises(LeaseLost, match="claim 1 of job 1 has lost it"):
         WRITES[write](paused)

@@ -24,14 +24,14 @@ export const OVER = [
   { name: "position", title: "slider position" },
   { name: "way", title: "distance from the inner dead centre" },
 ];
-/** The same for a swing. @type {{ name: string, title: string }[]} */
+/** Abscissas for a swing. @type {{ name: string, title: string }[]} */
 export const OVER_SWING = [
   { name: "angle", title: "both strokes" },
   { name: "time", title: "time" },
   { name: "crank", title: "crank angle" },
   { name: "position", title: "slider position" },
 ];
-/** The same for a lever, whose cylinder counts as the slider. */
+/** Abscissas for a lever, whose cylinder counts as the slider. */
 export const OVER_LEVER = [
   ...OVER_SWING.slice(0, 2),
   { name: "crank", title: "lever angle" },
@@ -51,7 +51,8 @@ export function wayAt({ curves, sliderEnds: [inner] }, angle) {
 }
 
 /**
- * Return the abscissa with a name. rpm: cycles per minute; the sign is the direction of the crank. turns: crank turns per cycle, 0 for a swing.
+ * Return the abscissa with a name. rpm: cycles per minute, signed by the direction of the crank. turns: crank revolutions per cycle, 0
+ * for a swing.
  * @param {string} name @param {number} rpm @param {number} turns @returns {Abscissa}
  */
 export function abscissaOf(name, rpm, turns = 1) {

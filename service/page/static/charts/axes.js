@@ -1,9 +1,9 @@
-/** The frame of a chart on canvas: grid, numbers, headings. */
+/** Frame of a chart on canvas: grid, numbers, headings. */
 
 import { headed } from "../front/columns.js";
 import { FONT } from "./paint.js";
 
-/** Return the ticks of an axis of words: each at its place. @type {(words: string[]) => [number, string][]} */
+/** Return one tick per word for an axis of words. @type {(words: string[]) => [number, string][]} */
 export function wordTicks(words) {
   return words.map((word, place) => [place, word]);
 }

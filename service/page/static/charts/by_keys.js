@@ -1,12 +1,12 @@
-/** Keyboard access to the designs of a chart: arrows move between them, Enter opens one, Space selects it; each is read out. */
+/** Keyboard access to the designs in a chart: arrow keys move between designs, Enter opens one, Space selects it; screen readers announce each. */
 
 import { h } from "../lib/dom.js";
 
 const ARROWS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"];
 
 /**
- * Make a chart reachable. mask(): the designs that may be gone to. next(row, key): where an arrow goes from a design, as a number of
- * every design and the direction in which it grows; a design is stayed at. say(row): what is read out.
+ * Give a chart keyboard access. mask(): selectable designs. next(row, key): the design that an arrow key leads to, or a value by which
+ * designs are ordered and the direction to go. say(row): the announcement of a design.
  * @param {HTMLElement} place
  * @param {{
  *   mask: () => ArrayLike<number>, next: (row: number, key: string) => number | { of: (row: number) => number, by: 1 | -1 },
@@ -48,7 +48,7 @@ function firstOf(mask) {
 }
 
 /**
- * Return the design of a mask that follows one by a number, ties by their place; the same one at the end.
+ * Return the next design of a mask in the order of a value, ties by position; the same design at the end.
  * @param {number} from @param {ArrayLike<number>} mask @param {{ of: (row: number) => number, by: 1 | -1 }} way
  */
 export function following(from, mask, { of, by }) {

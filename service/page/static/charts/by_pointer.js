@@ -1,11 +1,11 @@
-/** Pointer access to the designs of a chart: hover, open or select by click; the chart defines what a drag does. */
+/** Pointer access to the designs in a chart: hover, open or select by click; the chart defines the effect of a drag. */
 
 /** @typedef {{ x: number, y: number }} Place pixels in the chart */
 
 /**
- * Let the pointer reach the designs of a chart. under(here): the design there, or null. cursor(here, row): the pointer's shape there.
- * begin(here, event): whether a drag may begin there. drag(here): a drag goes on. end(dragged): the button is up again, after a drag or
- * without one; return whether a press without a drag may open a design.
+ * Give a chart pointer access. under(here): the design at a position, or null. cursor(here, row): pointer shape at a position.
+ * begin(here, event): whether a drag may begin there. drag(here): continues a drag. end(dragged): called when the button is released,
+ * with or without a drag; returns whether a press without a drag may open a design.
  * @param {HTMLElement} top
  * @param {{ point: (row: number | null) => void, open: (row: number) => void, select: (row: number) => void }} chart
  * @param {{

@@ -91,7 +91,7 @@ export function line(one, { x, y, abscissa }) {
 }
 
 /**
- * Return the marks of a curve's minimum and maximum, none if they are unknown. Values of samples alone are marked as approximate.
+ * Return the marks of a curve's minimum and maximum, none if they are unknown. Values known only from samples are marked as approximate.
  * @param {Drawn} one @param {Pen} pen
  */
 export function peaks(one, { x, y, abscissa }) {

@@ -17,14 +17,14 @@ import { range, scale } from "./scale.js";
  */
 
 const HEIGHTS = { large: 250, small: 140 };
-const SOON = 150; // ms after a change until charts out of sight follow
-const EVERY = 100; // ms between readouts while it moves; faster ones cannot be read
+const SOON = 150; // ms from a change until charts outside the screen are redrawn
+const EVERY = 100; // ms between readouts during motion; faster changes are unreadable
 
 /**
- * Put charts into `place`; turned(angle): called as the reader moves over a chart. Returns
- * - show(series, panels, abscissa): series: each {name, series, curves, centres}, the first in front; centres: the dead centres, deg;
- *   panels: each {key, title, unit}, a curve of the API; abscissa: what they are drawn over. - turn({angle, settled}). - close().
- * large: keys of the curves that are large, at most `most`; onChoice(keys): the reader chose others.
+ * Put charts into `place`; turned(angle): called as the pointer moves over a chart. Returns show(series, panels, abscissa), turn({angle,
+ * settled}) and close(). series: {name, series, curves, centres} of each design, the first in front; centres: dead centres, deg. panels:
+ * {key, title, unit} of each curve. large: keys of the large charts, at most `most`; onChoice(keys): called when the user makes other
+ * charts large.
  * @param {HTMLElement} place @param {(angle: number, taken: boolean) => void} turned
  * @param {{ large: string[], most?: number, onChoice: (large: string[]) => void }} sizes
  */
@@ -159,7 +159,7 @@ function chart(panel, turned, resize) {
     },
     onpointermove: (event) => (lit || event.pointerType === "mouse") && move(event),
   });
-  // Cursor and dots are a layer of their own, so that the picture is not repainted as they move.
+  // Cursor and dots have a separate layer, so that the picture is not repainted as they move.
   const cursor = h("div", { class: "cursor" });
   const plot = h("div", { class: "plot" }, picture);
   const figure = h(
@@ -196,7 +196,10 @@ function chart(panel, turned, resize) {
     );
   };
 
-  /** Return the crank angle of the nearest point on the first curve: over a displacement, each place has two. @param {number} right @param {number} down */
+  /**
+   * Return the crank angle of the nearest point on the first curve; a displacement alone has two crank angles.
+   * @param {number} right @param {number} down
+   */
   function nearest(right, down) {
     const [{ values }] = series;
     let [best, least] = [0, Infinity];
@@ -286,7 +289,7 @@ function chart(panel, turned, resize) {
   };
 }
 
-/** Return exact ends of a curve in the reader's units. @param {Page.Ends | null | undefined} exact @param {string} unit */
+/** Return the exact extremes of a curve in display units. @param {Page.Ends | null | undefined} exact @param {string} unit */
 function endsOf(exact, unit) {
   if (!exact) return exact;
   const { low, high } = exact;

@@ -1,18 +1,18 @@
 /**
- * Curves over a cycle, as the API gives them: values at even places of it, from 0 to 360. Of a turn of the crank the places are its
- * angles from 0 deg on; of a cycle of two turns half of them; of a swing times, forth up to 180 and then back.
+ * Curves over a cycle as in the API, at evenly spaced positions from 0 to 360. For one revolution, positions are crank angles from 0 deg;
+ * for two revolutions, half of them. For a swing, they are times: forward up to 180, then back.
  */
 
 /** @typedef {Pick<Page.Machine, "curves" | "turns">} Cranked What says where the crank stands. */
 
-/** Return the crank angle at a place, deg. @param {Cranked} machine @param {number} place @returns {number} */
+/** Return the crank angle at a position in the cycle, deg. @param {Cranked} machine @param {number} place @returns {number} */
 export function crankAt({ curves, turns }, place) {
   return turns ? turns * place : (between(curves.crank_angle_deg, place) ?? NaN);
 }
 
 /**
- * Return the place at which the crank stands at an angle, deg, or as near to it as it comes; of several the one in the half of the cycle
- * that it is in now.
+ * Return the position in the cycle at which the crank is at an angle, deg, or nearest to it; of several, the one in the current half of
+ * the cycle.
  * @param {Cranked} machine @param {number} angle @param {number} now a place
  */
 export function placeOf(machine, angle, now) {
@@ -33,11 +33,11 @@ export function turned(angle) {
 }
 
 /**
- * Return the value of a curve at a crank angle, deg, straight between its points; null where it has none.
+ * Return the value of a curve at a crank angle, deg, by linear interpolation; null where it is undefined.
  * @param {readonly (number | null)[]} values @param {number} angle @returns {number | null}
  */
 export function between(values, angle) {
-  const place = (turned(angle) * values.length) / 360; // in this order, so that the angle of a point is exact
+  const place = (turned(angle) * values.length) / 360; // this order keeps the angle of a point exact
   const first = Math.floor(place);
   const [from, to] = [values[first % values.length], values[(first + 1) % values.length]];
   if (from === null || place === first) return from;
@@ -46,7 +46,7 @@ export function between(values, angle) {
 
 /** Return {low, high} of a curve, each with its {angle, value}; null for a curve without values. @param {readonly (number | null)[]} values */
 export function extremes(values) {
-  let [low, high] = [-1, -1]; // where they are
+  let [low, high] = [-1, -1];
   let [least, most] = [Infinity, -Infinity];
   values.forEach((value, n) => {
     if (value === null) return;

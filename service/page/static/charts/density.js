@@ -1,8 +1,8 @@
-/** Density of many lines: each adds one to the pixels that it crosses; denser pixels are darker. */
+/** Density of many lines: each line adds one to the pixels that it crosses; denser pixels are darker. */
 
 /**
- * Lines between upright axes. `across` are the pixels of the axes, `heights` the pixel row of each line on each axis, line by
- * line, -1 where it has none there. A line can be taken away again, so that a change costs only the lines that it is about.
+ * Lines between vertical axes. across: horizontal pixel of each axis. heights: pixel row of each line on each axis, line by line; -1 for
+ * a missing value. Lines can be removed again, so that the cost of a change depends only on the lines that change.
  */
 export class Density {
   /** @param {number} width @param {number} height @param {number[]} across @param {Int16Array} heights */
@@ -16,7 +16,7 @@ export class Density {
     this.pixels = new Uint32Array(this.image.data.buffer);
   }
 
-  /** Add a line (by 1) or take it away (by -1). @param {number} line @param {1 | -1} by */
+  /** Add (1) or remove (-1) a line. @param {number} line @param {1 | -1} by */
   add(line, by) {
     const { across, heights, counts, width } = this;
     const axes = across.length;
@@ -27,7 +27,7 @@ export class Density {
       const start = across[axis];
       const run = across[axis + 1] - start;
       const rise = to - from;
-      // Fixed point with 16 binary places: a third of the time of floats with rounding.
+      // Fixed-point numbers with 16 binary digits take a third of the time of rounded floats.
       if (Math.abs(rise) <= run) {
         const slope = Math.trunc((rise * 65536) / run);
         let at = (from << 16) + 32768;
@@ -45,13 +45,13 @@ export class Density {
     }
   }
 
-  /** Forget all lines. */
+  /** Remove all lines. */
   clear() {
     this.counts.fill(0);
   }
 
   /**
-   * Draw on a canvas in a colour [r, g, b]; `strength` is how much of it one line has.
+   * Draw on a canvas in a colour [r, g, b]. strength: opacity of a single line.
    * @param {Page.Canvas} context @param {number[]} colour @param {number} strength
    */
   paint(context, [red, green, blue], strength) {

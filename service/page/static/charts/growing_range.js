@@ -1,8 +1,8 @@
-/** Axis ranges that stay still while their data grows. */
+/** Axis ranges that stay stable while their data grows. */
 
 import { range } from "./scale.js";
 
-const AHEAD = 0.2; // of the range, which is left free on the side where it had to grow
+const AHEAD = 0.2; // fraction of the range that is added as margin where it grows
 
 /**
  * Return a function that gives an axis range for values: it includes all earlier ranges and grows in steps.

@@ -1,10 +1,10 @@
-/** Histograms of the chosen designs beside the axes of parallel coordinates. */
+/** Histograms of the remaining designs beside the axes of parallel coordinates. */
 
 const BINS = 24;
 const WIDE = 16; // pixels, of the fullest bin of an axis
 
 /**
- * Return the number of rows of a mask in each bin, axis by axis, from the top.
+ * Return the number of masked rows in each bin, axis by axis, from the top.
  * @param {Int16Array} heights of every design on every axis, less than 0 where it has no value
  * @param {number} axes @param {ArrayLike<number>} mask @param {number} top of the axes @param {number} bottom
  */

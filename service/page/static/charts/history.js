@@ -5,7 +5,7 @@ import { grouped, text } from "../lib/numbers.js";
 import { isPoint } from "./points.js";
 import { range, scale } from "./scale.js";
 
-const [LEAST, HEIGHT] = [460, 190]; // px: on a phone it shrinks
+const [LEAST, HEIGHT] = [460, 190]; // px; shrinks on a phone
 const AREA = { left: 76, right: 24, top: 12, bottom: 40 };
 
 /**

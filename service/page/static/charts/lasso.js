@@ -1,9 +1,9 @@
 /** Freehand line around some designs. */
 
-const MOST = 32; // corners: a link stays short
+const MOST = 32; // corners, to keep links short
 
 /**
- * Return whether a place is inside a closed line [[x, y], ...]: a ray from it crosses the line an odd number of times.
+ * Return whether a point is inside a closed line [[x, y], ...]: a ray from the point crosses the line an odd number of times.
  * @param {readonly Page.Point[]} line @param {number} x @param {number} y
  */
 export function inside(line, x, y) {

@@ -1,11 +1,11 @@
-/** Lines of designs over parallel axes: drawn one by one, and found under the pointer. */
+/** Lines of designs over parallel axes: drawing single lines, and finding the line under the pointer. */
 
 import { nearest } from "./by_pointer.js";
 
-const NEAR = 8; // pixels above or below a line within which the pointer is on it
+const NEAR = 8; // vertical pixels within which the pointer is on a line
 
 /**
- * Draw the line of a design. across, heights: of the axes, and of all designs on them in pixels, below 0 where a design has no value.
+ * Draw the line of a design. across, heights: pixels of the axes, and of all designs on them; negative for a missing value.
  * @param {Page.Canvas} context @param {number} row @param {number} axes @param {number[]} across @param {Int16Array} heights
  */
 export function line(context, row, axes, across, heights) {
@@ -22,13 +22,13 @@ export function line(context, row, axes, across, heights) {
 }
 
 /**
- * Return the design of `mask` whose line passes nearest above or below a place; null if none is near.
+ * Return the design of `mask` whose line passes nearest above or below a point; null if none is near.
  * @param {{ across: number[], heights: Int16Array }} view @param {Uint8Array} mask @param {number} x @param {number} y
  */
 export function nearestLine({ across, heights }, mask, x, y) {
   const count = across.length;
   const after = across.findIndex((at) => at >= x);
-  const right = after < 0 ? count - 1 : after; // beyond the ends, the end counts
+  const right = after < 0 ? count - 1 : after; // beyond the ends, use the end
   const left = after <= 0 ? right : right - 1;
   const share = right === left ? 0 : (x - across[left]) / (across[right] - across[left]);
   /** @param {number} row */

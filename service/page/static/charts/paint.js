@@ -15,10 +15,10 @@ const VIRIDIS = [
   "#7ad151",
   "#bddf26",
   "#fde725",
-]; // tenth by tenth
+]; // in steps of a tenth
 
 /**
- * Return layers over each other: {place, resize(width, height), contexts}; lengths are pixels of the page.
+ * Return stacked layers: {place, resize(width, height), contexts}; lengths in CSS pixels.
  * @param {number} count @param {string} label
  */
 export function layers(count, label) {
@@ -31,7 +31,7 @@ export function layers(count, label) {
     contexts,
     top: canvases[count - 1],
     /**
-     * Give all layers a size and clear them. plain: the layers that count pixels of the page, not of the screen.
+     * Resize and clear all layers. plain: layers in CSS pixels instead of device pixels.
      * @param {number} width @param {number} height @param {readonly number[]} plain
      */
     resize(width, height, plain = []) {
@@ -43,7 +43,7 @@ export function layers(count, label) {
         contexts[index].setTransform(factor, 0, 0, factor, 0, 0);
       });
     },
-    /** Show a layer, or hide it. @param {number} index @param {boolean} shown */
+    /** Show or hide a layer. @param {number} index @param {boolean} shown */
     show(index, shown) {
       canvases[index].style.visibility = shown ? "visible" : "hidden";
     },
@@ -59,8 +59,8 @@ export function layers(count, label) {
 }
 
 /**
- * Draw 3-pixel squares at places, in colours[of[i]], for the rows of `mask`, or all rows without one. They replace
- * everything on the layer, whose pixels are those of the page.
+ * Draw 3-pixel squares in colours[of[i]] for the rows of `mask`, or for all rows without a mask. They replace the content of the layer,
+ * which is in CSS pixels.
  * @param {Page.Canvas} context @param {ArrayLike<number>} across @param {ArrayLike<number>} up @param {Uint8Array | null} mask @param {Uint8Array} of
  * @param {string[]} colours
  */
@@ -93,7 +93,7 @@ export function writeOver(context, words, x, y, ink, edge = 3) {
   context.fillText(words, x, y);
 }
 
-/** Return [r, g, b] of a colour of the style, "#0b5c8a", or of a ramp. @param {string} colour @returns {number[]} */
+/** Return [r, g, b] for a colour such as "#0b5c8a" or one of a ramp. @param {string} colour @returns {number[]} */
 export function rgb(colour) {
   if (colour.startsWith("rgb")) return (colour.match(/\d+/g) ?? []).map(Number);
   const digits = parseInt(colour.slice(1), 16);
@@ -101,8 +101,8 @@ export function rgb(colour) {
 }
 
 /**
- * Return `count` colours from low to high: viridis, by S. van der Walt and N. Smith (public domain), whose steps look alike,
- * without the end that blends into the background.
+ * Return `count` colours from low to high: viridis, by S. van der Walt and N. Smith (public domain), perceptually uniform, without the
+ * end that blends into the background.
  * @param {Page.Ink} ink @param {number} count
  */
 export function ramp(ink, count) {
@@ -119,7 +119,7 @@ export function ramp(ink, count) {
   });
 }
 
-/** Return the colours of categories: those of the series, repeated. @param {Page.Ink} ink @param {number} count */
+/** Return the colours of categories: the series colours, repeated. @param {Page.Ink} ink @param {number} count */
 export function palette(ink, count) {
   return Array.from({ length: count }, (_, index) => ink[`series-${1 + (index % 6)}`]);
 }

@@ -1,4 +1,4 @@
-/** Parallel coordinates on canvas: every design a line, every axis a quantity; dragging on an axis sets limits. */
+/** Parallel coordinates on canvas: a line for each design, an axis for each quantity; dragging on an axis sets limits. */
 
 import { inDisplayUnit, text } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
@@ -42,14 +42,14 @@ import { shadesOf } from "./shades.js";
  */
 
 const MARGIN = 12; // pixels above and below the axes
-const NEAR = 22; // pixels from an axis within which a drag acts on it
-const EDGE = 7; // pixels from an end of a limit within which a drag moves that end
-const FEW = 500; // lines drawn one by one; more are drawn as a density
+const NEAR = 22; // pixels around an axis in which a drag acts on it
+const EDGE = 7; // pixels around an end of a limit in which a drag moves it
+const FEW = 500; // maximum number of separate lines; more are drawn as a density
 const [BACK, FRONT, OVER] = [0, 1, 2];
 
 /**
- * Return {place, draw(what)}. `chart` gives what is drawn: data, limits, axes() [{key, flipped}], marks() [{row, colour}], and
- * takes what the reader does: limit(key, limit), point(row or null), open(row).
+ * Return {place, draw(what)}. chart: the data to draw (data, limits, axes() [{key, flipped}], marks() [{row, colour}]) and the handlers
+ * of user actions: limit(key, limit), point(row or null), open(row).
  * @param {Chart} chart
  */
 export function parallel(chart) {
@@ -59,7 +59,7 @@ export function parallel(chart) {
   );
   const { place, contexts } = stack;
   /** @type {View} */
-  let view; // empty until it is first drawn
+  let view; // empty before the first drawing
   /** @type {{ axis: number, from: number, span: number[] | null, moved: boolean } | null} */
   let dragged = null;
 
@@ -79,7 +79,7 @@ export function parallel(chart) {
     axes.forEach(({ key }, axis) => {
       const numbers = data.numbers(key);
       const { at } = scales[axis];
-      const even = !chart.log(key); // by a factor: ten thousands of calls take a while
+      const even = !chart.log(key); // multiplied out: tens of thousands of calls are slow
       const zero = at(0);
       const factor = at(1) - zero;
       for (let row = 0; row < numbers.length; row += 1) {
@@ -115,7 +115,7 @@ export function parallel(chart) {
       );
   }
 
-  /** Draw all designs behind the chosen ones, once; with many designs, they show only while some are excluded. */
+  /** Draw all designs once, behind the remaining ones; many designs are visible only while some are excluded. */
   function drawBack() {
     if (!view.all || view.backed) return;
     view.backed = true;
@@ -135,7 +135,7 @@ export function parallel(chart) {
     context.globalAlpha = 1;
   }
 
-  /** Draw the chosen designs. With many designs, redraw only those that changed, unless most did. */
+  /** Draw the remaining designs. With many designs, redraw only those that changed, unless most changed. */
   function drawChosen() {
     const { mask, chosen } = chart.limits;
     const some = chosen < chart.data.count;
@@ -208,7 +208,7 @@ export function parallel(chart) {
     }
   }
 
-  /** Return where a design outside the front crosses the axes, just beyond the end of an axis that does not reach it. @param {Api.Row} cells */
+  /** Return where a design outside the front crosses the axes; values out of range lie just beyond the end of an axis. @param {Api.Row} cells */
   function heightsOf(cells) {
     return Int16Array.from(view.axes, ({ key }, axis) => {
       const words = chart.data.words(key);
@@ -219,7 +219,7 @@ export function parallel(chart) {
     });
   }
 
-  /** Write the values of a design at the axes, on the side where no ticks stand. @param {Page.Canvas} context @param {number} row */
+  /** Write the values of a design at the axes, on the side without ticks. @param {Page.Canvas} context @param {number} row */
   function drawValues(context, row) {
     const { ink, axes, across, heights, height } = view;
     Object.assign(context, { textAlign: "right", font: `600 ${FONT}` });
@@ -268,7 +268,10 @@ export function parallel(chart) {
     return { axis, y: Math.min(view.height - MARGIN, Math.max(MARGIN, y)) };
   }
 
-  /** Take hold of an axis, of an end of its limit, or of all of it; return whether there is an axis. @param {{ x: number, y: number }} here @param {PointerEvent} event */
+  /**
+   * Start to drag on an axis, an end of its limit, or the whole limit; return whether there is an axis.
+   * @param {{ x: number, y: number }} here @param {PointerEvent} event
+   */
   function begin(here, event) {
     const { axis, y } = axisAt(here);
     if (axis < 0) return false;
@@ -282,7 +285,7 @@ export function parallel(chart) {
     return true;
   }
 
-  /** Set the limit by a drag to a place; return whether the drag is long enough. @param {{ x: number, y: number }} here */
+  /** Set the limit while dragging; return whether the drag is long enough. @param {{ x: number, y: number }} here */
   function drag(here) {
     if (!dragged) return false;
     const pending = axisAt(here).y;
@@ -306,7 +309,7 @@ export function parallel(chart) {
       });
       return true;
     }
-    const bit = (at(high) - at(low)) / 500; // of the axis: nearer than this to its end is at the end
+    const bit = (at(high) - at(low)) / 500; // fraction of the axis within which a limit snaps to its end
     const step = value(at(low) + bit) - low;
     /** @param {number} number */
     const tidy = (number) =>
@@ -367,7 +370,7 @@ export function parallel(chart) {
     draw(what) {
       if (what === "all" || !view) {
         lay();
-        setTimeout(drawBack); // after the frame: the first limit should not wait for it
+        setTimeout(drawBack); // after this frame, so that the first limit is set without delay
       }
       if (what !== "marks") drawChosen();
       drawOver();

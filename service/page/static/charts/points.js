@@ -1,4 +1,4 @@
-/** A scatter as SVG, for some hundreds of points: a front that grows, fronts over each other. */
+/** Scatter plot as SVG for some hundreds of points: a growing front, or several fronts. */
 
 import { svg } from "../lib/dom.js";
 import { inDisplayUnit } from "../lib/numbers.js";
@@ -6,7 +6,7 @@ import { headed } from "../front/columns.js";
 import { nearest } from "./by_pointer.js";
 import { range, scale } from "./scale.js";
 
-/** Width and height that a picture has in its own units, unless told. @type {Page.Point} */
+/** Default width and height of a picture, in its own units. @type {Page.Point} */
 const SIZE = [560, 340];
 const NEAR = 14; // pixels of the picture
 const AREA = { left: 76, right: 14, top: 12, bottom: 46 };
@@ -20,8 +20,8 @@ const SHAPES = [
 
 /**
  * Return a picture of series [{points: [[x, y], ...], name}] on axes given by columns {title, unit}. Series differ in colour and shape.
- * held: ranges of the axes in the units that are shown, where they are not those of the points. told.at: of the point that is pointed
- * at, by its series and its place there, null for none; told.open: of one that is clicked on.
+ * held: axis ranges in display units, if other than those of the points. told.at: called with series and index of the point under the
+ * pointer, or null; told.open: called for a clicked point.
  * @param {{ points: Api.Row[string][][], name?: string }[]} series @param {Page.Heading} x @param {Page.Heading} y @param {string} label
  * @param {[Page.Range, Page.Range] | null} held
  * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} [handlers]
@@ -144,7 +144,7 @@ function pointed(picture, series, place, { at, open }) {
   });
 }
 
-/** Whether a point has a place: what is not defined has none. @type {(point: readonly unknown[]) => point is Page.Point} */
+/** Whether both coordinates of a point are defined. @type {(point: readonly unknown[]) => point is Page.Point} */
 export function isPoint(point) {
   return point.every(Number.isFinite);
 }

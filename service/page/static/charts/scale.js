@@ -1,8 +1,8 @@
-/** Scales, linear and logarithmic: values to pixels and back, and round numbers for their ticks. */
+/** Linear and logarithmic scales: conversion of values to pixels and back, and round numbers as ticks. */
 
 import { isConstant } from "../lib/constant.js";
 
-const WIDE = 1.5; // least ratio of the ends of a range for a logarithmic axis
+const WIDE = 1.5; // minimum ratio of the ends of a logarithmic axis
 
 /**
  * Return {at(value), value(pixel), ticks, text(tick)} for values from `low` to `high` on pixels from `start` to `end`.
@@ -15,7 +15,7 @@ export function scale(low, high, start, end, count = 5) {
   }
   const factor = (end - start) / (high - low);
   const step = roundStep((high - low) / count);
-  const power = Math.floor(Math.log10(step) + 1e-9); // of the last digit in which ticks differ
+  const power = Math.floor(Math.log10(step) + 1e-9);
   const ticks = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i += 1)
     ticks.push(i * step);
@@ -30,8 +30,8 @@ export function scale(low, high, start, end, count = 5) {
 }
 
 /**
- * Return a logarithmic scale for values above zero, as `scale` does: its ticks are 1, 2 and 5 times powers of ten, or powers alone where
- * these are many; of a range in which there are too few, round numbers.
+ * Return a logarithmic scale for positive values, in the form of `scale`. Ticks are 1, 2 and 5 times powers of ten; only the powers if
+ * there are many; round numbers if there are too few.
  * @param {number} low @param {number} high @param {number} start @param {number} end @param {number} count @returns {Page.Scale}
  */
 export function logScale(low, high, start, end, count = 5) {
@@ -66,7 +66,7 @@ export function mayBeLog({ low, high }) {
   return low > 0 && high >= WIDE * low;
 }
 
-/** Return a tick as text, to the digit of a power of ten. @param {number} tick @param {number} power */
+/** Return a tick as text, rounded to the digit of a power of ten. @param {number} tick @param {number} power */
 function tickText(tick, power) {
   const size = Math.abs(tick);
   const text =
@@ -77,7 +77,7 @@ function tickText(tick, power) {
 }
 
 /**
- * Return {low, high} of values, those that are no numbers left out, with `room` of the range on both sides.
+ * Return {low, high} of the finite values, with a margin of `room` times the range on both sides.
  * @param {Iterable<Api.Row[string]>} values @param {number} room @returns {Page.Range}
  */
 export function range(values, room = 0.04) {
@@ -99,7 +99,7 @@ function roundStep(step) {
   return power * ([1, 2, 5].find((factor) => factor * power >= step * (1 - 1e-9)) ?? 10);
 }
 
-/** Return the colours of the page's style, as canvas needs them. @param {Element} element @returns {Page.Ink} */
+/** Return the colours of the page's style for use on canvas. @param {Element} element @returns {Page.Ink} */
 export function colours(element = document.documentElement) {
   const style = getComputedStyle(element);
   return new Proxy({}, { get: (_, name) => style.getPropertyValue(`--${String(name)}`).trim() });

@@ -1,4 +1,4 @@
-/** Two quantities against each other on canvas, coloured by a third. */
+/** Scatter plot of two quantities on canvas, coloured by a third. */
 
 import { inDisplayUnit } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
@@ -33,8 +33,8 @@ import { shadesOf } from "./shades.js";
  */
 
 const MARGIN = 0.04; // of a logarithmic axis, beyond the designs
-const NEAR = 10; // pixels within which the pointer is on a design
-const FEW = 1500; // designs drawn as discs; more are drawn as squares, in a tenth of the time
+const NEAR = 10; // pixels around a design in which the pointer is on it
+const FEW = 1500; // maximum number of discs; more designs are drawn as squares, in a tenth of the time
 const [BACK, FRONT, OVER] = [0, 1, 2];
 const AREA = { left: 64, right: 12, top: 10, bottom: 44 };
 
@@ -51,9 +51,9 @@ function diamond(context, x, y, size) {
 }
 
 /**
- * Return {place, draw(what), colours()}. `chart` gives what is drawn: data, limits, x(), y(), colour() (keys), marks()
- * [{row, colour, name}], pointed() (a row or null), and takes what the reader does: box(x, y) with limits, lasso(line)
- * with corners in the units of the columns, point(row or null), open(row), select(row).
+ * Return {place, draw(what), colours()}. chart: the data to draw (data, limits, the keys x(), y() and colour(), marks() [{row, colour,
+ * name}], pointed() (a row or null)) and the handlers of user actions: box(x, y) with limits, lasso(line) with corners in the units of
+ * the columns, point(row or null), open(row), select(row).
  * @param {Chart} chart
  */
 export function scatter(chart) {
@@ -63,11 +63,11 @@ export function scatter(chart) {
   );
   const { place, contexts, top } = stack;
   /** @type {View} */
-  let view; // empty until it is first drawn
+  let view; // empty before the first drawing
   /** @type {{ x: number, y: number, right: number, bottom: number } | null} */
   let box = null;
   /** @type {Page.Point[] | null} */
-  let line = null; // drawn by hand, in pixels
+  let line = null; // pixels of the freehand line
   let free = false; // whether a drag draws a line instead of a box
 
   function lay() {
@@ -95,7 +95,7 @@ export function scatter(chart) {
       shades: shadesOf(data, chart.colour(), ink),
     };
     const context = contexts[BACK];
-    // Squares replace what is there, so they come first.
+    // Squares replace the content of the layer, so they come first.
     if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
     drawAxes(context, { x, y, area: AREA, width, height, ink: view.ink });
     Object.assign(context, { strokeStyle: view.ink.quiet, lineWidth: 1 });
@@ -116,7 +116,7 @@ export function scatter(chart) {
     const words = data.words(key);
     const reach = words ? { low: -0.5, high: words.length - 0.5 } : range(withOthers(key));
     const bare = chart.log(key) ? range(withOthers(key), 0) : reach;
-    const log = chart.log(key) && bare.low > 0; // a design beside the front may be below
+    const log = chart.log(key) && bare.low > 0; // a design outside the front may have a smaller value
     const spread = log ? (bare.high / bare.low) ** MARGIN : 1;
     const { low, high } = log ? { low: bare.low / spread, high: bare.high * spread } : reach;
     const makeScale = log ? logScale : scale;
@@ -145,7 +145,7 @@ export function scatter(chart) {
       : chart.data.numbers(key);
   }
 
-  /** Return where a mark stands. @param {Page.Mark} mark @returns {Page.Point} */
+  /** Return the position of a mark. @param {Page.Mark} mark @returns {Page.Point} */
   function placeOf({ row = 0, cells }) {
     if (!cells) return [view.across[row], view.up[row]];
     return [view.x.at(Number(cells[chart.x()])), view.y.at(Number(cells[chart.y()]))];
@@ -207,7 +207,7 @@ export function scatter(chart) {
   }
 
   /**
-   * Write a name beside a design, unless others are `written` there.
+   * Write a name beside a design, unless it would overlap names already `written`.
    * @param {Page.Canvas} context @param {string} name @param {number} x @param {number} y @param {Page.Ink} ink
    * @param {{ start: number, end: number, y: number }[]} written
    */
@@ -228,7 +228,7 @@ export function scatter(chart) {
   }
 
   /** @type {{ x: number, y: number }} */
-  let from; // where the button went down
+  let from; // where the button was pressed
   byPointer(top, chart, {
     isDrawn: () => Boolean(view),
     under: ({ x, y }) => {
@@ -253,7 +253,7 @@ export function scatter(chart) {
     },
   });
 
-  /** Draw a box or a line from where the button went down; return whether it is large enough. @param {{ x: number, y: number }} here */
+  /** Draw a box or a line from where the button was pressed; return whether it is large enough. @param {{ x: number, y: number }} here */
   function drag(here) {
     if (!box && !line && Math.hypot(here.x - from.x, here.y - from.y) < 5) return false;
     if (free) {
@@ -308,7 +308,7 @@ export function scatter(chart) {
       if (what !== "marks") drawChosen();
       if (what !== "chosen" || box || line || chart.limits.lasso) drawOver();
     },
-    /** Choose what a drag draws: a line by hand, or a box. @param {boolean} yes */
+    /** Choose whether a drag draws a freehand line or a box. @param {boolean} yes */
     byHand: (yes) => {
       free = yes;
     },

@@ -7,7 +7,7 @@ import { palette, ramp } from "./paint.js";
 const SHADES = 24;
 
 /**
- * Return {of, colours}: the shade of every design as a place among the colours, low to high; of words, one for each.
+ * Return {of, colours}: the index of each design's colour, and the colours from low to high; for words, one colour each.
  * @param {FrontData} data @param {string} key of the column; empty for one colour @param {Page.Ink} ink
  */
 export function shadesOf(data, key, ink) {

@@ -8,7 +8,7 @@ const WIDTH = 96;
 const HEIGHT = 48;
 
 /**
- * Return a picture of points [[x, y], ...] without axes; of one objective, of its values in order.
+ * Return a picture of points [[x, y], ...] without axes; for a single objective, its values in order.
  * @param {Api.Row[string][][]} points @param {string} label
  */
 export function thumbnail(points, label) {

@@ -13,17 +13,17 @@ const TITLES = {
   sensitivity: "Sensitivity",
   tolerances: "Effect of tolerances on the slider position",
 };
-/** Those of a lever. @type {Record<string, string>} */
+/** Titles for a lever. @type {Record<string, string>} */
 const TITLES_OF_LEVER = { lever: "Moved by a cylinder that turns" };
-/** Those of a crank that swings. @type {Record<string, string>} */
+/** Titles for a swinging crank. @type {Record<string, string>} */
 const TITLES_OF_SWING = { swing: "The swing", ...TITLES_OF_LEVER };
 const WITHOUT = "This job has no tolerances. Add some under “Tolerances”.";
-const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a view of their own
+const ELSEWHERE = ["inverse", "round", "wish"]; // questions with a separate view
 
 /**
- * Put the analyses into two places. questions, fronts: all of the service to a design, and to a front; swings: whether the crank does; isLever: whether a cylinder moves it; tolerances: whether the job has any;
- * tab: the chosen one; chooseTab(tab): another one is, "" for the first.
- * Returns show(lengths): of a changed design, null for the design itself.
+ * Put the analyses into two places. questions, fronts: the service's questions about a design, and about a front. swings: whether the
+ * crank swings; isLever: whether a cylinder moves it; tolerances: whether the job has any. tab: the selected tab; chooseTab(tab): called
+ * for another one, "" for the first. Returns show(lengths): lengths of a changed design, or null for the unchanged one.
  * @param {{ sections: HTMLElement, tabs: HTMLElement }} places
  * @param {{ job: string, number: number, questions: Api.Topic[], fronts: Api.Topic[], swings: boolean, isLever: boolean, tolerances: boolean, tab: string, chooseTab: (tab: string) => void, signal: AbortSignal }} options
  */
@@ -57,7 +57,7 @@ export function analyses(
   let lengths = null;
   /** @type {ReturnType<typeof question>[]} */
   const begun = []; // of the sections
-  let near = false; // whether the tabs are or have been visible
+  let near = false; // whether the tabs have ever been visible
 
   const buttons = listed.map((one, n) =>
     h(
@@ -74,7 +74,7 @@ export function analyses(
     ),
   );
 
-  /** Mark the chosen tab. The buttons are not redrawn, so they keep the focus. */
+  /** Mark the selected tab. The buttons are not redrawn, so they keep the focus. */
   function markChosen() {
     buttons.forEach((button, n) => {
       button.setAttribute("aria-selected", String(n === chosen));
@@ -99,7 +99,7 @@ export function analyses(
       ),
       view.node,
     );
-    if (isOfDesign) await view.ask(lengths); // others take a while, or need inputs
+    if (isOfDesign) await view.ask(lengths); // the others are slow or need inputs
   }
 
   /** @param {number} n */

@@ -1,4 +1,4 @@
-/** Decide for a design, keep it with a note, or search near it; and what people decided and noted so far. */
+/** Decision for a design, bookmark with a note, search near it; and the history of decisions and notes. */
 
 import { ago } from "../jobs/times.js";
 import { go, link } from "../lib/address.js";
@@ -34,7 +34,7 @@ export function askPerson({ content, act, ...question }) {
 /** Return who changed something, and when. @param {Api.HistoryEntry | undefined} entry */
 const byWhom = (entry) => entry && [entry.author && `${entry.author}, `, ago(entry.at)];
 
-/** Return the design that is decided for, and its decision in the history. @param {List} list */
+/** Return the chosen design, and its decision in the history. @param {List} list */
 function decisionOf({ designs, history }) {
   const decided = designs.find((one) => one.decided);
   const entry = history.findLast(
@@ -71,7 +71,10 @@ export function notesOn({ history }, number) {
   return historyList(notes, ({ text }) => text);
 }
 
-/** Return the view of a kept design; null where more than its numbers is other than in the design that it began as. @param {string | number} job @param {Api.Kept} one */
+/**
+ * Return the link to a bookmarked design; null if it differs from its original in more than its numbers.
+ * @param {string | number} job @param {Api.Kept} one
+ */
 export function hrefOf(job, { design, numbers }) {
   const value = Array.isArray(numbers?.value) ? numbers.value.join(",") : null;
   const query = /** @type {Record<string, number>} */ ({ ...numbers });
@@ -79,8 +82,8 @@ export function hrefOf(job, { design, numbers }) {
 }
 
 /**
- * Ask for name and reason of a decision, or for name and note. known: bookmark of the design; title: its name without one; faults: what it
- * misses; send(body): to the service.
+ * Ask for name and reason of a decision, or for name and note. known: bookmark of the design. title: its name without a bookmark. faults:
+ * requirements that it misses. send(body): sends the remarks to the service.
  * @param {{ deciding: boolean, list: List, known: Api.Kept | undefined, title: string, faults: string[], send: (body: object) => unknown }} options
  */
 export function askRemarks({ deciding, list, known, title, faults, send }) {
@@ -119,7 +122,10 @@ export function askRemarks({ deciding, list, known, title, faults, send }) {
   });
 }
 
-/** Ask whether a decision is withdrawn; done(): it is. @param {string | number} job @param {Api.Kept} one @param {() => unknown} done */
+/**
+ * Ask whether to withdraw a decision. done(): called after withdrawal.
+ * @param {string | number} job @param {Api.Kept} one @param {() => unknown} done
+ */
 export function withdraw(job, { name, number }, done) {
   askPerson({
     title: `Withdraw the decision for ${name}?`,
@@ -133,8 +139,9 @@ export function withdraw(job, { name, number }, done) {
 }
 
 /**
- * Return {node, show(shown)}: buttons and standing of a design. design: of the front, that it began as; dimensions(): its cells, null for the design itself;
- * lengths(): that a search begins near to; kept(bookmark): it is. shown: number of its bookmark, null without; its name without one; what it misses.
+ * Return {node, show(shown)}: buttons and status of a design. design: its original on the front. dimensions(): its dimensions, or null if
+ * unchanged. lengths(): the centre of a search nearby. kept(bookmark): called for a new bookmark. shown: number of its bookmark or null,
+ * its name without a bookmark, and its missed requirements.
  * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
  */
 export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
@@ -224,8 +231,8 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
 }
 
 /**
- * Return the button that searches near lengths. name: what it is called where the title does not say it; act: what it is called in a list
- * that is drawn anew.
+ * Return the button that searches near lengths. name: label if the title is not sufficient. act: key of the button in a list that is
+ * redrawn.
  * @param {string} job @param {() => Page.Lengths} lengths @param {{ title: string, name?: string, act?: string }} looks
  */
 export function searchButton(job, lengths, { title, name, act }) {

@@ -1,9 +1,9 @@
-/** Table of contents of a long view; shows the current part and leads to the others. */
+/** Table of contents of a long view: shows the current part and links to the others. */
 
 import { h } from "../lib/dom.js";
 
 /**
- * Return a select of the parts of a view that follows scrolling.
+ * Return a select of the parts of a view; its value follows scrolling.
  * @param {[string, HTMLElement][]} parts their titles, and where they are, from the top @param {AbortSignal} signal
  */
 export function contents(parts, signal) {
@@ -30,7 +30,7 @@ export function contents(parts, signal) {
       const here = parts.findIndex(([, part]) => seen.has(part));
       if (here >= 0) choice.selectedIndex = here;
     },
-    { rootMargin: "-10% 0px -60% 0px" }, // what stands in the upper third of the screen
+    { rootMargin: "-10% 0px -60% 0px" }, // the part in the upper third of the screen
   );
   for (const [, part] of parts) watcher.observe(part);
   signal.addEventListener("abort", () => watcher.disconnect(), { once: true });

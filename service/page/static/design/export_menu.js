@@ -1,4 +1,4 @@
-/** Exports of a design behind one button: drawings, motion, report, its sheet; and a link beside it. */
+/** Export menu of a design: drawings, motion, report, datasheet; and a link beside it. */
 
 import { address } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -16,11 +16,11 @@ const FILES = [
   ["report.pdf", "PDF", "The report to print"],
 ];
 
-const WITHOUT_UNITS = /\.dxf$/; // the file says that it is in millimetres, from which CAD converts
+const WITHOUT_UNITS = /\.dxf$/; // the file states millimetres, and CAD converts
 
 /**
- * Return {node, show(lengths)}: links to the files of a design, once show was called to those of the design with other lengths, or of
- * itself again with null.
+ * Return {node, show(lengths)}: links to the files of a design; after show(lengths), of the design with other lengths; after show(null),
+ * of the unchanged design.
  * @param {string} job @param {number} number
  */
 export function exportMenu(job, number) {
@@ -68,7 +68,7 @@ export function exportMenu(job, number) {
   };
 }
 
-/** Copy the address of this view, and say so. */
+/** Copy the address of this view, and confirm it. */
 export async function copyLink() {
   try {
     await navigator.clipboard.writeText(location.href);

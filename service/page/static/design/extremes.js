@@ -5,8 +5,7 @@ import { valueOf } from "../lib/numbers.js";
 const ENDS = ["least", "greatest"];
 
 /**
- * Return the extremes of the curves of a design by their columns, at places in the cycle; `way_mm` is the position from the inner dead
- * centre.
+ * Return the extremes of a design's curves by column, with their positions in the cycle; `way_mm` is measured from the inner dead centre.
  * @param {Api.Extremes} found @param {Pick<Page.Machine, "curveColumns" | "sliderEnds" | "turns">} design
  * @returns {Record<string, Page.Ends>}
  */

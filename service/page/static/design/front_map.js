@@ -1,4 +1,4 @@
-/** A small picture of the front: all designs in two objectives, the design of the view, and where a change takes it. */
+/** Small picture of the front: all designs in two objectives, the displayed design, and the effect of a change. */
 
 import { fill, h, svg } from "../lib/dom.js";
 import { counted, inDisplayUnit, withUnit } from "../lib/numbers.js";
@@ -13,7 +13,7 @@ const MARGIN = { left: 52, right: 12, top: 10, bottom: 24 };
  * @param {HTMLElement} place @param {{ objectives: Api.Objective[], front: Api.Row[] }} options
  */
 export function frontMap(place, { objectives, front }) {
-  // The front is a picture of its own, so that thousands of points are not painted again as one moves.
+  // The front is a separate picture, so that thousands of points are not repainted when one moves.
   const [cloud, moving] = ["", "moving"].map((kind) =>
     svg("svg", { class: `chart ${kind}`, viewBox: `0 0 ${WIDTH} ${HEIGHT}` }),
   );
@@ -43,7 +43,7 @@ export function frontMap(place, { objectives, front }) {
       ),
     );
   /** @type {Page.Scale} */
-  let x; // nothing until it is drawn first, as y
+  let x; // empty before the first drawing, like y
   /** @type {Page.Scale} */
   let y;
   /** @type {[Api.Row | null, Api.Row | null]} */

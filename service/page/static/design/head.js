@@ -1,12 +1,12 @@
-/** The head of the view: where it is, the designs before and after it, and what stands beside it. */
+/** Head of the view: location, links to the previous and the next design, and the designs beside it. */
 
 import { neighbours } from "../front/listed_order.js";
 import { left, link, read } from "../lib/address.js";
 import { first, h } from "../lib/dom.js";
 
-let stepped = ""; // words of the step that was taken last
+let stepped = ""; // label of the last step
 
-/** Give the focus back to the step that led here, so that the next one is a key away. @param {HTMLElement} place */
+/** Return the focus to the link of the last step, so that one key takes the next. @param {HTMLElement} place */
 export function focusLastStep(place) {
   const words = stepped;
   stepped = "";
@@ -15,13 +15,13 @@ export function focusLastStep(place) {
 
 /** @typedef {{ job: string, number: number, named: HTMLElement, undo: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
 
-/** Return the part of the view that the reader looks at, for any design. */
+/** Return the part of the view on the screen, for any design. */
 function currentView() {
   const { query } = read();
   return { over: query.get("over"), tab: query.get("tab") };
 }
 
-/** Return the head. named: the name of the design; undo: what goes back to it from a change. @param {Place} place */
+/** Return the head. named: name of the design. undo: button that reverts a change. @param {Place} place */
 export function designHead({ job, number, named, undo, front, others }) {
   const beside = others.map((one) => one.number).join(",");
   const { place, count, before, after, listed } = neighbours(job, number, front.count);

@@ -5,7 +5,8 @@ import { text, withUnit } from "../lib/numbers.js";
 import { question } from "./question.js";
 
 /**
- * Put the form into `place`. of: the question; positions: of the slider over the cycle, mm; turnTo(angle): turns the crank to an angle, deg.
+ * Put the form into `place`. of: the question. positions: slider positions over the cycle, mm. turnTo(angle): turns the crank to an
+ * angle, deg.
  * @param {HTMLElement} place @param {Api.Topic} of
  * @param {{ path: string, job: string, positions: (number | null)[], turnTo: (angle: number) => void, signal: AbortSignal }} options
  */

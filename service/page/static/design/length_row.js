@@ -1,4 +1,4 @@
-/** A field and a slider for a length of a linkage. */
+/** Field and slider for a length of a linkage. */
 
 import { h, markInvalid, numberField, typeInto } from "../lib/dom.js";
 import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
@@ -10,12 +10,12 @@ export const LENGTHS = [
   ["rod_mm", "Rod"],
   ["offset_mm", "Offset"],
 ];
-const STEPS = 1000; // of a slider over its range
+const STEPS = 1000;
 export const SAME = 1e-9; // relative
 
 /**
- * Return the controls of a length. set(value): a length was chosen, null where what was typed is none. ends: those of the job,
- * or of the slider alone: `isOfJob` is false. describedBy: id of what says why a text is no length.
+ * Return the controls of a length. set(value): called with a new length, or null for invalid text. ends: range from the job, or only of
+ * the slider if `isOfJob` is false. describedBy: id of the element that explains invalid text.
  * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
  * @param {{ isOfJob?: boolean, describedBy?: string }} [options]
  */
@@ -27,7 +27,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
     { class: "at-limit", role: "status", hidden: true },
     " · outside the job",
   );
-  const understood = h("span", { class: "quiet ends", role: "status" }); // how a sum or a unit was understood
+  const understood = h("span", { class: "quiet ends", role: "status" }); // interpretation of a sum or a unit
   let wrong = ""; // why the typed text is not a length
   const number = numberField({
     id,
@@ -64,7 +64,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
     },
   });
 
-  /** Return the length in the field, or why it is not one. @returns {{ value?: number, said?: string | null, wrong?: string }} */
+  /** Return the length in the field, or why it is invalid. @returns {{ value?: number, said?: string | null, wrong?: string }} */
   function typed() {
     const parsed = parseQuantity(number.value, "mm");
     if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;

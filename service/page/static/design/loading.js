@@ -4,7 +4,7 @@ import { get } from "../lib/api.js";
 import { withResultants } from "./panels.js";
 
 /**
- * Return a design as the view shows it: {number, name, series, row, columns, curves, curveColumns, centres}. series: 1, 2, 3.
+ * Return a design in the form of the view: {number, name, series, row, columns, curves, curveColumns, centres}. series: 1, 2, 3.
  * @param {string} job @param {number} number @param {number} series @param {AbortSignal} signal
  * @returns {Promise<Page.Machine & { number: number, columns: Api.Column[] }>}
  */
@@ -35,8 +35,8 @@ export function lengthsOf(row) {
 }
 
 /**
- * Return the curves of an answer of the API: {curves, curveColumns, centres, sliderEnds, turns, seconds, outlines}; centres: places in the cycle of the
- * dead centres, or of both ends of a swing; sliderEnds: slider positions there, mm.
+ * Return the curves in an API response: {curves, curveColumns, centres, sliderEnds, turns, seconds, outlines}. centres: positions of the
+ * dead centres in the cycle, or of both ends of a swing. sliderEnds: slider positions there, mm.
  * @param {Api.Cycle} cycle @returns {Pick<Page.Machine, "curves" | "curveColumns" | "centres" | "sliderEnds" | "turns" | "seconds" | "outlines">}
  */
 export function cycleOf(cycle) {
@@ -56,7 +56,7 @@ export function cycleOf(cycle) {
 }
 
 /**
- * Return the numbers of the designs that stand beside one, as the address gives them: at most two, each once.
+ * Return the numbers of the compared designs in the address: at most two, without duplicates.
  * @param {URLSearchParams} query @param {number} number
  */
 export function comparedDesigns(query, number) {

@@ -14,7 +14,7 @@ import { around, frameOf } from "../mechanism/frame.js";
  */
 
 const EVERY = 100; // ms between two readouts of forces while it moves
-/** What sets the place in the cycle, and how, by the turns in it. */
+/** Labels of the cycle's slider and its units, by the revolutions per cycle. */
 const WORDS = [
   ["Back and forth", "Drag the crank, or use the arrow and page keys to move it back and forth."],
   [
@@ -32,10 +32,9 @@ const GRIPS =
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 
 /**
- * Put mechanisms into `place`, and into `strip` what turns them; turning: of turning.js. Returns
- * show(machines): each {name, series, row, curves, centres, sliderEnds}, drawn at one scale; the first is the one that is told of; faded(yes); close().
- * turns: of the crank in a cycle, 0 of a swing.
- * grips: of grips.js, by which the lengths of a single mechanism without forces are dragged.
+ * Put mechanisms into `place`, and their playback controls into `strip`. Returns show(machines), faded(yes) and close(). machines: {name,
+ * series, row, curves, centres, sliderEnds} of each, drawn at one scale; readouts are for the first. turns: crank revolutions per cycle,
+ * 0 for a swing. grips: grips for dragging the lengths of a single mechanism without forces.
  * @param {HTMLElement} place @param {HTMLElement} strip @param {ReturnType<typeof playbackOf>} turning @param {number} turns
  * @param {Grips | null} [grips]
  */
@@ -125,7 +124,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
     showSizes(turning.angle);
   }
 
-  /** Write the forces of the first mechanism; those too small for an arrow are dots, and have a number all the same. @param {number} at */
+  /** Write the forces of the first mechanism, including those too small for an arrow. @param {number} at */
   function showSizes(at) {
     if (!forces.checked || !machines.length) return;
     ARROWS.forEach(
@@ -225,7 +224,10 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
   };
 }
 
-/** Let the crank of a drawing be dragged; hold(angle) is told. @param {ReturnType<typeof drawing>} one @param {(angle: number) => void} hold */
+/**
+ * Make the crank of a drawing draggable; hold(angle): called with each angle.
+ * @param {ReturnType<typeof drawing>} one @param {(angle: number) => void} hold
+ */
 function draggable(one, hold) {
   const { handle } = one;
   let isDragged = false;

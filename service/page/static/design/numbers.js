@@ -9,11 +9,11 @@ import { headedRow, scrolled, scrolledTable } from "../lib/table.js";
 /** @typedef {{ name: string, series: number | string, row: Api.Row }} Shown A design of the tables. */
 
 const QUALITY = ["status", "residual"];
-const MET = 1e-8; // of a bound: designs meet their constraints to this
+const MET = 1e-8; // relative tolerance of bounds
 
 /**
- * Put the numbers of designs into `place`. designs: each {name, row}, the first is what the others are compared with; columns: of
- * the first; requirements, slow (stroke): of the API; names: of quantities by column.
+ * Put the numbers of designs into `place`. designs: {name, row} of each; the others are compared with the first. columns: columns of the
+ * first. requirements, slow (stroke): from the API. names: names of quantities by column.
  * @param {HTMLElement} place
  * @param {{ designs: Shown[], columns: Api.Column[], requirements: Api.Requirement[], slow: string | null | undefined, names: Record<string, string> }} options
  */
@@ -100,7 +100,7 @@ export function difference(value, from) {
 }
 
 /**
- * Return a table of designs, the groups one below the other; the others with their change from the first.
+ * Return a table of designs by groups of numbers; the others with their change from the first.
  * @param {string} caption @param {Shown[]} designs @param {{ title: string, columns: Api.Column[] }[]} groups @param {Record<string, string>} names
  */
 function table(caption, designs, groups, names) {
@@ -266,7 +266,7 @@ function quality(designs, columns) {
 }
 
 /**
- * Return [{title, columns}]: every column of a design but those of constraints and of the optimum, by the groups that the service gives.
+ * Return [{title, columns}]: every column of a design except slacks and optimality, by the groups from the service.
  * @param {Api.Column[]} columns
  */
 function groupsOf(columns) {

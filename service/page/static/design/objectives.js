@@ -5,7 +5,7 @@ import { text, withUnit } from "../lib/numbers.js";
 import { helpLink } from "./numbers.js";
 import { rankInFront } from "./rank.js";
 
-const KEY = 4; // digits of a key figure; all of them are there when pointed at
+const KEY = 4; // digits of a key figure; a tooltip has all of them
 const ALL = 12;
 
 /** Return the sense of an objective in words. @param {Api.Objective} objective */
@@ -14,9 +14,8 @@ export function sense({ sense: way, target, unit }) {
 }
 
 /**
- * Put the objectives of the design into `place`; front: values of every design by column; row: of the design; changed: of a what-if, see
- * `rankInFront`; before: the design itself, null unless it is changed; whose: whose objectives they are, "" for those of the design that
- * the page is of.
+ * Put the objectives of the design into `place`. front: values of every design by column. row: values of the design. changed: what-if
+ * change, see `rankInFront`. before: the unchanged design, or null. whose: owner of the objectives, "" for the displayed design.
  * @param {HTMLElement} place
  * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, before: Api.Row | null, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
  */

@@ -1,4 +1,4 @@
-/** The curves of a design: over crank angle, time or the way of the slider, three of them large, and as CSV. */
+/** Curves of a design over crank angle, time or slider displacement, three of them large, and as CSV. */
 
 import { abscissaOf, OVER, OVER_LEVER, OVER_SWING } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
@@ -9,16 +9,16 @@ import { panelsOf } from "./panels.js";
 
 const CURVE_STORAGE = "large curves";
 const SWING_STORAGE = "large curves of a swing";
-const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // unless the reader has chosen others
+const LARGE = ["way_mm", "torque_Nm", "transmission_angle_deg"]; // by default
 const LARGE_OF_SWING = [
   ...["slider_position_mm", "drive_N", "drive_Nm", "transmission_angle_deg"],
   ...["length_mm", "push_N"], // of a lever
 ];
 
 /**
- * Put the curves into `place`; turned: of the charts. told(over): the reader chose what they are over. Returns
- * - show(series): each {name, series, curves, curveColumns, centres}, the first in front. - of(lengths): of a changed design, for the
- *   file; null for the design itself. - turn, close: of the charts.
+ * Put the curves into `place`; turned: handler of the charts. told(over): called with the chosen abscissa. Returns show(series),
+ * of(lengths), and turn and close of the charts. series: {name, series, curves, curveColumns, centres} of each design, the first in
+ * front. lengths: those of a changed design, for the file, or null.
  * @param {HTMLElement} place
  * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing; lever: whether a cylinder moves a lever.
  * @param {{ path: string, rpm: number, turns: number, lever: boolean, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
@@ -71,7 +71,7 @@ export function overCycle(place, { path, rpm, turns, lever, over, turned, told: 
   /** @type {Page.Machine[]} */
   let machines = [];
   const draw = () => {
-    const abscissa = abscissaOf(chosen, rpm, turns); // in the units of now
+    const abscissa = abscissaOf(chosen, rpm, turns); // in the current units
     const named = lever && OVER_LEVER.slice(2).find(({ name }) => name === chosen);
     if (named) abscissa.title = named.title;
     charts.show(machines, panelsOf(machines[0].curveColumns, machines), abscissa);

@@ -1,4 +1,4 @@
-/** Curves of the API that are shown, and those made of several of them. */
+/** Displayed curves of the API, and curves derived from them. */
 
 import { capital } from "../lib/words.js";
 
@@ -37,8 +37,8 @@ const ORDER = [
 ];
 
 /**
- * Return {curves, columns} with the sizes of the joint forces next to their components, and the way from the inner dead centre, where
- * there is one. A lever and its cylinder count as crank and slider.
+ * Return {curves, columns} with the magnitudes of the joint forces after their components, and the displacement from the inner dead
+ * centre, if there is one. A lever and its cylinder count as crank and slider.
  * @param {Api.Cycle} cycle
  */
 export function withResultants({ curves, columns, turns, slider_ends_mm: [inner] }) {
@@ -64,7 +64,7 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
 }
 
 /**
- * Return the charts, each {key, title, unit}: those of the columns that have one, without curves that are zero or not defined in all designs.
+ * Return {key, title, unit} of each chart, without curves that are zero or undefined in all designs.
  * @param {Api.Column[]} columns @param {{ curves: Api.Curves }[]} designs
  */
 export function panelsOf(columns, designs) {

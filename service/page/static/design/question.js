@@ -1,4 +1,4 @@
-/** A question to a design: a form made from what it may be asked with, and its answer as sentences, tables and figure. */
+/** Question about a design: a form with its inputs, and its answer as sentences, tables and figure. */
 
 import { address, get, isAbort, post, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
@@ -10,13 +10,17 @@ import { sentenceOf } from "../lib/refusals.js";
 
 /** @typedef {Pick<Api.Topic, "title" | "inputs" | "figure"> & { posted?: boolean }} Asked */
 
-/** Values of inputs by path and key, in units of the API: a view that is shown again has them. @type {Map<string, string | number | string[] | null>} */
+/**
+ * Values of inputs by path and key, in API units, kept for the next time that a view is shown.
+ * @type {Map<string, string | number | string[] | null>}
+ */
 const entered = new Map();
 window.addEventListener("hashchange", () => entered.clear());
 
 /**
- * Return {node, ask}. ask(lengths): asks for the design, or one with other lengths. path: of the API; job: that can be changed where it
- * lacks something; button: its title; initial: values of inputs in units of the API; action(answer, n): what row n of the tables ends with.
+ * Return {node, ask}. ask(lengths): asks for the design, or for one with other lengths. path: path in the API. job: job to edit if it
+ * lacks something. button: title of the button. initial: values of inputs in API units. action(answer, n): last cell of row n in the
+ * tables.
  * @param {Asked} of
  * @param {{ path: string, job: string, button?: string, initial?: Record<string, number>, action?: (answer: any, n: number) => Dom.Child, signal: AbortSignal }} options
  */
@@ -33,7 +37,7 @@ export function question(
   /** @type {Page.Numbers | null} */
   let lengths = null;
 
-  /** Return the values of the inputs by key in units of the API, null for the usual ones. Throws an Error where one is wrong. */
+  /** Return the values of the inputs by key in API units, null for defaults. Throws an Error for an invalid one. */
   const read = () =>
     Object.fromEntries(
       fields.map(({ key, unit, words, several, required, example, title: name, field }) => {
@@ -112,7 +116,7 @@ export function question(
   return { node: h("div", { class: "question" }, inputs.length > 0 && form, answer), ask };
 }
 
-/** Return the texts that semicolons separate. @param {string} typed */
+/** Return the texts between semicolons. @param {string} typed */
 function listOf(typed) {
   return typed
     .split(";")

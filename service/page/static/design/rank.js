@@ -13,8 +13,8 @@ export function rankOf(value, { sense, target }) {
 }
 
 /**
- * Return where a value lies within the front, from 0 for the worst to 1 for the best, and in words. changed: whether it is of a what-if, which is
- * not of the front, and whether that misses a requirement.
+ * Return the rank of a value within the front, from 0 (worst) to 1 (best), and in words. changed: whether it belongs to a changed design,
+ * which is not on the front, and whether that misses a requirement.
  * @param {Api.Objective} objective @param {Api.Row[]} front @param {Api.Row[string] | undefined} value @param {{ broken: boolean } | null} changed
  */
 export function rankInFront(objective, front, value, changed) {

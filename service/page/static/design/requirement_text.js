@@ -13,7 +13,7 @@ export function requirementText({ lower, upper, unit }, digits = 5) {
 }
 
 /**
- * Return how a design misses a requirement or a range, in a sentence whose digits tell its value from what is asked.
+ * Return how a design misses a requirement or a range, with enough digits to distinguish the value from the bound.
  * @param {Api.Row[string] | undefined} value @param {Asked} requirement @param {string} fault
  */
 export function missText(value, requirement, fault = "Misses a requirement") {

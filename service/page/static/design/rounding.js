@@ -1,4 +1,4 @@
-/** Round numbers for a design: a step for each number, misses that are allowed, the best rounded neighbours and what each of them costs. */
+/** Rounded dimensions for a design: a step for each number, permitted misses, the best rounded neighbours and the cost of each. */
 
 import { isAbort, postWithProgress } from "../lib/api.js";
 import { fill, formOf, h, markInvalid, numberField } from "../lib/dom.js";
@@ -11,13 +11,13 @@ import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
-const USUAL = { si: "0.5", inch: "1/64" }; // mm, in: what drawings and stock are made to
+const USUAL = { si: "0.5", inch: "1/64" }; // mm, in; usual steps of drawings and stock
 const COUNT = 5;
 
 /** @typedef {{ name: string, unit: string, input: HTMLInputElement, refuse: (sentence: string) => void, rule: string, node: HTMLElement }} Field */
 
 /**
- * Put the form into `place`. base: row of the design; columns: of it; applied(row): the numbers of a row are to be shown.
+ * Put the form into `place`. base: row of the design. columns: its columns. applied(row): called to show the numbers of a row.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, number: number, base: Api.Row, columns: Api.Column[], requirements: Api.Requirements, objectives: Api.Objective[],
@@ -92,7 +92,7 @@ export function rounding(
   let search = null;
   signal.addEventListener("abort", () => search?.abort(), { once: true });
 
-  /** Say what is wrong with all of it; nothing with an empty sentence. @param {string} sentence */
+  /** Show what is wrong with the whole form; an empty sentence clears it. @param {string} sentence */
   function refuse(sentence) {
     wrong.textContent = sentence;
     wrong.hidden = sentence === "";
@@ -238,7 +238,7 @@ function field({ id, name, label, unit, value, rule }) {
   return { name, unit, input, refuse, rule, node };
 }
 
-/** Return what fields say as the service takes it; null where one is wrong. @param {Field[]} fields @returns {string[] | null} */
+/** Return the values of the fields for the service; null if one is invalid. @param {Field[]} fields @returns {string[] | null} */
 function textsOf(fields) {
   const values = fields.map(({ name, unit, input, refuse, rule }) => {
     const plain = plainUnitOf(unit);

@@ -47,7 +47,7 @@ export function whatIf(
   /** @type {Page.Lengths} */
   const lengths = begun;
   const further = Object.keys(ranges).filter((key) => !LENGTHS.some(([length]) => length === key)); // extra variables
-  /** Those that differ from the design's. @type {Record<string, number>} */
+  /** Values that differ from the design's. @type {Record<string, number>} */
   let values = Object.fromEntries(
     linked.map((text) => text.split("=")).map(([key, value]) => [key, Number(value)]),
   );
@@ -76,7 +76,7 @@ export function whatIf(
   const rule = equal.length
     ? h("label", { class: "holding" }, holding, ` The other lengths follow, to keep ${kept}`)
     : null;
-  let last = "crank"; // the length moved last
+  let last = "crank"; // the last moved length
   let keepsLengths = start !== null; // lengths from a link are shown unchanged
   const results = h("div", { class: "results" });
   const picture = h("div", { class: "map" });
@@ -105,7 +105,7 @@ export function whatIf(
   let busy = false;
   let again = false;
 
-  /** Return what is wrong with a typed length; "" for nothing. */
+  /** Return what is wrong with a typed length, or "". */
   const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
   const moved = () =>
     Object.keys(values).length > 0 ||
@@ -114,7 +114,7 @@ export function whatIf(
         Math.abs(lengths[key] - designLengths[key]) > SAME * Math.abs(designLengths[key] || 1),
     );
 
-  /** Go to the numbers of another design. @param {Api.Row} row */
+  /** Adopt the numbers of another design. @param {Api.Row} row */
   function apply(row) {
     Object.assign(lengths, lengthsOf(row));
     values = Object.fromEntries(
@@ -179,7 +179,7 @@ export function whatIf(
     }
   }
 
-  /** Show why there is no answer, in its place. @param {string} sentence */
+  /** Show why there is no answer. @param {string} sentence */
   function refuse(sentence) {
     answer = null;
     changed(null, { impossible: true });
@@ -188,7 +188,7 @@ export function whatIf(
     map.show(base, null);
   }
 
-  /** Show the lengths that followed. @param {Api.Row} design */
+  /** Show the resulting lengths. @param {Api.Row} design */
   function adoptLengths(design) {
     const to = lengthsOf(design);
     for (const row of rows) {
@@ -214,7 +214,7 @@ export function whatIf(
     fill(results, comparison(objectives, base, answer.design));
   }
 
-  /** Return why the moved length stops before its slider, with both ways on; null where it does not. */
+  /** Return why the moved length stops before its slider, with both ways to continue; null if it does not. */
   function stopped() {
     const row = rows.find(({ key }) => key === `${last}_mm`);
     const reached = Number(answer?.design[`${last}_mm`]);

@@ -1,4 +1,4 @@
-/** A requirement on a quantity, and its bounds: exactly, at least, at most, or between two; each a value or a formula. */
+/** Requirement on a quantity and its bounds: exactly, at least, at most, or between two; each a value or a formula. */
 
 import { h } from "../lib/dom.js";
 import { completing } from "./completion.js";
@@ -44,7 +44,7 @@ export function requirement(
 }
 
 /**
- * Return the controls of the bounds that stand at a spot, and what they are: {mode, keys, inputs, controls}.
+ * Return the controls of the bounds at a path of the job: {mode, keys, inputs, controls}.
  * @param {Form.Whole} form @param {Form.Spot} spot @param {{ label: string, kind: string | null, any?: boolean, again: () => void, here?: () => void }} options any: whether nothing may be asked; again: draws them anew; here: without what is around them
  */
 export function bounds(form, spot, { label, kind, any = false, again, here = again }) {
@@ -92,11 +92,11 @@ export function bounds(form, spot, { label, kind, any = false, again, here = aga
     form.put(spot.path, names.length ? values : undefined);
   };
   const drawn = () => {
-    if (!select.isConnected) return; // drawn anew meanwhile
+    if (!select.isConnected) return; // redrawn in the meantime
     write();
     here();
   };
-  inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(drawn))); // once the next control has the focus
+  inputs.forEach((input) => input.addEventListener("change", () => between() && setTimeout(drawn))); // after the next control has received the focus
   const [low, high] = inputs.map((input) => completing(input, form, { number: true }));
   const controls = [select, low, high && h("span", { class: "to" }, "and"), high, units].filter(
     (one) => one instanceof HTMLElement,

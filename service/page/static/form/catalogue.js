@@ -73,7 +73,7 @@ function row(form, one, place, all) {
     placeholder: EXAMPLE,
     oninput: () => {
       const now = form.at(path);
-      if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: it still is the table of its file
+      if (text.value === begun && at(now, ["table"]) === at(one, ["table"])) return; // unchanged: still the table of its file
       names.length = 0;
       const {
         option: _,
@@ -95,7 +95,7 @@ function row(form, one, place, all) {
     WHY,
     { wide: true },
   );
-  const begun = text.value; // with the line ends of browsers
+  const begun = text.value; // browsers normalise line ends
   const drop = h(
     "button",
     {

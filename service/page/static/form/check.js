@@ -1,4 +1,4 @@
-/** Live checks of the job by the service shortly after each change; only the latest answer counts. */
+/** Live checks of the job by the service shortly after each change; only the latest response counts. */
 
 import { isAbort, post, statusOf } from "../lib/api.js";
 
@@ -8,7 +8,8 @@ const WAIT = 200; // ms
 const AGAIN = 3000; // ms until the next try while the service does not answer
 
 /**
- * Return a function that asks about a job and how it is submitted; told({answer}) or told({problem}) with the latest; `signal` ends it.
+ * Return a function that has a job and its submission checked; told({answer}) or told({problem}): called with the latest response.
+ * `signal` ends it.
  * @param {(said: { answer: Api.Preview, problem?: undefined } | { answer?: undefined, problem: unknown }) => void} report @param {AbortSignal} signal
  */
 export function checker(report, signal) {
@@ -35,7 +36,7 @@ export function checker(report, signal) {
   });
   return (/** @type {Asked} */ { job, submission }, { now = false } = {}) => {
     clearTimeout(timer);
-    running?.abort(); // its answer is outdated
+    running?.abort(); // its response is outdated
     timer = setTimeout(() => ask(structuredClone({ job, submission })), now ? 0 : WAIT);
   };
 }

@@ -2,12 +2,12 @@
 
 import { fill, h } from "../lib/dom.js";
 
-const MOST = 12; // names in sight
+const MOST = 12; // visible names
 const WORD = /[A-Za-z_][\w.]*$/;
-const AFTER_NUMBER = /[\d.]\s*$/; // a unit stands there
+const AFTER_NUMBER = /[\d.]\s*$/; // a unit follows here
 
 /**
- * Return an input with the names that it may have below it, as {word, names}. number: it is one for numbers, in which formulas are rare.
+ * Return an input with a list of matching names below it. number: whether it is for numbers, where formulas are rare.
  * @param {HTMLInputElement} input @param {Form.Whole} form @param {{ number?: boolean }} options
  */
 export function completing(input, form, { number = false } = {}) {
@@ -128,7 +128,7 @@ export function completing(input, form, { number = false } = {}) {
   return node;
 }
 
-/** Return the beginning of a name before the caret; null behind a number, where a unit stands. @param {HTMLInputElement} input */
+/** Return the beginning of a name before the caret; null after a number, where a unit follows. @param {HTMLInputElement} input */
 function wordAt(input) {
   const before = input.value.slice(0, input.selectionStart ?? input.value.length);
   const word = WORD.exec(before)?.[0] ?? "";
@@ -136,7 +136,7 @@ function wordAt(input) {
   return AFTER_NUMBER.test(rest) ? null : word;
 }
 
-/** Return the names that begin with a word, then those that have it elsewhere, in name or title. @param {string} word @param {Form.Name[]} names */
+/** Return the names that begin with a word, then those that contain it in name or title. @param {string} word @param {Form.Name[]} names */
 function matching(word, names) {
   const sought = word.toLowerCase();
   /** @param {Form.Name} one */

@@ -1,4 +1,4 @@
-/** Controls of the form, each tied to a place in the job. */
+/** Controls of the form, each bound to a path in the job. */
 
 import { h, numberField } from "../lib/dom.js";
 import { field } from "./field.js";
@@ -11,7 +11,8 @@ import { convert, split, unitsOf, usual } from "../lib/units.js";
 const MAKE = { quantity, choice, whole: plain, ratio: plain, text: plain, list };
 
 /**
- * Return the field of a path as the schema describes it; options: {label, why, required}. Null for what only the job file can state.
+ * Return the field for a path as the schema describes it; null for values that only the job file can state. options: {label, why,
+ * required}.
  * @param {Form.Whole} form @param {Form.Path} path @param {Partial<Form.Looks>} options @returns {HTMLElement | null}
  */
 export function byschema(form, path, options = {}) {
@@ -23,7 +24,7 @@ export function byschema(form, path, options = {}) {
   if (described.control === "table") {
     const keys = (described.keys ?? []).filter(
       (key) => key !== "file" || form.at([...path, key]) !== undefined,
-    ); // a service opens no files
+    ); // a service does not open files
     const inner = keys.map((key) => byschema(form, [...path, key]));
     return h(
       "fieldset",
@@ -36,7 +37,7 @@ export function byschema(form, path, options = {}) {
   return make ? make(form, path, { ...described, ...options, label, why }) : null;
 }
 
-/** Return a field of a number with its unit. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
+/** Return a field for a number with its unit. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 export function quantity(form, path, { kind, percent = false, label, why, wide }) {
   const entry = entries(
     [{ id: idOf(path, "c"), jobValue: form.at(path) }],
@@ -47,8 +48,8 @@ export function quantity(form, path, { kind, percent = false, label, why, wide }
 }
 
 /**
- * Return inputs of numbers with a unit that they share, and what is typed in them: {inputs, units, controls, read(n)}. ones: of each its
- * value in the job and its name. range: whether a range may stand for a value. write: called whenever something else is typed.
+ * Return inputs for numbers with a common unit: {inputs, units, controls, read(n)}. ones: value in the job and name of each. range:
+ * whether a range is permitted. write: called after each change.
  * @param {{ id: string, jobValue: unknown, title?: string }[]} ones
  * @param {{ label: string, kind: string | null, percent?: boolean, range?: boolean, unitId: string }} looks @param {() => void} write
  */
@@ -74,7 +75,10 @@ export function entries(ones, { label, kind, percent = false, range = false, uni
   return { inputs, units, controls: units ? [...inputs, units] : inputs, read };
 }
 
-/** Return a field for one of several words; leaving it out means the fallback. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
+/**
+ * Return a field for one of several words; omitting it means the fallback.
+ * @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks
+ */
 export function choice(
   form,
   path,
@@ -109,7 +113,7 @@ export function choice(
 }
 
 /**
- * Return a field of a text, a ratio or a whole number; what is no number is kept as it was typed, for the service to say so.
+ * Return a field for a text, a ratio or a whole number; invalid numbers are kept as typed, for the service to explain.
  * @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks
  */
 export function plain(form, path, { control, label, why, wide = false, long = false, fallback }) {
@@ -141,7 +145,7 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
   return field(form, path, label, [input], why, { wide });
 }
 
-/** Return a field of a list, its entries separated by commas. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
+/** Return a field for a list with commas between the entries. @param {Form.Whole} form @param {Form.Path} path @param {Form.Looks} looks */
 function list(form, path, { label, why, example }) {
   const jobValue = form.at(path);
   const text = Array.isArray(jobValue)
@@ -186,7 +190,7 @@ export function numberInput(id, value, label = null) {
 }
 
 /**
- * Return a select of the units of a kind. A unit that is not in the list is added to it.
+ * Return a select of the units of a kind; an unlisted unit is added.
  * @param {string} label @param {string} kind @param {string} unit @param {boolean} percent @param {string | null} id
  */
 export function unitSelect(label, kind, unit, percent = false, id = null) {
@@ -216,7 +220,10 @@ export function changeUnit(select, inputs, kind) {
   select.dataset.from = select.value;
 }
 
-/** Return what a job holds for a number without a unit: a number if it is one that keeps all its digits. @param {HTMLInputElement} input */
+/**
+ * Return the value in a job for a number without a unit: a number if that preserves all digits, otherwise the text.
+ * @param {HTMLInputElement} input
+ */
 export function number(input) {
   const typed = taken(input);
   if (typed === undefined || !Number.isFinite(Number(typed))) return typed;

@@ -1,4 +1,4 @@
-/** A table of points as a curve: drawn, its points dragged or moved by keys, with the dead centres of a linkage within the ranges. */
+/** Table of points as an editable curve: points are dragged or moved by keys; with the dead centres of a linkage within the ranges. */
 
 import { extremes } from "../charts/cycle.js";
 import { range, scale } from "../charts/scale.js";
@@ -10,15 +10,15 @@ import { convert } from "../lib/units.js";
 
 const [WIDTH, HEIGHT] = [560, 220];
 const AREA = { left: 62, right: 16, top: 22, bottom: 40 };
-const FINE = 200; // steps of an axis that a dragged point is rounded to, at least
-const KEYS = 50; // steps of an axis that a key moves by
+const FINE = 200; // minimum number of axis steps to which a dragged point is rounded
+const KEYS = 50; // axis steps per key press
 /** @type {Record<string, Page.Point>} */
 const WAYS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 /**
- * Return {node, draw()} of the curve. read(): its points; none while they cannot be read. write(points): they have been changed here.
- * titles(): of both axes, with units. centres(): the dead centres, in the unit of the first column. steps: whether two points may be at
- * one place.
+ * Return {node, draw()} of the curve. read(): its points; none while they are invalid. write(points): called after a change. titles():
+ * titles of both axes, with units. centres(): dead centres in the unit of the first column. steps: whether two points may share an
+ * abscissa.
  * @param {{ read: () => Page.Point[] | null, write: (points: Page.Point[]) => void, titles: () => string[], centres: () => Centre[], steps: boolean }} options
  */
 export function curve({ read, write, titles, centres, steps }) {
@@ -70,7 +70,7 @@ export function curve({ read, write, titles, centres, steps }) {
     ),
   );
   /** @type {{ x: Page.Scale, y: Page.Scale } | null} */
-  let scales = null; // kept while a point is dragged
+  let scales = null; // fixed while a point is dragged
   let dragged = -1;
 
   function draw(focus = -1) {
@@ -131,7 +131,7 @@ export function curve({ read, write, titles, centres, steps }) {
     if (focusedPoint instanceof SVGElement) focusedPoint.focus();
   }
 
-  /** Put a point elsewhere, between its neighbours, or at one of them where the curve may step. @param {number} n @param {Page.Point} to */
+  /** Move a point between its neighbours, or onto one of them if the curve may step. @param {number} n @param {Page.Point} to */
   function move(n, to) {
     const points = read();
     if (!points || !scales) return;
@@ -183,7 +183,7 @@ function rounded(value, { low, high }) {
 }
 
 /**
- * Return the dead centres of an example of the preview, where the first column of a table is over crank angle or slider position.
+ * Return the dead centres of the preview's example, for a table over crank angle or slider position.
  * @param {Api.Preview | null} said @param {Column} column @param {unknown} datum what the table counts from @param {string} unit that is shown
  * @returns {Centre[]}
  */

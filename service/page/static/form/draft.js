@@ -12,18 +12,18 @@ export function kept() {
   }
 }
 
-/** Keep a draft; null forgets it. @param {Form.Draft | null} draft */
+/** Store a draft; null deletes it. @param {Form.Draft | null} draft */
 export function keepDraft(draft) {
   try {
     if (draft === null) sessionStorage.removeItem(KEY);
     else sessionStorage.setItem(KEY, JSON.stringify(draft));
   } catch {
-    // The browser stores nothing: the form works until it is closed.
+    // Without storage in the browser, the form works until it is closed.
   }
 }
 
-/** Return a new key of a submission: the same form sent twice is one job. */
+/** Return a new submission key: the same form sent twice is one job. */
 export function newKey() {
-  const bytes = crypto.getRandomValues(new Uint8Array(16)); // randomUUID is there on https and localhost only
+  const bytes = crypto.getRandomValues(new Uint8Array(16)); // randomUUID exists only on https and localhost
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }

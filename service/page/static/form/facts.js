@@ -6,11 +6,11 @@ import { capital, inWords } from "../lib/words.js";
 import { inDisplayUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /**
- * Fill a place with what a preview says. apply(change): the reader chose a change that settles a warning.
+ * Fill a place with the findings of a preview. apply(change): called for a change that resolves a warning.
  * @param {HTMLElement} place @param {Api.Preview} preview @param {(change: Api.Change) => void} apply
  */
 export function showFacts(place, { allowed, understood, swing, example }, apply) {
-  const open = place.querySelector("details")?.open; // as the reader left it
+  const open = place.querySelector("details")?.open; // as the user left it
   const changes = [...(understood?.changes ?? []), ...(allowed?.changes ?? [])];
   /** @param {string} sentence */
   const warning = (sentence) => {
@@ -122,13 +122,13 @@ function understanding(understood) {
     ]);
 }
 
-/** Say which designs a fraction of feasible designs counts. @param {{ sampled: number, met_by_all: string[] }} sample */
+/** State which designs a fraction of feasible designs counts. @param {{ sampled: number, met_by_all: string[] }} sample */
 function tried({ sampled, met_by_all }) {
   const names = met_by_all.map((name) => name.replaceAll("_", " "));
   return `of ${sampled} tried${names.length ? `, all with the requested ${inWords(names.join(" and "))}` : ""}`;
 }
 
-/** Format a fraction of samples. found: whether a design is known that counts. @param {number} value @param {boolean} [found] */
+/** Format a fraction of samples. found: whether a feasible design is known. @param {number} value @param {boolean} [found] */
 function share(value, found = false) {
   if ((value > 0 || found) && value < 0.01) return "under 1 %";
   return value > 0.99 && value < 1 ? "over 99 %" : `${Math.round(100 * value)} %`;

@@ -7,8 +7,8 @@ import { capital, inWords, WORDS } from "../lib/words.js";
 const CONTROLS = "input, select, textarea";
 
 /**
- * Return a field for a path. controls: elements, the first carries the label. why: a sentence, or {sentence, name} of a quantity with a
- * page of its own. The field is registered with the form, which tells it what is wrong.
+ * Return a field for a path. controls: elements; the first has the label. why: a sentence, or {sentence, name} of a quantity with a help
+ * page. The field is registered with the form, which shows mistakes in it.
  * @param {Form.Whole} form @param {Form.Path} path @param {string} label @param {HTMLElement[]} controls @param {Form.Why | undefined} why
  * @param {{ wide?: boolean, labelled?: boolean, register?: boolean, tell?: () => void }} looks
  */
@@ -61,7 +61,7 @@ export function field(
 }
 
 /**
- * Replace a field with a new version; the focus within it is kept.
+ * Replace a field with a new version and keep the focus within it.
  * @param {Form.Whole} form @param {HTMLElement} node @param {() => HTMLElement} make
  */
 export function replace(form, node, make) {
@@ -112,8 +112,8 @@ export function explanation(id, label, why) {
 }
 
 /**
- * Show on fields what is wrong; return the sentences that belong to no field. Empty untouched fields are not marked as mistakes,
- * unless what is missing counts: once the search is to be started.
+ * Show mistakes at their fields; return the sentences without a field. Empty untouched fields are marked only once the user tries to
+ * start the search.
  * @param {Form.Field[]} fields @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} options
  */
 export function showWrong(fields, wrong, { missing = false } = {}) {
@@ -140,7 +140,7 @@ export function showWrong(fields, wrong, { missing = false } = {}) {
   return { elsewhere, first: fields.find((one) => sentencesOf.has(one)) ?? null };
 }
 
-/** Say what is wrong with a field; of what cannot be read, that instead of what it leads to. @param {Form.Field} one @param {string[]} found */
+/** Show what is wrong with a field; unreadable text is reported instead of its consequences. @param {Form.Field} one @param {string[]} found */
 function say(one, found) {
   const unread = one.controls.flatMap(({ dataset }) => dataset.wrong ?? []);
   const sentences = unread.length ? unread : found;
@@ -187,7 +187,7 @@ function nearest(fields, path) {
 }
 
 /**
- * Return which part of a field a sentence is of, in words: none of a field that shows one number, or whose sentence is of the whole.
+ * Return, in words, the part of a field to which a sentence refers; "" for a single number, or for the whole field.
  * @param {Form.Field} one @param {string} path
  */
 function below(one, path) {

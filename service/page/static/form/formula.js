@@ -26,7 +26,7 @@ function formulasOf(form, table) {
   );
 }
 
-/** Return the rows of the formulas that requirements are about, and a button for another one. @param {Form.Whole} form */
+/** Return the rows of formulas in requirements, and a button that adds one. @param {Form.Whole} form */
 export function formulaRequirements(form) {
   return rows(form, "constraints", { max: "" }, (spot, kind, label, again) => {
     const { keys, inputs, controls } = bounds(form, spot, { label, kind, again });
@@ -34,7 +34,7 @@ export function formulaRequirements(form) {
   });
 }
 
-/** Return the rows of the formulas that are objectives, and a button for another one. @param {Form.Whole} form */
+/** Return the rows of formulas as objectives, and a button that adds one. @param {Form.Whole} form */
 export function formulaObjectives(form) {
   return rows(form, "objectives", "minimise", (spot, kind, label, again) => {
     const controls = objectiveField(form, spot, { title: label, kind, again });
@@ -107,13 +107,13 @@ function row(form, table, key, place, asked, what) {
         spot.path = [table, typed];
         return;
       }
-      form.put(spot.path, form.at(spot.path)); // so that it is checked again
+      form.put(spot.path, form.at(spot.path)); // to have it checked again
     },
   });
   const below = h("div", { class: "field-controls asked" });
   let kind = kindAt(form, spot.path);
   /** @type {Set<string>} */
-  const early = new Set(); // bounds that were typed before the kind of the formula was known
+  const early = new Set(); // bounds typed before the formula's kind was known
   /** Give a number typed without a unit the default unit of its field. @param {string} key @param {string} now */
   const withUnit = (key, now) => {
     const bound = form.at([...spot.path, key]);
@@ -174,7 +174,7 @@ function row(form, table, key, place, asked, what) {
 }
 
 /**
- * Say the unit of a formula below it whenever the service has looked at the job; changed(kind) is called with the kind of its values.
+ * Show the unit of a formula below it after each check by the service; changed(kind): called with the kind of its values.
  * @param {Form.Whole} form @param {HTMLElement} made @param {HTMLInputElement} input @param {() => Form.Path} path @param {(kind: string | null) => void} changed
  */
 function watch(form, made, input, path, changed) {
@@ -195,13 +195,16 @@ function watch(form, made, input, path, changed) {
   tell();
 }
 
-/** Return the kind of the values of a formula, as the service said it; null while it is not known, and for one that no field has units of. @param {Form.Whole} form @param {Form.Path} path */
+/**
+ * Return the kind of a formula's values as reported by the service; null while unknown, and for a kind without units in forms.
+ * @param {Form.Whole} form @param {Form.Path} path
+ */
 function kindAt(form, path) {
   const checkedFormula = form.said?.formulas.find((one) => one.path === written(path));
   return checkedFormula?.kind && kinds().includes(checkedFormula.kind) ? checkedFormula.kind : null;
 }
 
-/** Return the fields of the formulas that have names, and a button for another one. @param {Form.Whole} form */
+/** Return the fields of named formulas, and a button that adds one. @param {Form.Whole} form */
 export function namedFormulas(form) {
   const all = Object.entries(form.at(["quantity"]) ?? {})
     .filter(([, part]) => isTable(part) && "formula" in part)
@@ -226,7 +229,7 @@ export function namedFormulas(form) {
   return [all.map((name, place) => named(form, name, place)), h("p", { class: "wide" }, add)];
 }
 
-/** Return the names of the formulas that have one. @param {Form.Whole} form */
+/** Return the names of the named formulas. @param {Form.Whole} form */
 export function namesGiven(form) {
   return Object.entries(form.at(["quantity"]) ?? {})
     .filter(([, part]) => isTable(part) && "formula" in part)
@@ -254,7 +257,7 @@ function named(form, name, place) {
       if (called.dataset.wrong) return form.put(path, form.at(path));
       if (typed === name) return;
       setTimeout(() => {
-        // once whatever has the focus next has it, and is not drawn anew before it is clicked
+        // after the focus has moved, so that a clicked control is not redrawn before its click
         callIt(form, name, typed);
         form.redraw();
       });

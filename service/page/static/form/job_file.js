@@ -1,4 +1,4 @@
-/** The job as a file: its text beside the form, in step with it; taken in from a file, given out as one. */
+/** The job as a file: its text beside the form, synchronised with it; loaded from a file and saved as one. */
 
 import { address, answered, get, post, Problem } from "../lib/api.js";
 import { h, markInvalid } from "../lib/dom.js";
@@ -6,10 +6,10 @@ import { download } from "../lib/download.js";
 import { attempt, say } from "../lib/notices.js";
 import { sentenceOf } from "../lib/refusals.js";
 
-const WAIT = 300; // ms after the last letter until the text is taken into the form
+const WAIT = 300; // ms from the last keystroke until the text is taken into the form
 
 /**
- * Return {node, refresh}: the part of the form that has the job as a text. taken(job, source) is called with a job from a text or a file.
+ * Return {node, refresh}: the part of the form with the job as text. taken(job, source): called with a job from text or a file.
  * @param {Form.Whole} form @param {(job: Form.Job, source: string | null) => void} taken
  */
 export function jobFile(form, taken) {
@@ -149,7 +149,7 @@ function slug(name) {
   );
 }
 
-/** Return the shipped jobs. @param {AbortSignal} signal */
+/** Return the included jobs. @param {AbortSignal} signal */
 export async function presets(signal) {
   return (await get("presets", {}, signal)).presets;
 }

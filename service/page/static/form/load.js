@@ -113,7 +113,7 @@ function one(form, load, place, all) {
 }
 
 /**
- * Return the kinds of load: key, title, first values, motion that it is of and table of the schema.
+ * Return the kinds of load: key, title, initial values, type of motion, and table of the schema.
  * @param {Form.Whole} form
  */
 function kinds(form) {
@@ -121,5 +121,5 @@ function kinds(form) {
   return tables
     .map(form.schema.resolve)
     .map((table) => ({ key: "", title: "", first: {}, motion: "", ...table["x-load"], table }))
-    .filter(({ key }) => key); // one from a file has none: its points are read into one of the others
+    .filter(({ key }) => key); // a load from a file has no kind: its points are read into another kind
 }

@@ -12,9 +12,9 @@ import { speed } from "./speed.js";
 const PATH = ["motion"];
 const INVERSION = ["mechanism", "inversion"];
 const LEVER = "lever moved by a pivoting cylinder";
-/** What only a lever has. */
+/** Keys that only a lever has. */
 const OF_LEVER = ["mechanism.frame_angle", "mechanism.pin_angle", "cylinder"];
-/** What a lever does not have. */
+/** Keys that a lever does not have. */
 const NOT_OF_LEVER = [
   ...["speed", "cycle_time", "strokes_per_minute", "direction", "acceleration", "speed_profile"],
   ...["rod", "slider", "cylinders", "branch"],
@@ -49,17 +49,17 @@ export function swings(form) {
   return form.at([...PATH, "kind"]) === "swing";
 }
 
-/** Return whether a job is of a lever that a cylinder moves. @param {Form.Whole} form */
+/** Return whether a job is for a lever moved by a cylinder. @param {Form.Whole} form */
 export function isLever(form) {
   return form.at(INVERSION) !== undefined;
 }
 
-/** Return whether a quantity, or a kind of load, is of the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
+/** Return whether a quantity, or a kind of load, applies to the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
 export function fits(form, { motion }) {
   return motion === "" || motion === (isLever(form) ? "lever" : swings(form) ? "swing" : "turn");
 }
 
-/** Return what states the ends of the swing of a job. @param {Form.Whole} form */
+/** Return the name of the keys that state the ends of a job's swing. @param {Form.Whole} form */
 function stated(form) {
   const states = /** @param {string} key */ (key) => form.at([...PATH, key]) !== undefined;
   if (states("slider_travel")) return "slider position and travel";
@@ -67,7 +67,7 @@ function stated(form) {
   return states("swing") ? "crank angle and swing" : "two crank angles";
 }
 
-/** State the ends of the swing in another way; a start of the same kind stays. @param {Form.Whole} form @param {string} how */
+/** State the ends of the swing by other keys; a start of the same kind is kept. @param {Form.Whole} form @param {string} how */
 function state(form, how) {
   const before = { .../** @type {Record<string, unknown>} */ (form.at(PATH)) };
   const remaining = Object.fromEntries(
@@ -85,7 +85,7 @@ function state(form, how) {
   form.redraw();
 }
 
-/** Return the fields of the motion; turning: those that only a crank that rotates fully has. @param {Form.Whole} form @param {Dom.Child} turning */
+/** Return the fields of the motion. turning: fields that only a fully rotating crank has. @param {Form.Whole} form @param {Dom.Child} turning */
 export function motion(form, turning) {
   const lever = isLever(form);
   const kind = choice(
@@ -178,7 +178,7 @@ export function motion(form, turning) {
   ];
 }
 
-/** Let the crank swing or rotate fully, or be a lever; remove what does not apply, and say so. @param {Form.Whole} form @param {unknown} kind */
+/** Switch between swing, full rotation and lever; remove values that do not apply, and report that. @param {Form.Whole} form @param {unknown} kind */
 function change(form, kind) {
   const lever = kind === LEVER;
   form.put(PATH, kind === undefined ? undefined : structuredClone(FIRST));

@@ -1,4 +1,4 @@
-/** Objective on a quantity: a check box, and whether to minimise, to maximise, or to come near a value. */
+/** Objective on a quantity: a check box, and whether to minimise, to maximise, or to approach a value. */
 
 import { h } from "../lib/dom.js";
 import { entries } from "./controls.js";

@@ -2,7 +2,7 @@
 
 import { isRange } from "../lib/number_text.js";
 
-/** Return what stands at a path of a job; undefined where there is nothing. @param {unknown} job @param {Form.Path} path @returns {unknown} */
+/** Return the value at a path of a job, or undefined. @param {unknown} job @param {Form.Path} path @returns {unknown} */
 export function at(job, path) {
   let part = job;
   for (const key of path) {
@@ -13,7 +13,7 @@ export function at(job, path) {
 }
 
 /**
- * Put a value at a path of a job; undefined takes the key away, and the tables that are empty without it.
+ * Set the value at a path of a job; undefined removes the key, and tables that become empty.
  * @param {Record<string | number, unknown>} job @param {Form.Path} path @param {unknown} value
  */
 export function put(job, path, value) {
@@ -38,9 +38,9 @@ export function put(job, path, value) {
     delete job[key];
 }
 
-const LONGEST = 60; // of a key that the service writes whole
+const LONGEST = 60;
 
-/** Return a path as the service writes it: "load #1.force"; keys that are formulas in quotes. @param {Form.Path} path @returns {string} */
+/** Return a path in the notation of the service: "load #1.force"; keys that are formulas are in quotes. @param {Form.Path} path @returns {string} */
 export function written(path) {
   return path
     .map((key, place) =>
@@ -49,7 +49,7 @@ export function written(path) {
     .join("");
 }
 
-/** Return the path that the service writes so. @param {string} text @returns {Form.Path} */
+/** Return the path for a text in the notation of the service. @param {string} text @returns {Form.Path} */
 export function parted(text) {
   return [...text.matchAll(/ #(\d+)|"(?:[^"\\]|\\.)*"|[A-Za-z_]\w*/g)].map(([part, number]) =>
     number ? Number(number) - 1 : part.startsWith('"') ? JSON.parse(part) : part,
@@ -72,7 +72,7 @@ export function renamed(table, before, after) {
   );
 }
 
-/** Return an id for the control of a path, the same each time that the form is drawn. @param {Form.Path} path @param {string | number} part */
+/** Return an id for the control of a path that stays the same when the form is redrawn. @param {Form.Path} path @param {string | number} part */
 export function idOf(path, part = "") {
   return `f-${[...path, part]
     .filter((key) => key !== "")
@@ -86,7 +86,7 @@ export function isTable(part) {
 }
 
 /**
- * Return the value that a job gives to a name: a length or a requirement that has one value only; null for anything else.
+ * Return the value of a name in a job: a fixed length, or a requirement with a single value; null for anything else.
  * @param {{ at: (path: Form.Path) => unknown }} form @param {string} name @returns {string | number | null}
  */
 export function valueOf(form, name) {

@@ -1,4 +1,4 @@
-/** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit; and the curve that they are. */
+/** Points of a table: two columns, typed or pasted from a spreadsheet, each with its unit; and their curve. */
 
 import { post } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -12,8 +12,8 @@ import { convert, join, measureOf, split } from "../lib/units.js";
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
 
 /**
- * Return the field of the points that two lists of a table say, one per line. optional: whether there may be none, without the lists.
- * steps: whether two points may be at one place. files: whether a job may name a file of such points.
+ * Return the field for the points in two lists of a table, one point per line. optional: whether the lists may be omitted. steps: whether
+ * two points may share an abscissa. files: whether a job may name a file of points.
  * @param {Form.Whole} form @param {Form.Path} path @param {[Column, Column]} columns @param {string} why @param {{ optional?: boolean, title?: string, steps?: boolean, files?: boolean }} options
  */
 export function points(
@@ -154,7 +154,10 @@ export function points(
   return node;
 }
 
-/** Return the button that reads points from a file, and what was read from one. @param {Form.Whole} form @param {Form.Path} path @param {Column[]} columns */
+/**
+ * Return the button that reads points from a file, and a summary of the read points.
+ * @param {Form.Whole} form @param {Form.Path} path @param {Column[]} columns
+ */
 function fromFile(form, path, columns) {
   const input = h("input", {
     type: "file",
@@ -173,7 +176,7 @@ function fromFile(form, path, columns) {
       put(job, path, { ...Object.fromEntries(otherEntries), file: file.name });
       await attempt(async () => {
         const parsed = await post("parse", { job, files: { [file.name]: await bytesOf(file) } });
-        form.put(path, at(parsed.job, path)); // the units of its columns say which table it is
+        form.put(path, at(parsed.job, path)); // the units of its columns identify the table
         form.redraw();
       });
     },
@@ -199,8 +202,8 @@ function bytesOf(file) {
 }
 
 /**
- * Return the rows of a pasted text, and what its first line says of units: {rows, units, wrong}. Between cells stand tabs or semicolons,
- * where numbers may have a decimal comma; or spaces; or commas.
+ * Return the rows of a pasted text, and the units in its first line: {rows, units, wrong}. Cells are separated by tabs or semicolons,
+ * with which decimal commas are permitted, or by spaces or commas.
  * @param {string} text @param {string[][]} known units of each column
  * @returns {{ rows: string[][], units: string[], wrong: string | null }}
  */

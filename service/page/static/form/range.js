@@ -1,4 +1,4 @@
-/** Values that a dimension or another number may take: from one to another, fixed, in steps, preferred numbers, or some only. */
+/** Permitted values of a number: a range, a fixed value, steps, preferred numbers, or a list. */
 
 import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
@@ -19,10 +19,10 @@ const MODES = [
   ["choices", "one of"],
 ];
 const LISTS = ["values", "choices"];
-const STEPS = 20; // at least, of the step that is begun with
+const STEPS = 20; // minimum number of initial steps
 
 /**
- * Return the field of the values that a number may take; why: {sentence, name}; fixed: whether it may have one value only.
+ * Return the field for the permitted values of a number. why: {sentence, name}. fixed: whether a single value is permitted.
  * @param {Form.Whole} form @param {Form.Path} path @param {{ label: string, why: Form.Why, kind?: string | null, fixed?: boolean, drop?: string, removed?: () => void }} looks drop: what the button says that calls removed
  */
 export function range(
@@ -71,7 +71,7 @@ export function range(
       : null;
   if (!list) inputs.forEach((input, place) => drawnFrom(input, begun[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
-  /** What was typed in an input; only an end of the range can become a range. @param {HTMLInputElement} one @param {number} place */
+  /** Return the typed value of an input; only an end of the range can become a range. @param {HTMLInputElement} one @param {number} place */
   const read = (one, place) => entered(one, { kind, select: units, range: place < 2 });
   const ends = () =>
     list ? undefined : inputs.map((one, place) => read(one, place).ends).find(Boolean);
@@ -106,11 +106,11 @@ export function range(
   };
   inputs.forEach((input) => input.addEventListener("input", () => write()));
   const again = () => {
-    if (!node.isConnected) return; // drawn anew meanwhile
+    if (!node.isConnected) return; // redrawn in the meantime
     write();
     replace(form, node, () => range(form, path, { label, why, kind, fixed, drop: text, removed }));
   };
-  inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(again))); // once the next control has the focus
+  inputs.forEach((input) => input.addEventListener("change", () => ends() && setTimeout(again))); // after the next control has received the focus
   series?.addEventListener("change", () => write());
   units?.addEventListener("change", () => {
     const from = units.dataset.from ?? units.value;
@@ -148,7 +148,7 @@ function modeOf(jobValue) {
   return MODES.map(([mode]) => mode).find((mode) => mode in jobValue) ?? "choices";
 }
 
-/** Return the values of a number that fields show, in their order. @param {unknown} jobValue @param {Mode} mode @returns {unknown[]} */
+/** Return the displayed values of a number in the order of the fields. @param {unknown} jobValue @param {Mode} mode @returns {unknown[]} */
 function endsOf(jobValue, mode) {
   if (mode === "range") return [at(jobValue, [0]), at(jobValue, [1])];
   if (mode === "fixed") return [jobValue];

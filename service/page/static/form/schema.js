@@ -1,4 +1,4 @@
-/** The schema of jobs, as the form needs it. */
+/** Job schema, as needed by the form. */
 
 import { kindOf } from "../lib/units.js";
 
@@ -9,7 +9,7 @@ export function reader(schema) {
     $ref ? { ...schema.$defs?.[$ref.slice($ref.lastIndexOf("/") + 1)], ...node } : node;
 
   /**
-   * Return what belongs at a path of the job; for a choice between tables, the one that has the next key.
+   * Return the schema node at a path of the job; for a choice between tables, the one with the next key.
    * @param {Form.Path} path @returns {Form.Schema | null}
    */
   function property(path) {
@@ -30,8 +30,8 @@ export function reader(schema) {
 }
 
 /**
- * Return what control a node needs: {control, kind, percent, options, description, fallback, keys}.
- * control: "quantity", "choice", "whole", "ratio", "text", "list", "table", or "other", which only the job file can say.
+ * Return the control for a node: {control, kind, percent, options, description, fallback, keys}. control: "quantity", "choice", "whole",
+ * "ratio", "text", "list", "table", or "other", which only the job file can state.
  * @param {Form.Schema} node @returns {Form.Described}
  */
 export function describe(node) {

@@ -1,4 +1,4 @@
-/** The sections of the form, in the order in which an engineer thinks. */
+/** Sections of the form, in the order of an engineer's thinking. */
 
 import { h } from "../lib/dom.js";
 import { choices, choicesGiven } from "./catalogue.js";
@@ -18,7 +18,7 @@ import { strength, strengthGiven } from "./strength.js";
 import { targetMotion, targetMotionText } from "./target_motion.js";
 import { varying, varyingNames } from "./varying.js";
 
-const LINE = 90; // characters of what a group has
+const LINE = 90; // maximum length of a group's summary
 const FORM_TABLES = new Set([
   "name",
   "description",
@@ -42,7 +42,7 @@ const FORM_TABLES = new Set([
   "cylinder",
 ]);
 
-/** Return the sections for a job, ready to be put into the form. @param {Form.Whole} form */
+/** Return the sections of the form for a job. @param {Form.Whole} form */
 export function sections(form) {
   form.fields.length = 0;
   return [
@@ -192,7 +192,7 @@ function more(title, ...content) {
 }
 
 /**
- * Return a part that is of a crank that rotates fully; of one that swings only where the job has it, so that it can be taken out.
+ * Return a part for a fully rotating crank; for a swinging one only if the job has it, so that it can be removed.
  * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
  */
 function turning(form, place, part) {
@@ -200,7 +200,7 @@ function turning(form, place, part) {
 }
 
 /**
- * Return a part that a lever does not have; where its job has it, so that it can be taken out.
+ * Return a part that does not apply to a lever, only if its job has it, so that it can be removed.
  * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
  */
 function cranked(form, place, part) {
@@ -224,7 +224,7 @@ function has(form, ...places) {
 }
 
 /**
- * Return the names of the quantities that a part of the form asks for without being told to, and those that it has of another motion.
+ * Return the names of the quantities that a part of the form offers by default, and those present that belong to another motion.
  * @param {Form.Whole} form
  * @param {string} part
  */
@@ -251,7 +251,7 @@ function requirements(form, names) {
   return names.map((name) => requirement(form, form.quantity(name)));
 }
 
-/** Return the quantities besides the usual ones that the job has requirements on. @param {Form.Whole} form */
+/** Return further quantities with requirements in the job. @param {Form.Whole} form */
 function others(form) {
   const usual = new Set(requirementOptions(form));
   return Object.keys(form.at(["constraints"]) ?? {}).filter(

@@ -1,4 +1,4 @@
-/** The sketch beside the form: a linkage within the ranges, moving. */
+/** Sketch beside the form: a moving linkage within the ranges. */
 
 import { h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
@@ -6,7 +6,10 @@ import { drawing } from "../mechanism/drawing.js";
 
 const TURN = 4000; // ms of a turn
 
-/** Return {node, show(example), swing(preview)}; show(null) takes the linkage away. swing: between its two ends, which stand still. @param {AbortSignal} signal */
+/**
+ * Return {node, show(example), swing(preview)}; show(null) removes the linkage. swing(preview): shows a swing between its two fixed ends.
+ * @param {AbortSignal} signal
+ */
 export function sketch(signal) {
   const place = h("div", { class: "sketch" });
   const caption = h("p", { class: "quiet" });
@@ -30,7 +33,7 @@ export function sketch(signal) {
   let hasLinkage = false;
   /** @type {[number, number] | null} */
   let ends = null; // of a swing, deg
-  let share = 0; // of its way back and forth
+  let share = 0;
   const label = () => (button.textContent = moving ? "Pause" : "Move");
   label();
   /** @param {number} now */
@@ -53,7 +56,7 @@ export function sketch(signal) {
   signal.addEventListener("abort", () => drawn.close());
 
   /**
-   * Draw an example, null for none, with a sentence below it.
+   * Draw an example, or none for null, with a sentence below it.
    * @param {(Page.Lengths & { motion: Api.Curves, slider_ends_mm: Page.Point, feasible: boolean, outlines?: Api.Outlines | null }) | null} example @param {string} sentence @param {{ direction: number, dead_centres_deg?: Page.Point }} options
    */
   function draw(example, sentence, options) {

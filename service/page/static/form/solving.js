@@ -5,7 +5,7 @@ import { byschema, number, numberInput } from "./controls.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 
-/** Return the fields of the search. Priority and limits are of the submission, not of the job. @param {Form.Whole} form */
+/** Return the fields of the search. Priority and limits belong to the submission, not to the job. @param {Form.Whole} form */
 export function solving(form) {
   /** @param {string} key @param {string} label @param {string} why @param {number} factor */
   const limitField = (key, label, why, factor = 1) => {

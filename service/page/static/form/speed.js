@@ -37,7 +37,7 @@ export function speedProfile(form) {
     "Measured speeds, with the sign of the speed, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, the speeds are scaled to it",
     { optional: true, title: "speeds over the turn, one per line" },
   );
-  const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service opens no files
+  const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service does not open files
   return h(
     "fieldset",
     { class: "inner" },
@@ -83,13 +83,13 @@ export function speed(form) {
   function write() {
     const typed = input.value.trim();
     if (/^[-−]/.test(typed)) {
-      way.value = "-"; // as typed, so that no sign is reversed twice
+      way.value = "-"; // as typed, so that the sign is not reversed twice
       input.value = typed.slice(1);
     }
     const value = speedEntry.read(0).value;
     form.put(DIRECTION, !signed && way.value ? "clockwise" : undefined);
     if (signed) form.put(path, value && way.value + value);
-    else form.put(path, value ?? ""); // so that this one is reported as missing
+    else form.put(path, value ?? ""); // to have it reported as missing
   }
   const stated = choice(
     {

@@ -1,6 +1,6 @@
-/** The jobs that a form begins with. */
+/** Initial jobs of a form. */
 
-/** Return a job that can be solved, in the reader's units: system is "si" or "inch". @param {"si" | "inch"} system @returns {Form.Job} */
+/** Return a solvable job in the units of a system, "si" or "inch". @param {"si" | "inch"} system @returns {Form.Job} */
 export function firstJob(system) {
   const inch = system === "inch";
   /** @param {number} mm @param {number} inches */
@@ -38,7 +38,7 @@ export function firstJob(system) {
 }
 
 /**
- * Return a job with ranges around a mechanism, which keeps its stroke: crank, rod, offset and stroke, mm, and the crank speed, rpm.
+ * Return a job with ranges around a mechanism and with its stroke: crank, rod, offset and stroke, mm, and crank speed, rpm.
  * @param {"si" | "inch"} system @param {number[]} numbers @returns {Form.Job}
  */
 export function jobAround(system, [crank, rod, offset, stroke, rpm]) {

@@ -9,7 +9,7 @@ import { around, titleOf } from "./varying.js";
 
 const PATH = ["sections"];
 const RANGES = ["width", "depth"];
-/** The bars in whose eyes each pin is. @type {Record<string, string[]>} */
+/** Bars whose eyes hold each pin. @type {Record<string, string[]>} */
 const BARS = { crank_pivot: ["crank"], crank_pin: ["crank", "rod"], slider_pin: ["rod"] };
 
 /** Return the fields of material and pins. @param {Form.Whole} form */
@@ -109,13 +109,13 @@ export function strength(form) {
   ];
 }
 
-/** Give material and pins, or take them away with what varies of them. @param {Form.Whole} form @param {unknown} table */
+/** Add material and pins, or remove them with their variables. @param {Form.Whole} form @param {unknown} table */
 function putSections(form, table) {
   if (table === undefined) form.put(["variables", ...PATH], undefined);
   form.put(PATH, table);
 }
 
-/** Give each pin half the width of its bar. @param {Form.Whole} form */
+/** Set each pin to half the width of its bar. @param {Form.Whole} form */
 function propose(form) {
   for (const [pin, links] of Object.entries(BARS)) {
     const widths = links.map((link) => split(form.at(["mechanism", link, "width"]), "length"));
@@ -148,7 +148,10 @@ function keysOf(form, path) {
   return Object.keys(form.schema.property(path)?.properties ?? {});
 }
 
-/** Return the field of a number that is held, with a button that lets it vary; or, once it does, its values too. @param {Form.Whole} form @param {Form.Path} path @param {string} label */
+/**
+ * Return the field of a fixed number with a button that makes it vary; if it varies, also its permitted values.
+ * @param {Form.Whole} form @param {Form.Path} path @param {string} label
+ */
 export function held(form, path, label) {
   const varies = ["variables", ...path];
   const fixedField = byschema(form, path, { label, required: true });

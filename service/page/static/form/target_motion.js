@@ -6,9 +6,9 @@ import { byschema } from "./controls.js";
 import { points } from "./points.js";
 
 const PATH = ["target_motion"];
-const EVERY = 45; // deg between the points that are begun with
+const EVERY = 45; // deg between the initial points
 
-/** Return the points of the desired motion in a line; "" without one. @param {Form.Whole} form */
+/** Return the desired motion in one line, or "". @param {Form.Whole} form */
 export function targetMotionText(form) {
   const angles = form.at([...PATH, "crank_angles"]);
   return Array.isArray(angles)
@@ -18,7 +18,7 @@ export function targetMotionText(form) {
       : String(form.at([...PATH, "file"]) ?? "");
 }
 
-/** Return the fields of the desired motion, or what begins one. @param {Form.Whole} form */
+/** Return the fields of the desired motion, or the button that adds it. @param {Form.Whole} form */
 export function targetMotion(form) {
   if (form.at(PATH) === undefined) {
     return h(
@@ -76,7 +76,7 @@ export function targetMotion(form) {
   ];
 }
 
-/** Return the motion that is begun with: that of the linkage beside the form, rounded; without one, that of the description. @param {Form.Whole} form */
+/** Return the initial motion: that of the sketched linkage, rounded, or else that of the description. @param {Form.Whole} form */
 function first(form) {
   const motion = form.said?.example?.motion;
   const angles = motion ? Array.from({ length: 360 / EVERY }, (_, n) => n * EVERY) : [0, 90, 180];

@@ -7,11 +7,11 @@ import { join, measureOf } from "../lib/units.js";
 
 const NAME = /[a-z]{3,}(?:_[a-z]+)*/g;
 
-/** What the job had for an input, as it was drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, jobValue: unknown }>} */
+/** Values of inputs in the job, as drawn. @type {WeakMap<HTMLInputElement, { value: string, unit: string | undefined, jobValue: unknown }>} */
 const drawn = new WeakMap();
 
 /**
- * Remember what the job has for an input: as long as nothing else is typed it stays so, in its own unit.
+ * Remember the job's value for an input: unless the user types another, it stays unchanged, in its own unit.
  * @param {HTMLInputElement} input @param {unknown} jobValue @param {HTMLSelectElement | null} [select]
  */
 export function drawnFrom(input, jobValue, select) {
@@ -20,8 +20,8 @@ export function drawnFrom(input, jobValue, select) {
 }
 
 /**
- * Return what a job holds for what is typed in an input: a number in the unit that the field shows, or the text as it is where
- * only the service can say what it means; undefined for nothing. What cannot be read is said at the field.
+ * Return the job value for the text in an input: a number in the unit of the field, or the unchanged text if only the service can
+ * interpret it; undefined for empty text. Unreadable text is reported at the field.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {string | number | undefined}
  */
 export function taken(input, measure = {}) {
@@ -29,7 +29,7 @@ export function taken(input, measure = {}) {
 }
 
 /**
- * Return the same as {value}; or {ends}, in the unit that the field shows, of a range that is typed as its middle and half its width.
+ * Return the same as {value}; or {ends}, in the unit of the field, for a range typed as its middle and half its width.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {{ value?: string | number, ends?: string[] }}
  */
 export function entered(
@@ -50,7 +50,7 @@ export function entered(
     return { value: /** @type {string | number} */ (before.jobValue) };
   }
   if (input.value !== input.dataset.number)
-    for (const name of ["said", "number"]) delete input.dataset[name]; // else it was put in order
+    for (const name of ["said", "number"]) delete input.dataset[name];
   if (parsed.wrong !== undefined) input.dataset.wrong = parsed.wrong;
   if (parsed.ends) {
     input.dataset.said = parsed.said;
@@ -68,8 +68,8 @@ export function entered(
 }
 
 /**
- * Return what was typed, after "=" with the values of the job in place of their names, as in "=stroke/2". The form answers the event
- * "value-of" with the value of a name; what has none stays, and is a formula for the service.
+ * Return the typed text; after "=", names are replaced by values of the job, as in "=stroke/2". The form answers the event "value-of"
+ * with the value of a name; other names stay, as a formula for the service.
  * @param {HTMLInputElement} input
  */
 function valued(input) {
@@ -82,12 +82,12 @@ function valued(input) {
   });
 }
 
-/** Put the number that was understood in place of what was typed. @param {HTMLInputElement} input */
+/** Replace the typed text with the parsed number. @param {HTMLInputElement} input */
 export function ordered(input) {
   if (input.dataset.number !== undefined) input.value = input.dataset.number;
 }
 
-/** Say beside the field how its numbers were read. @param {HTMLInputElement} input */
+/** Show beside the field how its numbers were interpreted. @param {HTMLInputElement} input */
 export function say(input) {
   const place = input.closest(".field")?.querySelector(".understood");
   if (!(place instanceof HTMLElement)) return;

@@ -5,9 +5,9 @@ import { at, idOf, isTable } from "./path.js";
 import { range } from "./range.js";
 import { describe, words } from "./schema.js";
 
-/** Numbers whose permitted values stand beside them. */
+/** Numbers with their permitted values beside them. */
 const SECTION_SIZE = /^(sections\.pins\.\w+|mechanism\.(crank|rod)\.(width|depth))$/;
-const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table that says values
+const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of a table of values
 
 /** Return the fields of the extra variables and a select to add one. @param {Form.Whole} form */
 export function varying(form) {
@@ -52,7 +52,7 @@ export function varying(form) {
   ];
 }
 
-/** Whether a number has the values that it may take beside it, elsewhere in the form. @param {Form.Whole} form @param {string} name */
+/** Whether the form shows the permitted values of a number beside it, in another section. @param {Form.Whole} form @param {string} name */
 function hasSizeField(form, name) {
   return (
     SECTION_SIZE.test(name) &&
@@ -106,7 +106,7 @@ function numbers(form) {
     } else if (typeof part === "number" || typeof part === "string") {
       const node = form.schema.property(path);
       const control = node && describe(node).control;
-      const isSingle = typeof path[path.length - 1] === "string"; // not of a table of points
+      const isSingle = typeof path[path.length - 1] === "string"; // except tables of points
       if (
         isSingle &&
         (control === "quantity" || control === "ratio") &&
@@ -119,7 +119,7 @@ function numbers(form) {
   return candidates;
 }
 
-/** Return the name of a number as variables have it: places of lists count from 1. @param {Form.Path} path */
+/** Return the name of a number in the notation of variables: list entries count from 1. @param {Form.Path} path */
 function nameOf(path) {
   return path.map((key) => (typeof key === "number" ? key + 1 : key)).join(".");
 }

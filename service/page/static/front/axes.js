@@ -1,4 +1,4 @@
-/** Heads of the axes: name, and a menu with limits as fields and the position among the axes. */
+/** Heads of the axes: name, and a menu with fields for limits and position. */
 
 import { fill, first, focused, h, markInvalid, numberField } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
@@ -10,10 +10,10 @@ import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Axis } from "./choices.js" */
 
-const MOST_WORDS = 8; // as ticks; the rest stays in the table
+const MOST_WORDS = 8; // as check boxes; the table has the others
 
 /**
- * Return {node, draw(), limits()} for the axes of an explorer: draw after a change of axes, limits after one of limits.
+ * Return {node, draw(), limits()} for the axes of an explorer: call draw after a change of axes, and limits after a change of limits.
  * @param {Explorer} explorer
  */
 export function axisFields(explorer) {
@@ -46,7 +46,7 @@ export function axisFields(explorer) {
     limits();
   }
 
-  /** Return the head of an axis, a menu; the arrow keys lead from one to the next. @param {Axis} options @param {number} index @param {number} count */
+  /** Return the head of an axis, a menu; arrow keys move between the heads. @param {Axis} options @param {number} index @param {number} count */
   function head({ key, flipped }, index, count) {
     const column = explorer.data.column(key);
     /** @param {string} label @param {() => void} doing @param {boolean} disabled @param {boolean} [pressed] */
@@ -107,7 +107,7 @@ export function axisFields(explorer) {
     );
   }
 
-  /** Return an arrow to the better end of an axis; in words for a value to come near to. @param {string} key @param {boolean} flipped */
+  /** Return an arrow towards the better end of an axis; for a target, words. @param {string} key @param {boolean} flipped */
   function wayOf(key, flipped) {
     const better = explorer.data.better(key);
     if (!better || better.startsWith("best near")) return better;

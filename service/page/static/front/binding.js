@@ -11,9 +11,9 @@ import { capital } from "../lib/words.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const FEW = 4; // limits that are shown at once
+const FEW = 4; // maximum number of visible limits
 const WORDS = { lower: "at least", upper: "at most" };
-const REST = 1e-6; // of a limit: it is active
+const REST = 1e-6; // relative tolerance of an active limit
 
 /** Return the panel of the limits of an explorer. @param {Explorer} explorer */
 export function bindingPanel(explorer) {

@@ -1,4 +1,4 @@
-/** Kept designs of a run: names, notes, stars, the decision and its reason, shared by everyone with access. */
+/** Bookmarked designs of a run: names, notes, stars, the decision and its reason, shared by everyone with access. */
 
 import { address, get, patch, post, remove } from "../lib/api.js";
 import { fill, first, focused, h } from "../lib/dom.js";
@@ -21,7 +21,7 @@ import { headsOf, numberCell, table as tableOf } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const EVERY = 5_000; // ms between polls for others' changes
+const EVERY = 5_000; // ms between polls for changes by others
 /** Entries of the history in words. @type {Record<Api.HistoryEntry["action"], (entry: Api.HistoryEntry) => string>} */
 const ACTIONS = {
   note: ({ name, text: note }) => `Note on ${name}: ${note}`,
@@ -31,7 +31,7 @@ const ACTIONS = {
   deleted: ({ name }) => `${name} dropped`,
 };
 
-/** Return {place, file, draw(), marks(), ask()} for the kept designs of an explorer, at whose head the decision is. @param {Explorer} explorer */
+/** Return {place, file, draw(), marks(), ask()} for the bookmarks of an explorer, with the decision at its head. @param {Explorer} explorer */
 export function bookmarksPanel(explorer) {
   const { data, job, chosen, decision } = explorer;
   const table = h("div", {
@@ -67,10 +67,10 @@ export function bookmarksPanel(explorer) {
   );
   /** @type {Pick<Api.Bookmarks, "designs" | "history">} */
   let list = { designs: [], history: [] };
-  let loaded = false; // whether the service has answered
-  let turn = 0; // of the latest question
+  let loaded = false;
+  let turn = 0;
 
-  /** Ask for the kept designs. refuse(problem): of a failure. */
+  /** Request the bookmarks. refuse(problem): called after a failure. */
   async function ask(refuse = sayProblem) {
     const request = (turn += 1);
     await attempt(async () => {
@@ -81,11 +81,11 @@ export function bookmarksPanel(explorer) {
       loaded = true;
       list = answer;
       drawTable();
-      if (before || marks().length) explorer.update("all"); // otherwise text typed at the axes stays
+      if (before || marks().length) explorer.update("all"); // otherwise text typed at the axes would stay
     }, refuse);
   }
 
-  /** Change a kept design. @param {number} number @param {object} changes */
+  /** Change a bookmark. @param {number} number @param {object} changes */
   async function change(number, changes) {
     await patch(`jobs/${job.id}/kept/${number}`, changes);
     await ask();
@@ -97,7 +97,7 @@ export function bookmarksPanel(explorer) {
     await ask();
   }
 
-  /** Drop a kept design; ask first if somebody would miss it. @param {Api.Kept} one */
+  /** Delete a bookmark; ask first if it has a star or a history. @param {Api.Kept} one */
   function drop({ number, name, decided, star }) {
     /** @param {{ author?: string }} values */
     const act = async ({ author = "" }) => {
@@ -119,7 +119,10 @@ export function bookmarksPanel(explorer) {
     });
   }
 
-  /** Ask for name and reason, or name and note, with what others did meanwhile. @param {Api.Kept} one @param {boolean} deciding @param {HTMLElement} button */
+  /**
+   * Ask for name and reason, or name and note, after loading changes by others.
+   * @param {Api.Kept} one @param {boolean} deciding @param {HTMLElement} button
+   */
   const remark = (one, deciding, button) =>
     attempt(
       async () => {
@@ -282,7 +285,7 @@ export function bookmarksPanel(explorer) {
     if (focusedAct) first(place, `[data-act="${CSS.escape(focusedAct)}"]`)?.focus();
   }
 
-  const look = () => document.hidden || ask(() => {}); // the next one may be answered
+  const look = () => document.hidden || ask(() => {}); // the next request may succeed
   const watcher = setInterval(look, EVERY);
   explorer.signal.addEventListener("abort", () => clearInterval(watcher));
   for (const [from, name] of /** @type {const} */ ([
@@ -298,7 +301,7 @@ export function bookmarksPanel(explorer) {
     add.disabled = !ticked;
   }
 
-  /** Return the kept designs outside the front, for the charts. */
+  /** Return the bookmarks outside the front, for the charts. */
   const marks = () =>
     list.designs
       .filter(({ changed, star }) => changed && (star || !only.checked))

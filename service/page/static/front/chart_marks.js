@@ -1,4 +1,7 @@
-/** What is marked on the charts of a front: knee, extremes, the choice by weights, kept and wished ones, selected and pointed at. */
+/**
+ * Marked designs in the charts of a front: knee, extreme designs, choice by weights, bookmarks, wishes, selected designs, and the one
+ * under the pointer.
+ */
 
 /** @import { Explorer } from "./explorer.js" */
 

@@ -1,4 +1,4 @@
-/** Choices in the explorer of a front, to and from the address. */
+/** Choices in the explorer of a front, as stored in the address. */
 
 import { LENGTHS } from "./linkages.js";
 import { wishesFrom, wishQuery } from "./wishes.js";
@@ -10,7 +10,7 @@ import { wishesFrom, wishQuery } from "./wishes.js";
  * @typedef {ReturnType<typeof choicesFrom>} Chosen
  */
 
-const MOST = 3; // designs side by side
+const MOST = 3; // compared designs
 
 /**
  * Return the choices in an address, completed: axes, limits, log, x, y, colour, columns, sort, page, selected, weights, wish.
@@ -67,7 +67,7 @@ export function choicesFrom(query, front) {
         ? weights
         : null,
     wish: wishesFrom(query, front.objectives),
-    behind: query.get("behind") !== "none", // whether the front of the run before is shown
+    behind: query.get("behind") !== "none", // whether the previous run's front is shown
     standard: {
       axes: standard.join(","),
       x: objectives[0],
@@ -116,7 +116,7 @@ function lassoFrom(query, known) {
   };
 }
 
-/** Return the query of an address; what is as it would be anyway is left out. @param {Chosen} chosen @param {Page.Lasso | null} lasso */
+/** Return the query of an address without defaults. @param {Chosen} chosen @param {Page.Lasso | null} lasso */
 export function queryOf(chosen, lasso) {
   const { standard } = chosen;
   /** @param {string} value @param {string | undefined} usual */
@@ -157,7 +157,7 @@ export function queryOf(chosen, lasso) {
 }
 
 /**
- * Return the selected designs with one more, or one less; the first goes when there are too many.
+ * Return the selected designs with one design added or removed; the first is dropped if there are too many.
  * @param {number[]} selected @param {number} number
  */
 export function toggled(selected, number) {

@@ -1,11 +1,11 @@
-/** Choice of the shown quantities: a list of ticks that opens. */
+/** Choice of the displayed quantities: a drop-down list of check boxes. */
 
 import { h } from "../lib/dom.js";
 import { menu } from "../lib/menu.js";
 import { headed } from "./columns.js";
 
 /**
- * Return a list of all columns behind a heading; chosen() gives the keys that are ticked, choose(keys) takes them in order.
+ * Return a list of all columns behind a heading. chosen(): the checked keys. choose(keys): called with the checked keys in order.
  * @param {string} heading @param {Api.Column[]} columns @param {() => string[]} chosen @param {(keys: string[]) => void} choose
  */
 export function chooser(heading, columns, chosen, choose) {

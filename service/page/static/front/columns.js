@@ -3,7 +3,7 @@
 import { link } from "../lib/address.js";
 import { titleOf, unitOf, withUnit } from "../lib/numbers.js";
 
-// How a key ends, and the unit that this means; the longer endings first.
+// Endings of keys with their units, longer endings first.
 /** @type {[string, string][]} */
 const ENDINGS = [
   ["_m_s3", "m/s^3"],
@@ -36,7 +36,7 @@ export function columnOf(key) {
   };
 }
 
-/** Return the link to what a column means; the slack of a quantity is explained with it. @param {string} key */
+/** Return the link to the help on a column; a slack is explained with its quantity. @param {string} key */
 export function helpLink(key) {
   return link(["help", key.replace(/^slack_/, "")]);
 }
@@ -53,5 +53,5 @@ export function named(key, value, digits = 4) {
 /** Return a title with the unit that the reader chose, on one line. @param {Page.Heading} column */
 export function headed(column) {
   const unit = unitOf(column.unit)?.replaceAll(" ", "\u00a0");
-  return unit ? `${column.title},\u00a0${unit}` : column.title; // no line begins with a unit, or with a part of one
+  return unit ? `${column.title},\u00a0${unit}` : column.title; // no line break within or before a unit
 }

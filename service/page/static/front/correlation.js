@@ -6,7 +6,7 @@ import { headedRow, headsOf, table } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const WAIT = 150; // ms after the designs changed
+const WAIT = 150; // ms after a change of the designs
 const WORDS = /** @type {const} */ ([
   [0.95, "almost always"],
   [0.7, "mostly"],
@@ -14,7 +14,7 @@ const WORDS = /** @type {const} */ ([
 ]);
 
 /**
- * Return the ranks of numbers from 1, alike ones at the mean of theirs.
+ * Return the ranks of numbers from 1; ties get their mean rank.
  * @param {ArrayLike<number>} numbers @returns {Float64Array}
  */
 export function ranks(numbers) {
@@ -30,7 +30,7 @@ export function ranks(numbers) {
 }
 
 /**
- * Return Spearman's rank correlation of two columns over the rows that a mask lets through and that have both; null without a spread.
+ * Return Spearman's rank correlation of two columns over the masked rows that have both; null without variation.
  * @param {ArrayLike<number>} a @param {ArrayLike<number>} b @param {ArrayLike<number>} mask
  */
 export function rankCorrelation(a, b, mask) {
@@ -61,7 +61,7 @@ export function inWords(x, y, value, count) {
     : `${capital(x)} and ${y} are hardly related ${numbers}.`;
 }
 
-/** Return {place, draw()}: the pair of the scatter in words, and every pair of objectives to choose from. @param {Explorer} explorer */
+/** Return {place, draw()}: the correlation of the plotted pair in words, and all pairs of objectives as choices. @param {Explorer} explorer */
 export function correlations(explorer) {
   const { data, limits, chosen } = explorer;
   const sentence = h("p", { class: "correlation" });

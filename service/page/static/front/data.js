@@ -6,7 +6,7 @@ import { withUnit } from "../lib/numbers.js";
 
 /** @typedef {{ numbers: Float64Array, words: string[] | null, range: Page.Range }} Kept A column as it is kept. */
 
-/** The front of a job: `front` is what /jobs/N/front says of it. */
+/** Front of a job. front: response of /jobs/N/front. */
 export class FrontData {
   /** @type {Map<string, Kept>} */
   kept = new Map();
@@ -33,7 +33,7 @@ export class FrontData {
     return this.known.has(key);
   }
 
-  /** Fetch those of these columns that are not here yet, in one request. @param {string[]} keys */
+  /** Fetch the missing ones of some columns, in one request. @param {string[]} keys */
   async need(keys) {
     const wanted = [...new Set(keys)].filter((key) => this.known.has(key) && !this.kept.has(key));
     if (!wanted.length || !this.count) return;
@@ -60,7 +60,7 @@ export class FrontData {
     return /** @type {Kept} */ (this.kept.get(key));
   }
 
-  /** Return the numbers of a column, NaN where a design has none; of words, their places in `words(key)`. @param {string} key */
+  /** Return the numbers of a column, NaN for missing values; for words, their indices in `words(key)`. @param {string} key */
   numbers(key) {
     return this.of(key).numbers;
   }
@@ -70,12 +70,12 @@ export class FrontData {
     return this.kept.get(key)?.words ?? null;
   }
 
-  /** Return {low, high} of the numbers of a column, alike where it is constant; both 0 where none is defined. @param {string} key */
+  /** Return {low, high} of the numbers of a column, equal if it is constant, both 0 if all are undefined. @param {string} key */
   range(key) {
     return this.of(key).range;
   }
 
-  /** Return what a design, counted from 0, has in a column: a number, a word, or null. @param {string} key @param {number} row */
+  /** Return the cell of a design, counted from 0, in a column: a number, a word, or null. @param {string} key @param {number} row */
   cell(key, row) {
     const { numbers, words } = this.of(key);
     const number = numbers[row];
@@ -83,7 +83,7 @@ export class FrontData {
     return words ? words[number] : number;
   }
 
-  /** Return the best sense of a column: "maximise" where more is better, else "minimise". @param {string} key */
+  /** Return "maximise" for a column in which more is better, else "minimise". @param {string} key */
   sense(key) {
     return this.objectives.find(({ column }) => column === key)?.sense ?? "minimise";
   }
@@ -112,7 +112,7 @@ export class FrontData {
 }
 
 /**
- * Return a column as it is kept. Plain loops: of 10,000 designs and more, with iterators they take five times as long.
+ * Return a column in its stored form. With 10,000 designs and more, iterators would take five times as long as these loops.
  * @param {Api.Row[string][]} cells @returns {Kept}
  */
 function stored(cells) {

@@ -27,8 +27,8 @@ import { selectedBar } from "./selected.js";
 import { designTable } from "./table.js";
 import { wishingPanel } from "./wishing.js";
 
-const OFTEN = 120; // ms between two tables while limits are dragged: rows are what takes longest to draw
-const PAUSE = 300; // ms after the last change until the address is written: browsers refuse too many a second
+const OFTEN = 120; // ms between tables while limits are dragged: rows are the slowest to draw
+const PAUSE = 300; // ms from the last change until the address is written: browsers limit the rate
 const ORDER = ["marks", "table", "chosen", "all"];
 
 /**
@@ -37,8 +37,8 @@ const ORDER = ["marks", "table", "chosen", "all"];
  */
 
 /**
- * Fill a place with the explorer of a front; the promise is kept when it is drawn. values: columns that are here already. files: where the
- * files go that it makes; decision: the place that names the chosen design.
+ * Fill a place with the explorer of a front; the promise resolves when it is drawn. values: columns already loaded. files: place for
+ * links to its files. decision: place that names the chosen design.
  * @param {HTMLElement} place
  * @param {{ job: Api.Job, front: Api.Front, values: Api.Columns["values"], query: URLSearchParams, files: HTMLElement, decision: HTMLElement, signal: AbortSignal }} options
  */
@@ -64,7 +64,7 @@ export class Explorer {
   frame = 0;
   width = 0;
   ink = colours();
-  tabled = -Infinity; // when the table was drawn last, ms
+  tabled = -Infinity; // time of the last drawing of the table, ms
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   settling;
   /** @type {ReturnType<typeof setTimeout> | undefined} */
@@ -211,7 +211,7 @@ export class Explorer {
     if (origin) attempt(() => this.drawPreviousFront(origin));
   }
 
-  /** Show the front of the run before, once it is here. @param {number} run */
+  /** Show the previous run's front once it is loaded. @param {number} run */
   async drawPreviousFront(run) {
     this.before = await previousFront(run, this.signal);
     await this.before?.need([this.chosen.x, this.chosen.y]);
@@ -219,7 +219,7 @@ export class Explorer {
   }
 
   /**
-   * Take over choices and draw what they change: "marks", "table", "chosen" (designs) or "all".
+   * Adopt choices and redraw what they affect: "marks", "table", "chosen" (designs) or "all".
    * @param {Partial<Chosen>} choices @param {What} what
    */
   async change(choices, what) {
@@ -268,7 +268,7 @@ export class Explorer {
     });
   }
 
-  /** Write what is chosen into the address, so that the way back leads here. */
+  /** Write the choices into the address, so that the browser's Back button returns here. */
   keepAddress() {
     clearTimeout(this.settling);
     keep(queryOf(this.chosen, this.limits.lasso));
@@ -303,7 +303,7 @@ export class Explorer {
     this.selected.draw();
   }
 
-  /** Draw the table; where it may wait, after the frame, and not again within a moment. @param {boolean} waits */
+  /** Draw the table; if it may wait, after the current frame, and at most once per interval. @param {boolean} waits */
   drawTable(waits) {
     clearTimeout(this.tabling);
     if (waits) {
@@ -317,7 +317,7 @@ export class Explorer {
     this.table.draw();
   }
 
-  /** Point at a design; null: at the one that has the focus, if any. @param {number | null} row */
+  /** Highlight a design; null: the one with the focus, if any. @param {number | null} row */
   point(row) {
     const pointed = row ?? this.focused;
     if (pointed === this.pointed) return;
@@ -325,7 +325,7 @@ export class Explorer {
     this.update("marks");
   }
 
-  /** Note which design has the focus, and point at it. @param {number | null} row */
+  /** Record which design has the focus, and highlight it. @param {number | null} row */
   focus(row) {
     this.focused = row;
     this.point(row);

@@ -4,14 +4,14 @@ import { inside } from "../charts/lasso.js";
 
 /** @import { FrontData } from "./data.js" */
 
-const NEAR = 1e-9; // relative: a design on a limit is within it, also where the limit was rounded on its way through a unit
+const NEAR = 1e-9; // relative tolerance: a design on a limit is within it, even if unit conversion rounded the limit
 
 /**
- * Limits by column: {low, high}, each a number or null, for numbers; {words: [...]} for words. Beside them a line drawn around
- * some designs, {x, y, line}: the keys of two columns and its corners in their units; or null.
+ * Limits by column: {low, high} for numbers, each a number or null; {words: [...]} for words. Also a line drawn around designs, or null:
+ * {x, y, line} with the keys of two columns and its corners in their units.
  */
 export class Limits {
-  chosen = 0; // how many designs are within
+  chosen = 0; // number of designs within all limits
   /** @param {FrontData} data @param {Map<string, Page.Limit>} limits @param {Page.Lasso | null} lasso */
   constructor(data, limits = new Map(), lasso = null) {
     this.data = data;
@@ -29,7 +29,7 @@ export class Limits {
     else this.of.set(key, limit);
   }
 
-  /** Find the designs within all limits; columns that are not here yet do not count. */
+  /** Find the designs within all limits; columns that are not loaded yet are ignored. */
   apply() {
     const { mask, data } = this;
     mask.fill(1);
@@ -43,7 +43,7 @@ export class Limits {
       } else {
         const low = limit.low === null ? -Infinity : limit.low - NEAR * Math.abs(limit.low);
         const high = limit.high === null ? Infinity : limit.high + NEAR * Math.abs(limit.high);
-        // Written so that a design without a value is outside.
+        // In this form, a design without a value is outside.
         for (let row = 0; row < mask.length; row += 1)
           if (!(numbers[row] >= low && numbers[row] <= high)) mask[row] = 0;
       }
@@ -69,7 +69,7 @@ export class Limits {
     this.lasso = null;
   }
 
-  /** Return the limits as conditions of the API, which knows no line around designs. */
+  /** Return the limits as conditions of the API, which does not support lines around designs. */
   conditions() {
     /** @type {string[]} */
     const conditions = [];

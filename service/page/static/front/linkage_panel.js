@@ -1,4 +1,4 @@
-/** The linkage of the design that is pointed at, beside the charts: at one scale for all designs, moving while somebody points. */
+/** Linkage of the highlighted design beside the charts, at one scale for all designs; it moves while a design is highlighted. */
 
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
@@ -13,8 +13,8 @@ import { namesOf } from "./chart_marks.js";
 /** @import { Explorer } from "./explorer.js" */
 
 const START = 60; // deg: no links overlap here
-const SOON = 120; // ms that a design is pointed at, until its swing is asked for
-const ENDS = /** @type {Page.Point} */ ([0, 180]); // places in the swing
+const SOON = 120; // ms of highlighting before the swing of a design is requested
+const ENDS = /** @type {Page.Point} */ ([0, 180]); // points of the swing
 
 /** Return {place, draw(what), close()} of the linkage of an explorer. @param {Explorer} explorer */
 export function linkagePanel(explorer) {
@@ -33,7 +33,7 @@ export function linkagePanel(explorer) {
   );
   const drawn = drawing(picture, { label: "" });
   /** @type {ReturnType<typeof playback> | null} */
-  let motion = null; // once the service said which way the crank turns
+  let motion = null; // once the service has returned the direction of rotation
   /** @type {number | null} */
   let drawnRow = null;
   let isRequested = false;
@@ -53,7 +53,7 @@ export function linkagePanel(explorer) {
     });
   }
 
-  /** Ask once for the speed of the crank; without an answer it turns counter-clockwise. */
+  /** Request the crank speed once; without a response, the crank turns counter-clockwise. */
   async function ask() {
     isRequested = true;
     const rpm = await get(
@@ -71,7 +71,7 @@ export function linkagePanel(explorer) {
     draw("all");
   }
 
-  /** It moves while somebody points at a design, or at the panel. */
+  /** Animate while a design or the panel is pointed at. */
   function move() {
     const wanted = !still && (within || explorer.pointed !== null);
     if (wanted && !isRequested) ask();
@@ -80,7 +80,7 @@ export function linkagePanel(explorer) {
     else motion.pause();
   }
 
-  /** Draw a design that swings between its ends, once the service has said how it goes. @param {number} row */
+  /** Draw a design that swings between its ends, once the service has returned its motion. @param {number} row */
   async function showSwing(row) {
     const cycle = await explorer.linkages.cycle(row);
     if (!cycle || drawnRow !== row || explorer.signal.aborted) return;

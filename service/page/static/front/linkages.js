@@ -1,4 +1,4 @@
-/** The designs of a front as linkages, and the frame in which all of them have one scale. */
+/** Designs of a front as linkages, and the frame that gives all of them one scale. */
 
 import { get } from "../lib/api.js";
 import { deadCentresOf } from "../mechanism/motion.js";

@@ -1,21 +1,21 @@
-/** The designs that a front was left with, sorted and within the limits: the order in which they are walked through. */
+/** Order of the designs in the last view of a front, sorted and within the limits: the order for stepping through them. */
 
 /** @param {string | number} job */
 const key = (job) => `listed ${job}`;
 
-/** Keep the numbers of designs in their order; null forgets them. @param {string | number} job @param {number[] | null} numbers */
+/** Store the numbers of designs in their order; null deletes them. @param {string | number} job @param {number[] | null} numbers */
 export function storeOrder(job, numbers) {
   try {
     if (numbers === null) sessionStorage.removeItem(key(job));
     else sessionStorage.setItem(key(job), JSON.stringify(numbers));
   } catch {
-    // The browser stores nothing, or not that much: designs are listed by number.
+    // Without enough storage in the browser, designs are listed by number.
   }
 }
 
 /**
- * Return where a design stands among those that were kept: {place, count, before, after}, the numbers beside it null at the ends;
- * without a list, or outside of it, among all designs of the front.
+ * Return the position of a design in the stored list: {place, count, before, after}, with null neighbours at the ends; without a list, or
+ * outside it, its position in the whole front.
  * @param {string | number} job @param {number} number @param {number} all
  */
 export function neighbours(job, number, all) {
@@ -49,8 +49,7 @@ function kept(job) {
 }
 
 /**
- * Return the lines of a table of designs, as the service exports it, that begin with some numbers, in the order of these. Throws an
- * Error for a table that is not of that shape.
+ * Return the lines for some designs from an exported table, in the order of their numbers. Throws an Error for a table of another form.
  * @param {string} table @param {number[]} numbers
  */
 export function linesOf(table, numbers) {

@@ -10,7 +10,7 @@ import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-const PAUSE = 150; // ms after a slider moved
+const PAUSE = 150; // ms after a slider has moved
 
 /** Return {place, draw(what)} of the marks of an explorer. @param {Explorer} explorer */
 export function marksPanel(explorer) {
@@ -74,7 +74,7 @@ export function marksPanel(explorer) {
     explorer.change({ weights }, "marks");
   }
 
-  /** Ask which design the weights choose, unless that was asked already. */
+  /** Request the design selected by the weights, unless already requested. */
   function ask() {
     clearTimeout(timer);
     const { weights } = chosen;
@@ -119,7 +119,7 @@ export function marksPanel(explorer) {
     }, PAUSE);
   }
 
-  /** Return the thumbnail of a design; that of a lever comes once the service has said how it stands. @param {number} row */
+  /** Return the thumbnail of a design; that of a lever is drawn once the service has returned its position. @param {number} row */
   function thumbnail(row) {
     const { linkages } = explorer;
     if (!front.extent_mm) return smallLinkage(linkages.of(row), linkages.frame());
@@ -161,7 +161,7 @@ export function marksPanel(explorer) {
     );
   }
 
-  /** Tell what the knee costs in the units that the reader prefers; in those of the store it is known already. */
+  /** Show the trade-offs at the knee in display units; in stored units they are already known. */
   async function drawCosts() {
     if (!front.trade_offs.length || front.knee === null) return;
     const units = apiSystem();

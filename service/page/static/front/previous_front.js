@@ -3,11 +3,11 @@
 import { get, isAbort } from "../lib/api.js";
 import { FrontData } from "./data.js";
 
-const MOST = 1500; // designs of it that are drawn, evenly spread
+const MOST = 1500; // maximum number of drawn designs, evenly spread
 
 /**
- * Return {run, points(x, y)}, the designs of the run before in two columns, for those of them that have been asked for by
- * need(keys); null where the run has none of a front, or is gone.
+ * Return {run, points(x, y)}: the previous run's designs in two columns that were requested with need(keys); null if that run has no
+ * front or was deleted.
  * @param {number} run @param {AbortSignal} signal
  */
 export async function previousFront(run, signal) {
@@ -27,7 +27,7 @@ export async function previousFront(run, signal) {
     count: data.count,
     /** @param {string[]} keys */
     need: (keys) => data.need(keys),
-    /** Return the designs as rows of two columns; none where the run does not have both. @param {string} x @param {string} y @returns {Api.Row[]} */
+    /** Return the designs as rows of two columns; none if the run lacks one. @param {string} x @param {string} y @returns {Api.Row[]} */
     rows(x, y) {
       if (![x, y].every((key) => data.has(key))) return [];
       return Array.from({ length: Math.floor((data.count - 1) / step) + 1 }, (_, n) => ({

@@ -1,4 +1,4 @@
-/** The chosen designs as a file: with their numbers and all their quantities, in the order of the table. */
+/** Remaining designs as a file: their numbers and all quantities, in the order of the table. */
 
 import { getText } from "../lib/api.js";
 import { h } from "../lib/dom.js";
@@ -9,7 +9,7 @@ import { linesOf } from "./listed_order.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
-/** Return {node, draw()} of the button that saves the chosen designs of an explorer. @param {Explorer} explorer */
+/** Return {node, draw()} of the button that saves the remaining designs of an explorer. @param {Explorer} explorer */
 export function saving(explorer) {
   const node = h("button", {
     type: "button",

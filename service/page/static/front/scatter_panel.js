@@ -1,4 +1,4 @@
-/** The scatter with what it shows: which quantities, the legend of its colours. */
+/** Scatter plot with the choice of its quantities and its colour legend. */
 
 import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";
@@ -92,7 +92,7 @@ export function scatterPanel(explorer, dots) {
     }
   }
 
-  /** Say whose front is behind. */
+  /** State whose front is drawn behind. */
   function drawBefore() {
     const { before: run } = explorer;
     before.hidden = !run;

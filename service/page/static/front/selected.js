@@ -1,4 +1,4 @@
-/** The designs that are selected, and the way to see them side by side. */
+/** Selected designs, and the link that shows them side by side. */
 
 import { link } from "../lib/address.js";
 import { fill, h } from "../lib/dom.js";

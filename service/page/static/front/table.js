@@ -1,4 +1,4 @@
-/** The chosen designs as a table: sorted, page by page; the way to them by keyboard. */
+/** Remaining designs as a sorted, paged table with keyboard access. */
 
 import { fill, first as firstOf, focused, h } from "../lib/dom.js";
 import { grouped, inDisplayUnit, text } from "../lib/numbers.js";
@@ -36,7 +36,7 @@ export function designTable(explorer) {
     const numbers = data.numbers(chosen.sort);
     for (const row of data.order(chosen.sort)) if (mask[row]) rowNumbers[count++] = row;
     let defined = count;
-    while (defined > 0 && Number.isNaN(numbers[rowNumbers[defined - 1]])) defined -= 1; // these stay last, whichever way
+    while (defined > 0 && Number.isNaN(numbers[rowNumbers[defined - 1]])) defined -= 1; // these stay last in either direction
     if (chosen.reverse) rowNumbers.subarray(0, defined).reverse();
     return rowNumbers;
   }
@@ -187,7 +187,7 @@ export function designTable(explorer) {
     );
   }
 
-  /** Arrows go from row to row, Enter opens, the space bar selects. @param {KeyboardEvent} event */
+  /** Arrow keys move between rows, Enter opens, the space bar selects. @param {KeyboardEvent} event */
   function keys(event) {
     const step = STEPS[event.key];
     const target = event.target instanceof Element ? event.target : body;
@@ -202,7 +202,7 @@ export function designTable(explorer) {
     other?.querySelector("a")?.focus();
   }
 
-  /** Show which designs are selected and which is pointed at. */
+  /** Show which designs are selected and which one is highlighted. */
   function mark() {
     for (const row of body.rows) {
       const design = Number(row.dataset.row);

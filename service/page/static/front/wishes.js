@@ -1,4 +1,4 @@
-/** Wishes for the objectives of a front: to and from the address, to the service and from it. */
+/** Wishes for the objectives of a front: in the address, and in requests and responses of the service. */
 
 import { capital } from "../lib/words.js";
 
@@ -11,7 +11,10 @@ import { capital } from "../lib/words.js";
 
 const CLASSES = ["improve", "keep"];
 
-/** Return the wishes that an address has; null without any. @param {URLSearchParams} query @param {readonly { quantity: string }[]} objectives @returns {Wishes | null} */
+/**
+ * Return the wishes in an address, or null.
+ * @param {URLSearchParams} query @param {readonly { quantity: string }[]} objectives @returns {Wishes | null}
+ */
 export function wishesFrom(query, objectives) {
   /** @type {Map<string, Wish>} */
   const byQuantity = new Map();
@@ -28,7 +31,7 @@ export function wishesFrom(query, objectives) {
     : null;
 }
 
-/** Return the part of an address that has wishes. @param {Wishes | null} wishes */
+/** Return the part of an address with wishes. @param {Wishes | null} wishes */
 export function wishQuery(wishes) {
   /** @type {Record<string, string>} */
   const query = {};
@@ -40,7 +43,7 @@ export function wishQuery(wishes) {
 }
 
 /**
- * Return wishes as the service takes them.
+ * Return wishes in the form of the service.
  * @param {Wishes} wishes @param {readonly { quantity: string, unit: string }[]} objectives
  */
 export function wishRequest({ of, design }, objectives) {
@@ -55,13 +58,13 @@ export function wishRequest({ of, design }, objectives) {
   return { at: Object.fromEntries(texts), design: relative({ of, design }) ? design : null };
 }
 
-/** Whether any wish speaks of a design. @param {Wishes} wishes */
+/** Whether any wish refers to a design. @param {Wishes} wishes */
 export function relative({ of }) {
   return [...of.values()].some(({ kind }) => CLASSES.includes(kind));
 }
 
 /**
- * Return what is wrong with wishes by what they say alone, each with its place.
+ * Return mistakes in wishes that can be found without the service, each with its location.
  * @param {Wishes} wishes @param {readonly { quantity: string }[]} objectives @param {number} count of designs @returns {Problem[]}
  */
 export function wrongIn(wishes, objectives, count) {
@@ -97,7 +100,10 @@ export function wrongIn(wishes, objectives, count) {
   return problems;
 }
 
-/** Return where a refusal of the service belongs: to the objective that it names first. @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem} */
+/**
+ * Return the location of a refusal by the service: the objective that it names first.
+ * @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem}
+ */
 export function placed(detail, objectives) {
   const named = objectives
     .map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) }))
@@ -107,7 +113,7 @@ export function placed(detail, objectives) {
   return { id: named.length === 1 ? named[0].quantity : "", text };
 }
 
-/** Return wishes that somebody made, as the service has them. @param {Api.MadeWish} made @returns {Wishes} */
+/** Return recorded wishes from a response of the service. @param {Api.MadeWish} made @returns {Wishes} */
 export function wishesOf({ wishes, design }) {
   const byQuantity = Object.entries(wishes).map(
     ([quantity, { wish, value }]) =>

@@ -1,4 +1,4 @@
-/** Choosing by wishing: a class or a value for each objective, and the optimal design that comes nearest, solved anew. */
+/** Choice by wishes: a class or a value for each objective, and the nearest optimal design, found by a new search. */
 
 import { link } from "../lib/address.js";
 import { get, isAbort, post } from "../lib/api.js";
@@ -25,7 +25,7 @@ const KINDS = [
   ["keep", "keeps"],
   ["limit", "may worsen to"],
 ];
-const SAME = 1e-9; // of a number: less is rounding
+const SAME = 1e-9; // relative tolerance of rounding
 
 /** Return {place, cells()} for wishes on the front of an explorer. @param {Explorer} explorer */
 export function wishingPanel(explorer) {
@@ -79,11 +79,11 @@ export function wishingPanel(explorer) {
   place.hidden = objectives.length < 2 || data.count === 0;
   /** @type {Api.Wished | null} */
   let answered = null;
-  let near = 0; // the number of the nearest design of the front
-  let way = ""; // the link of the design
-  let turn = 0; // of the latest question
+  let near = 0; // number of the nearest design on the front
+  let way = "";
+  let turn = 0;
   /** @type {Wishes[]} */
-  let earlierWishes = []; // of the run, by anyone
+  let earlierWishes = []; // everyone's wishes for the run
 
   /** @param {Api.Objective} objective */
   function row({ quantity, title, unit, column }) {
@@ -145,7 +145,7 @@ export function wishingPanel(explorer) {
     };
   }
 
-  /** Return what the fields say. @returns {Wishes} */
+  /** Return the wishes in the fields. @returns {Wishes} */
   function said() {
     /** @type {[string, Wish][]} */
     const entries = rows.flatMap((one) => {
@@ -172,7 +172,7 @@ export function wishingPanel(explorer) {
     from.classList.toggle("wanted", relative(said()));
   }
 
-  /** Say at each field what is wrong with it. @param {Problem[]} problems */
+  /** Show mistakes at their fields. @param {Problem[]} problems */
   function showProblems(problems) {
     /** @param {string} id */
     const textsAt = (id) =>
@@ -195,7 +195,7 @@ export function wishingPanel(explorer) {
     else take(wishes);
   }
 
-  /** Adopt wishes, null for none, and ask for the design. @param {Wishes | null} wishes */
+  /** Adopt wishes, null for none, and request the design. @param {Wishes | null} wishes */
   function take(wishes) {
     explorer.change(
       { wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } },
@@ -212,7 +212,7 @@ export function wishingPanel(explorer) {
       answered = null;
       return show();
     }
-    solve.setAttribute("aria-busy", "true"); // not disabled: whoever has changed a wish meanwhile asks again
+    solve.setAttribute("aria-busy", "true"); // not disabled, since the wishes may have changed in the meantime
     try {
       const reply = await post(`jobs/${job.id}/wish`, wishRequest(wish, objectives), {
         signal: explorer.signal,
@@ -267,7 +267,7 @@ export function wishingPanel(explorer) {
   /** @type {Api.Row} */
   let beside = {}; // the nearest design
   /** @type {string[]} */
-  let free = []; // columns of what makes a design
+  let free = []; // columns of the dimensions and variables
 
   function show() {
     drawOutcome();
@@ -375,7 +375,7 @@ export function wishingPanel(explorer) {
     );
   }
 
-  /** Ask for everyone's wishes on the run. */
+  /** Request everyone's wishes for the run. */
   async function askBefore() {
     await attempt(async () => {
       earlierWishes = (await get(`jobs/${job.id}/wishes`, {}, explorer.signal)).made.map(wishesOf);
@@ -430,7 +430,10 @@ export function wishingPanel(explorer) {
   return { place, cells: () => answered?.design ?? null };
 }
 
-/** Return by how much a value is from another, with its sign; of rounding alone, that they are equal. @param {number} value @param {number} other @param {string} unit */
+/**
+ * Return the signed difference between two values as text, or "=" if they are equal within rounding.
+ * @param {number} value @param {number} other @param {string} unit
+ */
 function signed(value, other, unit) {
   const by = value - other;
   return Math.abs(by) <= SAME * Math.abs(other)

@@ -1,9 +1,9 @@
-/** Typeset formulas: from the plain text of the help, such as "cos(mu_min) = (r + |e|) / l", to MathML. */
+/** Typeset formulas: converts plain text from the help, such as "cos(mu_min) = (r + |e|) / l", to MathML. */
 
 import { h, mathml } from "../lib/dom.js";
 
 /**
- * A part of a formula: an element of MathML with a text or with parts. prose: words between symbols, which no fraction takes in.
+ * Part of a formula: a MathML element with text or parts. prose: words between symbols, which cannot be part of a fraction.
  * @typedef {{ tag: string, text?: string, parts?: Part[], prose?: boolean }} Part
  */
 
@@ -37,7 +37,7 @@ const FUNCTIONS = new Set([
 const SIGNS = new Map(Object.entries({ "+-": "±", "-": "−", deg: "°" }));
 const TOKEN = /\s*(\+-|\d+(?:\.\d+)?|[A-Za-z]+(?:_[A-Za-z]+)?(?:'s\b|'+)?|[^\sA-Za-z\d])/y;
 
-const SYMBOL_ON_LEFT = /^(?:cos\()?([A-Z]|mu_\w+)\)? = /; // the symbol that a quantity's formula says
+const SYMBOL_ON_LEFT = /^(?:cos\()?([A-Z]|mu_\w+)\)? = /;
 /** @type {Record<string, [string, string | null]>} */
 const SYMBOLS = {
   r: ["crank", "crank"],
@@ -60,7 +60,7 @@ const SYMBOLS = {
   x_out: ["slider position at the outer dead centre", null],
 };
 
-/** Return a formula: its symbols set, its words as text, so that it takes as many lines as it needs. @param {string} text */
+/** Return a formula with typeset symbols and with words as text, which may wrap. @param {string} text */
 export function formula(text) {
   /** @type {(string | Part[])[]} */
   const pieces = [];
@@ -81,7 +81,7 @@ export function formula(text) {
 }
 
 /**
- * Return the symbols of a formula that mean the same everywhere: [the symbol, its meaning, the quantity that it is].
+ * Return the standard symbols in a formula: [symbol, meaning, quantity].
  * @param {string} text @param {readonly { name: string, title: string, formula: string }[]} quantities @returns {[MathMLElement, string, string | null][]}
  */
 export function symbolsOf(text, quantities) {
@@ -126,7 +126,7 @@ export function parsed(text) {
     }
     return parts;
   };
-  /** Take a factor and its exponent. @returns {Part} */
+  /** Parse a factor and its exponent. @returns {Part} */
   const factor = () => {
     const base = single();
     if (next() !== "^") return base;
@@ -166,7 +166,10 @@ export function parsed(text) {
       ? { tag: "msqrt", parts: inner.parts?.slice(1, -1) }
       : row([{ tag: "mi", text: name }, inner]);
   };
-  /** Put what stands last before a stroke over what follows: only symbols, no words. @param {Part[]} before @param {string} closing @returns {Part[]} */
+  /**
+   * Make a fraction of the part before a slash and the part after it: only symbols, no words.
+   * @param {Part[]} before @param {string} closing @returns {Part[]}
+   */
   const fraction = (before, closing) => {
     let from = before.length;
     while (from > 0 && before[from - 1].tag !== "mo" && !before[from - 1].prose) from -= 1;
@@ -200,7 +203,7 @@ function symbol(token) {
   /** @type {Part} */
   const letter = { tag: "mi", text: letterName };
   /** @type {Part[]} */
-  const primed = primes ? [{ tag: "mo", text: "′".repeat(primes.length) }] : []; // which stands high by itself
+  const primed = primes ? [{ tag: "mo", text: "′".repeat(primes.length) }] : []; // which is raised anyway
   if (!index) return row([letter, ...primed]);
   /** @type {Part} */
   const below =
@@ -215,7 +218,7 @@ function row(parts) {
   return parts.length === 1 ? parts[0] : { tag: "mrow", parts };
 }
 
-/** Return a part without the brackets around the whole of it, which a fraction makes needless. @param {Part} part */
+/** Return a part without outer brackets, which a fraction makes redundant. @param {Part} part */
 function bare(part) {
   return part.tag === "mrow" && part.parts?.[0]?.text === "(" ? row(part.parts.slice(1, -1)) : part;
 }
@@ -229,7 +232,10 @@ function drawn({ tag, text, parts = [] }) {
   );
 }
 
-/** Return a part with the room that words need beside symbols. @param {Part} part @param {Part | undefined} before @param {Part | undefined} after */
+/**
+ * Return a part with the space that words need beside symbols.
+ * @param {Part} part @param {Part | undefined} before @param {Part | undefined} after
+ */
 function spacedPart(part, before, after) {
   if (!part.prose) return part;
   const [left, right] = [

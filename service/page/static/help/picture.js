@@ -1,4 +1,4 @@
-/** Small pictures of the linkage, each pointing out what a quantity is. The places are those of one linkage, computed once. */
+/** Small pictures of the linkage, each illustrating a quantity. The coordinates are those of one linkage, computed once. */
 
 import { svg } from "../lib/dom.js";
 
@@ -18,7 +18,7 @@ const OUT = { pin: [112.5, 106.1], slider: [241, LINE] };
 const IN = { pin: [38.5, 122.7], slider: [163.2, LINE] };
 const RADIUS = 38;
 
-/** Return the picture of a kind of quantity; title: for readers of the screen. @param {string} kind @param {string} title */
+/** Return the picture for a kind of quantity. title: text for screen readers. @param {string} kind @param {string} title */
 export function picture(kind, title) {
   const { pose = POSE, marks } = PICTURES[kind] ?? { marks: () => [] };
   return svg(

@@ -9,8 +9,8 @@ import { attempt, say, sayProblem } from "../lib/notices.js";
 import { ENDED } from "./states.js";
 
 /**
- * Return the buttons of a job. A stopped search can continue later. changed(job) is called with the job as it is after an action,
- * changed(null) once it is gone, whoever deleted it.
+ * Return the buttons of a job. A stopped search can continue later. changed(job): called with the job after an action, or with null once
+ * it has been deleted by anyone.
  * @param {Api.JobRow} job @param {(job: Api.Job | null) => unknown} changed @param {{ primary?: boolean }} looks primary: of the view of this job
  */
 export function actions(job, changed, { primary = false } = {}) {

@@ -11,15 +11,17 @@ import { sentenceOf } from "../lib/refusals.js";
 const FRONT = { csv: "Designs as CSV", json: "Front as JSON", parquet: "Designs as Parquet" };
 
 /**
- * Return a list of files behind a button; those that have to be asked for are asked for when it opens.
- * own: what those who show the front put among its files.
+ * Return a list of files behind a button; their names are requested when it opens. own: further files from the caller.
  * @param {Api.Job} job @param {{ designs: boolean, own: HTMLElement, signal: AbortSignal }} options
  */
 export function downloads(job, { designs, own, signal }) {
   /** @param {string} path @param {string} name */
   const file = (path, name) =>
     h("li", {}, h("a", { href: address(`jobs/${job.id}/${path}`), download: "" }, name));
-  /** Return a link to a file in the units that the reader prefers. @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name */
+  /**
+   * Return a link to a file in display units.
+   * @param {string} path @param {Dom.Attributes<HTMLAnchorElement>} attributes @param {string | undefined} name
+   */
   const convertedLink = (path, attributes, name) =>
     h(
       "a",

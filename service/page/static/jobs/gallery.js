@@ -1,4 +1,4 @@
-/** The shipped machines to begin with, each a design of its front that moves. */
+/** Included machines as starting points, each as an animated design. */
 
 import { link } from "../lib/address.js";
 import { get } from "../lib/api.js";
@@ -9,7 +9,7 @@ import { motionOf } from "../mechanism/motion.js";
 const TURN = 5000; // ms per turn, the same for all: real speeds are too fast to watch
 const START = 50; // deg: no links overlap here
 
-/** Return {node, begin()} of the shipped machines; begin: ask for them, once they are to be seen. @param {AbortSignal} signal */
+/** Return {node, begin()} of the included machines; begin(): requests them when they become visible. @param {AbortSignal} signal */
 export function gallery(signal) {
   const node = h("nav", { class: "gallery", "aria-label": "Shipped machines" });
   let begun = false;
@@ -31,7 +31,7 @@ export function gallery(signal) {
       move(picture, title, design, signal);
     }
   };
-  return { node, begin: () => void begin().catch(() => {}) }; // without an answer, a new run begins from nothing
+  return { node, begin: () => void begin().catch(() => {}) }; // without a response, a new run starts empty
 }
 
 /** @param {HTMLElement} place @param {string} title @param {Api.Preset["design"]} design @param {AbortSignal} signal */

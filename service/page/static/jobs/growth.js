@@ -3,7 +3,7 @@
 const ROUNDS = 10;
 
 /**
- * Return what the last rounds added: {rounds, text}, such as 10 and "+0.02 %"; null before there is anything to compare.
+ * Return the gain of the last rounds: {rounds, text}, such as 10 and "+0.02 %"; null before a comparison is possible.
  * @param {readonly (number | null)[]} hypervolumes of the rounds, in order
  */
 export function growth(hypervolumes) {

@@ -1,4 +1,4 @@
-/** A run in progress: its progress, its growing front and its log. */
+/** Run in progress: its state, its growing front and its log. */
 
 import { history } from "../charts/history.js";
 import { points } from "../charts/points.js";
@@ -15,16 +15,16 @@ import { stateWord } from "./states.js";
 import { clock, duration } from "./times.js";
 
 const OFTEN = 700; // ms between requests for the front
-const AGAIN = 2000; // ms until the next try where the service does not answer
-const PAST = 1000; // events before now that are shown
+const AGAIN = 2000; // ms until the next attempt if the service does not respond
+const PAST = 1000; // maximum number of past events in the log
 const LOG = 200; // lines
-const LONG = 10_000; // ms of silence in the first rounds before the reason is shown
-const STALE = 3; // rounds of silence after which the remaining time is unknown
-const AT_LEAST = 5000; // ms that this takes at least
+const LONG = 10_000; // ms without events in the first rounds before the reason is shown
+const STALE = 3; // rounds without events after which the remaining time is unknown
+const AT_LEAST = 5000; // minimum of that time, ms
 
 /**
- * Fill a place with a job's progress until it has ended. changed(job) is called when its state changes, and with null once the job
- * is gone.
+ * Fill a place with a job's progress until it has ended. changed(job): called when its state changes, and with null once the job has been
+ * deleted.
  * @param {HTMLElement} place @param {Api.Job} job @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} options
  */
 export function watch(place, job, { signal, changed }) {
@@ -143,7 +143,7 @@ export function watch(place, job, { signal, changed }) {
   function grow(data) {
     while (rounds.length && rounds[rounds.length - 1].round >= data.round) rounds.pop();
     rounds.push(data);
-    // Once for all events that are replayed together.
+    // once for all events replayed together
     drawing ??= requestAnimationFrame(() => {
       drawing = null;
       fill(
@@ -205,7 +205,7 @@ export function watch(place, job, { signal, changed }) {
     );
   }
 
-  /** Look at the job soon: its front so far, and its state. @param {number} wait */
+  /** Request the job's front so far and its state soon. @param {number} wait */
   function soon(wait = OFTEN) {
     if (timer !== null) {
       if (wait > 0) return;
@@ -217,7 +217,7 @@ export function watch(place, job, { signal, changed }) {
   async function look() {
     timer = null;
     if (over || signal.aborted) return;
-    if (asking) return soon(); // what is on its way may be older than what made one ask
+    if (asking) return soon(); // a response under way may be older than the event
     asking = true;
     try {
       const now = await get(`jobs/${job.id}`, {}, signal);
@@ -302,7 +302,7 @@ export function watch(place, job, { signal, changed }) {
     );
   }
 
-  /** Return the size of a picture that fills its place, and the screen in height. @param {number} width @returns {Page.Point} */
+  /** Return the size of a picture that fills its place in width and the screen in height. @param {number} width @returns {Page.Point} */
   function sizeIn(width) {
     const wide = Math.max(width, 560);
     return [wide, Math.round(Math.max(340, Math.min(0.61 * wide, 0.52 * innerHeight)))];
@@ -323,7 +323,7 @@ export function watch(place, job, { signal, changed }) {
             : "The front appears after the first round.",
       ),
     );
-    if (waits) soon(AGAIN); // what it waits for changes without an event
+    if (waits) soon(AGAIN); // the reason for waiting changes without an event
   }
 
   /** @param {null} now */
@@ -333,7 +333,7 @@ export function watch(place, job, { signal, changed }) {
     changed(now);
   }
 
-  // The events stop when the service is away, and when the job has ended: the look at the job tells which.
+  // Events stop when the service is unreachable or the job has ended; a request for the job tells which.
   /** @param {boolean} yes */
   const connected = (yes) => soon(yes ? OFTEN : 0);
   const stop = listenToJob(job.id, {

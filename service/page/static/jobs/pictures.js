@@ -1,20 +1,20 @@
-/** Small pictures of fronts in a list of runs. Their points come when a row is seen: those of all rows seen at once in one request. */
+/** Thumbnails of fronts in a list of runs. Points are requested when a row becomes visible, one request for all visible rows. */
 
 import { thumbnail } from "../charts/thumbnail.js";
 import { get } from "../lib/api.js";
 import { h } from "../lib/dom.js";
 import { counted } from "../lib/numbers.js";
 
-const MOST = 100; // runs that the service takes in one request
+const MOST = 100; // maximum number of runs per request
 
 /**
- * Return {picture, forget}. picture(job): an element with the front of a job, as far as it is known; what is not, or is so no longer, is asked
- * for when the element is seen. forget(number): the points of a run that is not in the list any more. `signal` ends it all.
+ * Return {picture, forget}. picture(job): an element with the known front of a job; missing or outdated points are requested when it
+ * becomes visible. forget(number): drops the points of a run that has left the list. `signal` ends all requests.
  * @param {AbortSignal} signal
  */
 export function pictures(signal) {
   /** @type {Map<number, { events: number, points: Api.FrontPoints["points"] }>} */
-  const loadedPoints = new Map(); // by the number of a run; events: how many it had
+  const loadedPoints = new Map(); // by run number; events: number of its events at that time
   /** @type {WeakMap<Element, Api.JobRow>} */
   const awaited = new WeakMap();
   /** @type {Set<Element>} */
@@ -40,7 +40,7 @@ export function pictures(signal) {
     return node;
   }
 
-  /** Ask for what is seen, one request at a time: what is scrolled past meanwhile is not asked for. */
+  /** Request the points of visible rows, one request at a time; rows scrolled past are skipped. */
   async function ask() {
     if (asking || !seen.size) return;
     asking = true;
@@ -63,7 +63,7 @@ export function pictures(signal) {
         nodes[index].replaceWith(drawn(points));
       }
     } catch {
-      // Nothing to say: the list says what is wrong, and its rows ask again when they are drawn anew, within a minute.
+      // The list reports the failure, and its rows request again when they are redrawn, within a minute.
     }
     asking = false;
     if (!signal.aborted) ask();

@@ -10,7 +10,8 @@ import { badge } from "./states.js";
 import { moment } from "./times.js";
 
 /**
- * Return a run as an item of the list. picture: its front; compare(number, yes): it is ticked or not; changed(): something was done with it.
+ * Return a run as a list item. picture: picture of its front. compare(number, yes): called when its check box changes. changed(): called
+ * after an action.
  * @param {Api.JobRow} job
  * @param {{ picture: Element, chosen: boolean, compare: (number: number, yes: boolean) => void, changed: (job: Api.JobRow | null) => unknown }} options
  */
@@ -42,7 +43,7 @@ export function runRow(job, { picture, chosen, compare, changed }) {
   );
 }
 
-/** Return how far a job is, or what it found. @param {Api.JobRow} job */
+/** Return the progress or the result of a job. @param {Api.JobRow} job */
 function standing(job) {
   if (job.state === "running" && job.progress) {
     const { stage, steps, feasible } = job.progress;

@@ -1,4 +1,4 @@
-/** The stages of a search, each with its own progress, in the order in which they came. */
+/** Stages of a search in their order, each with its progress. */
 
 import { fill, h } from "../lib/dom.js";
 import { grouped } from "../lib/numbers.js";
@@ -6,7 +6,7 @@ import { duration } from "./times.js";
 
 /** @typedef {{ name: string, rounds: [number, number], step: number, steps: number, from: number, to: number }} Stage */
 
-/** Return {node, told(progress), end()}: told takes in what a search says, end says that nothing goes on any more. */
+/** Return {node, told(progress), end()}. told: takes a progress report. end: marks the search as ended. */
 export function stages() {
   const node = h("ol", { class: "stages", "aria-label": "Stages" });
   /** @type {Stage[]} */
@@ -36,7 +36,7 @@ export function stages() {
 }
 
 /**
- * Return the stages after an event: the last one continues or another one begins; a restarted search has its own.
+ * Return the stages after an event: the last one continues or another one begins; a restarted search starts again.
  * @param {readonly Stage[]} before @param {Api.Progress} data @param {number} seconds of the event before @returns {Stage[]}
  */
 export function taken(before, data, seconds) {

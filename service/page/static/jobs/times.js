@@ -1,12 +1,12 @@
-/** Times as people say them. */
+/** Times in everyday words. */
 
 import { h } from "../lib/dom.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-const LEAST = 0.1; // s, of a duration that is shown
+const LEAST = 0.1; // s; minimum of a displayed duration
 const [MINUTE, HOUR, DAY] = [60, 3600, 86_400]; // s
 
-/** Return when a job ended after which search, or since when it runs or waits: exact when pointed at. @param {Api.JobRow} job */
+/** Return when a job ended and how long its search took, or since when it runs or waits; the tooltip is exact. @param {Api.JobRow} job */
 export function moment({ state, submitted, started, finished, summary }) {
   if (state === "running" && started) return ["started ", ago(started)];
   if (!finished) return ["submitted ", ago(submitted)];
@@ -14,7 +14,7 @@ export function moment({ state, submitted, started, finished, summary }) {
   return [ago(finished), seconds >= LEAST ? `, after ${duration(seconds)}` : null];
 }
 
-/** Return when a time, in seconds since 1970, was: "3 minutes ago", exact when pointed at. @param {number} seconds */
+/** Return a time, s since 1970, as "3 minutes ago"; the tooltip is exact. @param {number} seconds */
 export function ago(seconds) {
   const date = new Date(1000 * seconds);
   /** @param {{ currentTarget: HTMLElement }} event */
@@ -32,14 +32,14 @@ export function ago(seconds) {
   );
 }
 
-/** Say all shown times anew, because they pass. */
+/** Update all displayed times. */
 export function renewTimes() {
   for (const shown of document.querySelectorAll("time"))
     shown.textContent = agoText(new Date(shown.dateTime), new Date());
 }
 
 /**
- * Return a time as one would say it now: within the hour how long ago, later the time of the day, on other days the day.
+ * Return a time relative to now: minutes within the hour, otherwise the time of day, or the date on other days.
  * @param {Date} date @param {Date} now
  */
 export function agoText(date, now) {
@@ -61,7 +61,7 @@ export function agoText(date, now) {
     : `${day} ${date.getFullYear()}`;
 }
 
-/** Return the time of the day of an event. @param {number} seconds */
+/** Return the time of day of an event. @param {number} seconds */
 export function clock(seconds) {
   return new Date(1000 * seconds).toLocaleTimeString(undefined, {
     hour: "2-digit",

@@ -1,4 +1,4 @@
-/** The address after the #: the view and the choices in it, so that a link shows others the same. */
+/** Address after the #: the view and its choices, so that a link shows the same to others. */
 
 /** Return {parts, query} of the address: "#/jobs/7?x=crank_mm" is {parts: ["jobs", "7"], query: URLSearchParams}. */
 export function read() {
@@ -10,7 +10,7 @@ export function read() {
 }
 
 /**
- * Return a link to a view: link(["jobs", 7], {x: "crank_mm"}). Values that are null or empty are left out.
+ * Return a link to a view: link(["jobs", 7], {x: "crank_mm"}); null and empty values are omitted.
  * @param {readonly (string | number)[]} parts @param {Record<string, Dom.Value>} query
  */
 export function link(parts, query = {}) {
@@ -32,7 +32,7 @@ export function keep(query) {
 }
 
 /**
- * Return the address of a view as the reader left it, or the plain one, so that choices there are kept.
+ * Return the last address of a view with its choices, or the plain one.
  * @param {readonly (string | number)[]} parts
  */
 export function left(parts) {

@@ -1,11 +1,11 @@
-/** The API of the service that this page came from. */
+/** API of the service that delivered this page. */
 
 import { letIn } from "./token.js";
 
 const PREFIX = "api/v1";
-const LONGEST = 30; // s to wait before a request is sent again
+const LONGEST = 30; // default wait before a request is repeated, s
 
-/** Refusal of the service, in its own sentence; status 0 is no answer at all. */
+/** Refusal by the service, in its own words; status 0: no response. */
 export class Problem extends Error {
   /** @param {number} status @param {string} detail @param {string} [type] */
   constructor(status, detail, type = "about:blank") {
@@ -15,12 +15,12 @@ export class Problem extends Error {
   }
 }
 
-/** Whether something was only given up. @type {(error: unknown) => boolean} */
+/** Whether an error is an abort. @type {(error: unknown) => boolean} */
 export function isAbort(error) {
   return error instanceof Error && error.name === "AbortError";
 }
 
-/** Return the status of the answer that is a problem; null of any other one. @type {(error: unknown) => number | null} */
+/** Return the HTTP status of a Problem; null for any other error. @type {(error: unknown) => number | null} */
 export function statusOf(error) {
   return error instanceof Problem ? error.status : null;
 }
@@ -31,7 +31,7 @@ export function isInfeasible(error) {
 }
 
 /**
- * Return an address in the API; query: an object, its arrays repeat a key, null leaves one out.
+ * Return an address in the API. query: arrays repeat their key, null omits it.
  * @param {string} path @param {Api.Query} query
  */
 export function address(path, query = {}) {
@@ -46,7 +46,7 @@ export function address(path, query = {}) {
 }
 
 /**
- * Return what is at a path, as JSON. Throws a Problem; AbortError once `signal` is aborted.
+ * Return the JSON at a path. Throws a Problem, or an AbortError once `signal` is aborted.
  * @template {Api.Text} Path
  * @param {Path} path
  * @param {Api.Query} query
@@ -57,7 +57,7 @@ export function get(path, query = {}, signal = undefined) {
   return ask("GET", address(path, query), undefined, signal);
 }
 
-/** Return what is at a path as text. Throws as `get` does. @param {string} path @param {Api.Query} query @param {AbortSignal} [signal] */
+/** Return the text at a path. Throws as `get` does. @param {string} path @param {Api.Query} query @param {AbortSignal} [signal] */
 export async function getText(path, query = {}, signal = undefined) {
   const response = await answered("GET", address(path, query), { signal });
   const text = await response.text();
@@ -66,7 +66,7 @@ export async function getText(path, query = {}, signal = undefined) {
 }
 
 /**
- * Send JSON and return the answer. headers: further ones.
+ * Send JSON and return the response. headers: further headers.
  * @template {Api.Text} Path
  * @param {Path} path
  * @param {unknown} body
@@ -78,7 +78,8 @@ export function post(path, body = undefined, { query, signal, headers } = {}) {
 }
 
 /**
- * Send JSON and return the answer, the last event of a stream; told(data): each event before it. The service ends the work once `signal` is aborted.
+ * Send JSON and return the last event of the response stream; told(data): called with each earlier event. The service stops once `signal`
+ * is aborted.
  * @template {Api.Text} Path
  * @param {Path} path
  * @param {unknown} body
@@ -110,7 +111,7 @@ export async function postWithProgress(path, body, { query, signal, told: onProg
 }
 
 /**
- * Change what is at a path, and return it.
+ * Change the resource at a path, and return it.
  * @template {Api.Text} Path
  * @param {Path} path
  * @param {unknown} body
@@ -121,7 +122,7 @@ export function patch(path, body) {
 }
 
 /**
- * Delete what is at a path.
+ * Delete the resource at a path.
  * @template {Api.Text} Path
  * @param {Path} path
  */
@@ -130,7 +131,7 @@ export function remove(path) {
 }
 
 /**
- * The answer is what the description of the API says, which the tests of the service hold it to.
+ * The tests of the service ensure that responses match the API description.
  * @param {string} method @param {string} url @param {unknown} [body] @param {AbortSignal} [signal] @param {Record<string, string>} [more]
  */
 async function ask(method, url, body, signal, more = {}) {
@@ -141,7 +142,7 @@ async function ask(method, url, body, signal, more = {}) {
   return jsonOf(await answered(method, url, { signal, headers, body: sent }));
 }
 
-/** Return the JSON of a response. Throws the Problem that it is. @param {Response} response */
+/** Return the JSON of a response. Throws a Problem for a refusal. @param {Response} response */
 async function jsonOf(response) {
   if (response.status === 204) return null;
   const text = await response.text();
@@ -165,7 +166,7 @@ function parsed(text) {
   return JSON.parse(text, /"-?inf"/.test(text) ? infinite : undefined);
 }
 
-/** Return the number that JSON has no form for, where a cell of a table stands for it. @param {string} key @param {unknown} value */
+/** Return an infinite number from its text in a table cell. @param {string} key @param {unknown} value */
 function infinite(key, value) {
   if (
     (value !== "inf" && value !== "-inf") ||
@@ -178,8 +179,8 @@ function infinite(key, value) {
 }
 
 /**
- * Return a response, of whatever status. Where the token is missing the reader is asked for it, and the request is sent once more; a GET
- * that a busy service puts off is sent again at the time that it names, three times at most.
+ * Return a response of any status. If the token is missing, the user is asked for it and the request is repeated. A GET that a busy
+ * service postpones is repeated at the stated time, at most three times.
  * @param {string} method @param {string} url @param {RequestInit} options @param {number} left times that it may be sent again @returns {Promise<Response>}
  */
 export async function answered(method, url, options = {}, left = 3) {
@@ -198,7 +199,7 @@ export async function answered(method, url, options = {}, left = 3) {
   return response.status === 401 && (await letIn()) ? answered(method, url, options) : response;
 }
 
-/** Wait for so many ms. Throws an AbortError once `signal` is aborted. @param {number} ms @param {AbortSignal | null} [signal] */
+/** Wait for a number of ms. Throws an AbortError once `signal` is aborted. @param {number} ms @param {AbortSignal | null} [signal] */
 async function passed(ms, signal) {
   signal?.throwIfAborted();
   await new Promise((resolve, reject) => {

@@ -1,11 +1,11 @@
-/** Sentences and tables of an answer, their numbers in the units that the reader prefers. */
+/** Sentences and tables of an answer, with numbers in display units. */
 
 import { h } from "./dom.js";
 import { apiSystem, text } from "./numbers.js";
 import { headsOf, scrolledTable } from "./table.js";
 
 /**
- * Return the nodes of blocks. title: of tables that no heading precedes; action(n): what row n of a table ends with.
+ * Return the nodes of blocks. title: caption of tables without a preceding heading. action(n): last cell of row n in a table.
  * @param {Api.Block[]} found @param {string} title @param {(n: number) => Dom.Child} [action]
  */
 export function blocks(found, title, action = undefined) {
@@ -51,7 +51,7 @@ export function blocks(found, title, action = undefined) {
   });
 }
 
-/** Return the metric number that is all of a cell, which tests and scripts read; null for others. @param {Api.Block["text"]} cell */
+/** Return the metric number of a cell that consists of one number, for tests and scripts; null for other cells. @param {Api.Block["text"]} cell */
 function numberOf([part, ...others]) {
   return typeof part === "object" && "sign" in part && !others.length ? part.metric.number : null;
 }

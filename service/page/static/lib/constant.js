@@ -1,9 +1,10 @@
-/** Whether numbers are all the same but for rounding: the rule of slidercrank's optimise/front/constant_numbers.py, which says why. */
+/** Whether numbers are equal within rounding, by the rule of optimise/front/constant_numbers.py, which gives the reason. */
 
-const SAME = 1e-9; // relative spread of what counts as one number
+const SAME = 1e-9; // relative range of equal numbers
 
 /**
- * Return whether the numbers from `low` to `high` are one. size: what they are rounded against besides, a target.
+ * Return whether numbers from `low` to `high` are equal within rounding. size: further magnitude that determines rounding, such as a
+ * target.
  * @param {number} low @param {number} high @param {number} size
  */
 export function isConstant(low, high, size = 0) {

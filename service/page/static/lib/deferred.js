@@ -1,11 +1,11 @@
-/** Parts of a view that are computed once they come near, or before they are printed. */
+/** Parts of a view that are computed when they come near the screen, or before printing. */
 
-const NEAR = "300px"; // before it is in sight
-/** What completes the parts that are in a view. @type {Set<() => Promise<unknown>>} */
+const NEAR = "300px"; // before it becomes visible
+/** Functions that complete the parts of a view. @type {Set<() => Promise<unknown>>} */
 const parts = new Set();
 
 /**
- * Start once, when a place comes into view.
+ * Start once, when a place comes near the screen.
  * @param {Element} place @param {() => Promise<unknown>} begin @param {AbortSignal} signal of the view
  */
 export function whenNear(place, begin, signal) {

@@ -5,8 +5,8 @@ import { fill, first, formOf, h } from "./dom.js";
 import { attempt } from "./notices.js";
 
 /**
- * Ask in a dialog. yes: of the button that does it; danger: it deletes something, so that the focus is on the other button; act(values): what
- * it does with the texts of the fields in the content, by name. The dialog stays open after a refusal, which it shows.
+ * Ask in a dialog. yes: title of the confirming button. danger: whether it deletes something; the focus is then on the other button.
+ * act(values): called with the texts of the fields by name. After a refusal, the dialog stays open and shows it.
  * @param {{ title: string, content: Dom.Child, yes: string, act: (values: Record<string, string>) => unknown, danger?: boolean }} options
  */
 export function askFirst({ title, content, yes, act, danger = false }) {

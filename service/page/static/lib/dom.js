@@ -4,7 +4,7 @@ const SVG = "http://www.w3.org/2000/svg";
 const MATHML = "http://www.w3.org/1998/Math/MathML";
 
 /**
- * Return an HTML element. Attributes that are null or false are left out; on... are listeners; children are nodes or text.
+ * Return an HTML element. Null and false attributes are omitted; on... are listeners; children are nodes or text.
  * @template {keyof HTMLElementTagNameMap} Tag
  * @param {Tag} tag
  * @param {Dom.Attributes<HTMLElementTagNameMap[Tag]>} attributes
@@ -32,7 +32,7 @@ export function mathml(tag, attributes = {}, ...children) {
   return dress(document.createElementNS(MATHML, tag), attributes, children);
 }
 
-/** Return a form that does something when it is sent, and stays on the page. @param {() => void} send @param {...Dom.Child} children */
+/** Return a form that calls a function on submission, and stays on the page. @param {() => void} send @param {...Dom.Child} children */
 export function formOf(send, ...children) {
   const onsubmit = (/** @type {Event} */ event) => {
     event.preventDefault();
@@ -53,7 +53,7 @@ export function numberField(attributes) {
 }
 
 /**
- * Mark a control as wrong, or as right again; describedBy: id of what says why.
+ * Mark a control as invalid, or as valid again. describedBy: id of the explanation.
  * @param {Element} control @param {unknown} wrong @param {string} describedBy
  */
 export function markInvalid(control, wrong, describedBy = "") {
@@ -64,26 +64,26 @@ export function markInvalid(control, wrong, describedBy = "") {
   else control.removeAttribute("aria-describedby");
 }
 
-/** Put text into a field as if it were typed. @param {HTMLInputElement} field @param {string} text */
+/** Enter text into a field as if it were typed. @param {HTMLInputElement} field @param {string} text */
 export function typeInto(field, text) {
   field.value = text;
   field.dispatchEvent(new Event("input"));
 }
 
-/** Return the element of the document that has an id; the document that comes with the page has it. @param {string} id */
+/** Return the element with an id that exists in the page's document. @param {string} id */
 export function byId(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));
 }
 
 /**
- * Return the first element within a node that a selector names; null if there is none.
+ * Return the first element within a node that matches a selector, or null.
  * @param {Element} node @param {string} selector @returns {HTMLElement | null}
  */
 export function first(node, selector) {
   return node.querySelector(selector);
 }
 
-/** Return the element that has the focus within a node; null if that is elsewhere. @type {(node: Element) => HTMLElement | null} */
+/** Return the focused element within a node, or null. @type {(node: Element) => HTMLElement | null} */
 export function focused(node) {
   const { activeElement } = document;
   return activeElement instanceof HTMLElement && node.contains(activeElement)
@@ -91,7 +91,7 @@ export function focused(node) {
     : null;
 }
 
-/** Put children in place of those that a node has. @param {Element} node @param {...Dom.Child} children */
+/** Replace the children of a node. @param {Element} node @param {...Dom.Child} children */
 export function fill(node, ...children) {
   node.replaceChildren(...kept(children));
 }

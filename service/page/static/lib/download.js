@@ -1,10 +1,10 @@
-/** Files that the page makes itself, and those of the service, which say while they are made that they are. */
+/** Files made by the page, and files of the service, with a message while they are being made. */
 
 import { answered, Problem, statusOf } from "./api.js";
 import { h } from "./dom.js";
 import { say, sayProblem } from "./notices.js";
 
-const SOON = 400; // ms: what is made sooner needs no word
+const SOON = 400; // ms without a message
 
 /** Let the browser save a text as a file. @param {string} content @param {string} type @param {string} name */
 export function download(content, type, name) {
@@ -18,7 +18,7 @@ function save(content, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);
 }
 
-/** Take over the links of files of the service: busy while a file is made, and a sentence where it cannot be. */
+/** Handle links to files of the service: show them as busy while a file is made, and report failures. */
 export function watchDownloads() {
   document.addEventListener("click", (event) => {
     const link = event.target instanceof Element ? event.target.closest("a[download]") : null;

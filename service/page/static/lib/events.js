@@ -2,12 +2,12 @@
 
 import { address } from "./api.js";
 
-const AGAIN = 2000; // ms until the next try after the connection was refused
+const AGAIN = 2000; // ms until the next attempt after a refused connection
 
 /**
- * Follow a job from its event `after` until it is stopped or `signal` is aborted. Whether the job has ended only the job itself
- * says: a cancelled job continues when it is resumed, and its events report that.
- * told(event) is called with {number, at, kind, data}, once for each, in order; connected(yes) as the connection comes and goes.
+ * Follow the events of a job after the event `after` until `signal` is aborted. Events also report that a cancelled job was resumed, so
+ * only the job itself tells whether it has ended. told(event): called with {number, at, kind, data} of each event in order.
+ * connected(yes): called when the connection is made or lost.
  * @param {number} job
  * @param {{ after?: number, signal?: AbortSignal, told: (event: Api.Event) => void, connected?: (yes: boolean) => void }} Followed
  * @returns {() => void}
@@ -36,7 +36,7 @@ export function listenToJob(job, { after = 0, signal, told: onEvent, connected =
     for (const kind of ["state", "progress", "message"]) opened.addEventListener(kind, take);
     opened.onerror = () => {
       connected(false);
-      // A browser comes back by itself unless the answer was no stream, as from a service that is just starting.
+      // Browsers reconnect by themselves unless the response was not a stream, as from a service that is starting.
       if (opened.readyState === EventSource.CLOSED && !signal?.aborted)
         timer = setTimeout(open, AGAIN);
     };

@@ -3,13 +3,13 @@
 import { h } from "./dom.js";
 
 /**
- * Return a menu. title: of its button, "…" for what is dangerous or rare; name: what the button is called where the title does not say it;
- * content: what opens; opened(): called when it does.
+ * Return a menu. title: title of its button, "…" for rare or dangerous actions. name: label if the title is not sufficient. content:
+ * content of the menu. opened(): called when it opens.
  * @param {string} title @param {HTMLElement} content
  * @param {{ name?: string, opened?: () => void, act?: string }} options act: what the button is called in a list that is drawn anew
  */
 export function menu(title, content, { name, opened, act } = {}) {
-  content.tabIndex = -1; // a click between its parts stays within: closing a menu in the midst of one crashes Chromium
+  content.tabIndex = -1; // ignore clicks between its parts: closing a menu during a click crashes Chromium
   const summary = h("summary", { class: "button", "aria-label": name, "data-act": act }, title);
   const node = h(
     "details",

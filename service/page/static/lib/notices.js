@@ -6,7 +6,7 @@ import { sentenceOf } from "./refusals.js";
 
 const DURATION = 6000; // ms
 
-/** Say something. kind: "info" goes away by itself, "error" stays until it is closed. @param {string} sentence @param {"info" | "error"} kind */
+/** Show a message. kind: "info" disappears by itself, "error" stays until closed. @param {string} sentence @param {"info" | "error"} kind */
 export function say(sentence, kind = "info") {
   const notice = h("div", { class: `notice ${kind}` }, h("p", {}, sentence));
   notice.append(
@@ -17,8 +17,8 @@ export function say(sentence, kind = "info") {
 }
 
 /**
- * Do something; a failure that was not an abort goes to `refuse`. busy: a button that is marked meanwhile; not disabled, which would take
- * the focus away.
+ * Run an action; failures other than aborts go to `refuse`. busy: button marked in the meantime; it is not disabled, which would remove
+ * the focus.
  * @template Result
  * @param {() => Promise<Result>} action @param {(problem: unknown) => unknown} refuse @param {HTMLElement} [busy]
  * @returns {Promise<Result | undefined>}

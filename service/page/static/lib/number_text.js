@@ -36,16 +36,16 @@ const SPREAD = /^(?:\+\/?-|±)/; // between the middle of a range and half its w
 const SIGN = /^(?!\+\/?-)[+-]/;
 const WORD = /^[^\d\s.,+\-*/×·÷()±]/;
 
-/** What is wrong with a number, as a sentence. */
+/** Error for an unreadable number; its message is a sentence. */
 class Unreadable extends Error {}
 
-/** A word that is no unit of the field: a formula, or a unit that only the service knows. */
+/** Error for a word that is not a unit of the field: a formula, or a unit that only the service knows. */
 class Unknown extends Error {}
 
 /**
- * Return what was typed into a field: {number, unit, said}, the number as text in the unit of the field, and in words how it
- * was read unless that is plain; {ends, unit, said} of a range; {wrong} with a sentence; {empty}; or {} for what only the service can read.
- * A comma or point before exactly three digits: a comma is taken for thousands, as this page writes them, and that is said.
+ * Return the parsed text of a field: {number, unit, said} with the number as text in the unit of the field and an explanation unless it
+ * is obvious; {ends, unit, said} for a range; {wrong} with a sentence; {empty}; or {} if only the service can read it. A comma before
+ * exactly three digits is read as a thousands separator, which is reported.
  * @param {string} typed @param {Field} field @returns {Nothing | Read | Ends | Wrong}
  */
 export function parseNumber(typed, field) {
@@ -88,7 +88,7 @@ export function isRange(text) {
   return /\+\/?-|±/.test(text.replaceAll("−", "-"));
 }
 
-/** Reads sums of terms; a unit belongs to the product before it, so that 1/2 in is half an inch. */
+/** Parser of sums; a unit belongs to the product before it, so that 1/2 in is half an inch. */
 class Parser {
   /** @param {string} text @param {Field} field */
   constructor(text, field) {
@@ -130,7 +130,7 @@ class Parser {
       terms.push(this.term());
     }
     const last = terms[terms.length - 1].unit;
-    const bare = terms.slice(0, -1).every(({ unit }) => unit === null); // 100 + 5 mm: the unit is that of all
+    const bare = terms.slice(0, -1).every(({ unit }) => unit === null); // 100 + 5 mm: the unit applies to all terms
     const missing = terms.find(({ unit }) => unit === null);
     if (!bare && missing)
       throw new Unreadable(
@@ -176,7 +176,7 @@ class Parser {
     return product;
   }
 
-  /** Return a part with the unit behind it, if there is one. @param {Part} part @returns {Part} */
+  /** Return a part with the unit after it, if any. @param {Part} part @returns {Part} */
   withUnit(part) {
     const match = this.spellings.find(
       ([spelling]) =>
@@ -226,7 +226,7 @@ class Parser {
     );
   }
 
-  /** Return the number that digits with points and commas say. @param {string} digits */
+  /** Return the number for digits with points and commas. @param {string} digits */
   number(digits) {
     const [mantissa, power = "0"] = digits.split(/e/i);
     const [commas, points] = [mantissa.split(",").length - 1, mantissa.split(".").length - 1];
@@ -249,7 +249,7 @@ class Parser {
     return Number(`${plain}e${power}`);
   }
 
-  /** Take what a pattern finds at the beginning of the rest, and the space behind it. @param {RegExp} pattern */
+  /** Consume a pattern at the beginning of the remaining text, and the space after it. @param {RegExp} pattern */
   matched(pattern) {
     const match = pattern.exec(this.rest);
     if (match) this.rest = this.rest.slice(match[0].length).trimStart();
@@ -262,7 +262,7 @@ class Parser {
   }
 }
 
-/** Return how units of a field may be written, each with the unit, the longest first. @param {Field} field @returns {[string, string][]} */
+/** Return the spellings of a field's units, each with its unit, longest first. @param {Field} field @returns {[string, string][]} */
 function spellingsOf({ factors, spoken, percent }) {
   const units = Object.keys(factors);
   /** @type {[string, string][]} */
@@ -280,12 +280,12 @@ function spellingsOf({ factors, spoken, percent }) {
   return spellings.sort(([one], [other]) => other.length - one.length);
 }
 
-/** Return a number as text, without what rounding adds. @param {number} value */
+/** Return a number as text without rounding noise. @param {number} value */
 function tidy(value) {
   return String(Number(value.toPrecision(12)));
 }
 
-/** Return what was typed as words of a sentence. @param {string} text */
+/** Return typed text quoted for a sentence. @param {string} text */
 function quoted(text) {
   return `"${text.trim()}"`;
 }

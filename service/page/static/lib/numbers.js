@@ -1,27 +1,27 @@
-/** Numbers for people. The API speaks mm, deg, N, N m, rpm; what a reader prefers is converted here, for show only. */
+/** Display of numbers. The API uses mm, deg, N, N m, rpm; numbers are converted to display units here. */
 
 import { get } from "./api.js";
 
 /** @type {{ si: Api.Units, inch: Api.Units | null }} */
-const SYSTEMS = { si: {}, inch: null }; // the one of inches comes from the service, when it is first needed
+const SYSTEMS = { si: {}, inch: null }; // the inch units come from the service when first needed
 /** @type {[string, string][]} */
-let suffixes = []; // units of the API, and how keys of values in them end, the longest first
+let suffixes = []; // units of the API, and endings of their keys, longest first
 /** @type {Record<string, string>} */
-let titles = {}; // of columns whose keys say others
+let titles = {}; // of columns whose titles differ from their keys
 /** @type {Record<string, string>} */
 const PRETTY = { deg: "°" };
-/** Signs of a power of ten, raised. @type {Record<string, string>} */
+/** Superscript characters for powers of ten. @type {Record<string, string>} */
 const POWERS = {
   "-": "⁻",
   ...Object.fromEntries([..."⁰¹²³⁴⁵⁶⁷⁸⁹"].map((sign, digit) => [digit, sign])),
 };
 
-/** The system of units that the reader chose: "si" or "inch". @returns {"si" | "inch"} */
+/** Chosen unit system: "si" or "inch". @returns {"si" | "inch"} */
 export function system() {
   return localStorage.getItem("units") === "inch" ? "inch" : "si";
 }
 
-/** The system as the API calls it; null for that of its own. */
+/** Name of the system in the API; null for its default. */
 export function apiSystem() {
   return system() === "inch" ? "inch" : null;
 }
@@ -29,10 +29,10 @@ export function apiSystem() {
 /** @type {Promise<Api.Answer<"get", "units">> | null} */
 let table = null;
 
-/** Return the table of units of the service, asked for once. */
+/** Return the table of units of the service, requested once. */
 export function unitTable() {
   table ??= get("units").catch((problem) => {
-    table = null; // another time it may answer
+    table = null; // a later request may succeed
     throw problem;
   });
   return table;
@@ -47,14 +47,14 @@ export async function readySystem() {
   SYSTEMS.inch = units.inch;
 }
 
-/** Return the title of a column of a quantity where its key says another one. Needs `readySystem`. @param {string} key */
+/** Return the title of a quantity's column if it differs from the key. Needs `readySystem`. @param {string} key */
 export function titleOf(key) {
   return titles[key];
 }
 
 /**
- * Return the value of a record of the API whose key begins with a name and ends with a unit, and that unit: `least_mm` for
- * "least"; a ratio has no unit. Needs `readySystem`.
+ * Return the value in an API record whose key consists of a name and a unit, and the unit: `least_mm` for "least"; ratios have no unit.
+ * Needs `readySystem`.
  * @param {Record<string, unknown>} record @param {string} name @returns {{ value: number | null, unit: string }}
  */
 export function valueOf(record, name) {
@@ -65,7 +65,7 @@ export function valueOf(record, name) {
   return { value: null, unit: "" };
 }
 
-/** Return {name, unit} of a key of the API: "crank" and "mm" of crank_mm. Needs `readySystem`. @param {string} key */
+/** Return {name, unit} of an API key: "crank" and "mm" for crank_mm. Needs `readySystem`. @param {string} key */
 export function keyOf(key) {
   const [unit, suffix] = suffixes.find(
     ([, end]) => end && key.endsWith(end) && key.length > end.length,
@@ -74,8 +74,7 @@ export function keyOf(key) {
 }
 
 /**
- * Return a sentence of the service with its values in the units that are shown, five digits of them; what is quoted was typed by
- * somebody, and stays.
+ * Return a sentence of the service with its values in display units, with five digits; quoted text is user input and stays unchanged.
  * @param {string} sentence
  */
 export function inDisplayUnits(sentence) {
@@ -95,35 +94,35 @@ export function inDisplayUnits(sentence) {
   );
 }
 
-/** Choose a system; the view is to be shown again. @param {string} name */
+/** Choose a system; the caller redraws the view. @param {string} name */
 export async function chooseSystem(name) {
   await readySystem();
   localStorage.setItem("units", name);
 }
 
-/** Return the unit that is shown for one of the API, as job files write it: "in" for "mm". @param {string} unit @returns {string} */
+/** Return the display unit for an API unit in the notation of job files: "in" for "mm". @param {string} unit @returns {string} */
 export function plainUnitOf(unit) {
   return SYSTEMS[system()]?.[unit]?.unit ?? unit;
 }
 
-/** Return the unit that is shown for one of the API, such as "in" for "mm". @param {string} unit @returns {string} */
+/** Return the display unit for an API unit, such as "in" for "mm". @param {string} unit @returns {string} */
 export function unitOf(unit) {
   const name = plainUnitOf(unit);
   return PRETTY[name] ?? name?.replace("^2", "²").replace("^3", "³");
 }
 
-/** Return a value of the API in the unit that is shown for it. @param {number} value @param {string} unit */
+/** Return an API value in its display unit. @param {number} value @param {string} unit */
 export function inDisplayUnit(value, unit) {
   return value * (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
-/** Return a shown value in the unit of the API. @param {number} value @param {string} unit */
+/** Return a displayed value in the unit of the API. @param {number} value @param {string} unit */
 export function fromDisplayUnit(value, unit) {
   return value / (SYSTEMS[system()]?.[unit]?.factor ?? 1);
 }
 
 /**
- * Return a number as text: `digits` significant ones; text stays text; what is not defined is a dash.
+ * Return a number as text with `digits` significant digits; text stays unchanged, undefined values become a dash.
  * @param {Api.Row[string] | undefined} value @param {string} unit @param {number} digits
  */
 export function text(value, unit = "", digits = 5) {

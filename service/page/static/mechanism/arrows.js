@@ -10,7 +10,7 @@ const DOT = 2.5;
 const HEAD = 7;
 
 /**
- * The arrows. at: 0 pivot, 1 crank pin, 2 slider pin or the cylinder's pivot; along: keys of the curves of its components in x and y.
+ * Arrows. at: 0 pivot, 1 crank pin, 2 slider pin or the cylinder's pivot; along: keys of the curves of its components in x and y.
  * @type {{ name: string, title: string, at: number, along: [string | null, string | null] }[]}
  */
 export const ARROWS = [
@@ -33,7 +33,7 @@ export const ARROWS = [
   { name: "load-force", title: "load on slider", at: 2, along: ["load_N", null] },
 ];
 
-/** Return the greatest force among curves, N; 0 where they have none. @param {Api.Curves} curves */
+/** Return the greatest force among curves, N; 0 without forces. @param {Api.Curves} curves */
 export function largestForce(curves) {
   let greatest = 0;
   for (const { along } of ARROWS) {
@@ -44,13 +44,16 @@ export function largestForce(curves) {
   return greatest;
 }
 
-/** Return the size of a force at a crank angle, N; null where friction leaves it undetermined. @param {(typeof ARROWS)[0]} arrow @param {Api.Curves} curves @param {number} angle */
+/**
+ * Return the magnitude of a force at a crank angle, N; null where friction leaves it undetermined.
+ * @param {(typeof ARROWS)[0]} arrow @param {Api.Curves} curves @param {number} angle
+ */
 export function forceAt({ along }, curves, angle) {
   const parts = along.flatMap((key) => (key && curves[key] ? [between(curves[key], angle)] : []));
   return parts.some((part) => part === null) ? null : Math.hypot(...parts.map(Number));
 }
 
-/** Return the scale of arrows of which the longest is so many N: a bar of a round force. @param {number} greatest */
+/** Return the scale bar for arrows, a round force. greatest: force of the longest arrow, N. @param {number} greatest */
 export function scaleOf(greatest) {
   const greatestDisplayed = inDisplayUnit(greatest, "N");
   if (!(greatestDisplayed > 0)) return "no force acts";

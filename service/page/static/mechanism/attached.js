@@ -1,4 +1,4 @@
-/** Parts besides the linkage: cylinders around pistons, the actuator of the slider, a body on the crank. */
+/** Parts attached to the linkage: cylinders around pistons, the actuator of the slider, a body on the crank. */
 
 import { svg } from "../lib/dom.js";
 
@@ -6,7 +6,7 @@ import { svg } from "../lib/dom.js";
 
 const SHARE = 0.3; // thickness of the actuator's rod, of its barrel
 
-/** Return bore and head of a cylinder, open at its foot. @param {View} view @param {Api.Outlines["cylinders"][0]} of @param {number} e */
+/** Return bore and head of a cylinder, open at its other end. @param {View} view @param {Api.Outlines["cylinders"][0]} of @param {number} e */
 export function walls({ x, y }, { bore_mm: bore, foot_mm: foot, head_mm: head }, e) {
   const [low, high] = [y(e - bore / 2), y(e + bore / 2)].map((at) => at.toFixed(2));
   return svg("path", {
@@ -37,7 +37,7 @@ export function attached() {
   /** @type {(x: number) => void} */
   let push = () => {};
   return {
-    /** To be drawn before the slider. */
+    /** Draw before the slider. */
     rod,
     /** In the coordinates of the crank. */
     body,

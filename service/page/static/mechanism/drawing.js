@@ -1,4 +1,4 @@
-/** A mechanism that moves: drawn once, then only moved. */
+/** Moving mechanism: drawn once, then only moved. */
 
 import { between, crankAt } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
@@ -15,7 +15,7 @@ import { bar, placed, scenery } from "./scenery.js";
  * @typedef {{ frame?: Frame, direction?: number, dead_centres_deg?: Page.Point, slider_ends_mm?: Page.Point, arc?: Page.Point | null, largest_force?: number, small?: boolean, angle?: number, turns?: number, outlines?: Api.Outlines }} Options
  */
 
-const EVERY = 100; // ms between values while it moves; faster ones cannot be read
+const EVERY = 100; // ms between values during motion; faster changes are unreadable
 
 /**
  * Put a drawing into `place`; label: what a screen reader says of it; grips: of grips.js, by which its lengths are dragged. It fills the width of its place and returns
@@ -35,7 +35,7 @@ const EVERY = 100; // ms between values while it moves; faster ones cannot be re
 export function drawing(place, { label, grips = null }) {
   const parts = movingParts();
   const handle = svg("circle", { class: "handle" });
-  // Fixed parts are a picture of their own, so that they are not repainted in every frame.
+  // Fixed parts are a separate picture, so that they are not repainted in every frame.
   const [still, moving] = [
     svg("svg", { class: "still" }),
     svg("svg", { class: "moving" }, parts.nodes, handle, grips?.nodes),
@@ -103,7 +103,7 @@ export function drawing(place, { label, grips = null }) {
       crossed: !lever && crossed(linkage, motion, turns),
     });
     parts.forces.size(motion, view, options.largest_force);
-    // Where the slider drives, the angle that counts is between rod and crank: not the one that is marked.
+    // With a driving slider, the relevant angle is between rod and crank, not the marked one.
     parts.marked.toggleAttribute("hidden", Boolean(motion.drive_N || lever));
     turn(angle);
   }
@@ -202,7 +202,7 @@ function measure(node, numbers) {
   for (const [name, number] of Object.entries(numbers)) node.setAttribute(name, String(number));
 }
 
-/** Few elements are moved in a frame: what is joined to a link is drawn in the link's own coordinates. */
+/** Moving parts; parts of a link are drawn in its coordinates, so that few elements move per frame. */
 function movingParts() {
   const pin = () => svg("circle", { class: "pin" });
   const [crank, rod, block] = [
@@ -224,8 +224,8 @@ function movingParts() {
   const marked = svg("g", {}, normal, arc, value);
   const forces = arrows();
   let radius = 0; // of the arc
-  let lastWritten = 0; // when the value was written last
-  let side = ""; // on which it stands
+  let lastWritten = 0; // time of the last written value
+  let side = "";
   return {
     nodes: [more.rod, sliderGroup, rodGroup, actuator.node, crankGroup, marked, forces.node],
     forces,
@@ -246,7 +246,7 @@ function movingParts() {
       const long = linkage.rod_mm * view.unit;
       length.textContent =
         written && long > 150 && !outlines?.lever ? `rod ${withUnit(linkage.rod_mm, "mm", 4)}` : "";
-      // Along the rod outside the guide, and never on its head: on the crossed branch it points the other way.
+      // Along the rod outside the guide, never upside down: on the crossed branch it points the other way.
       length.setAttribute(
         "transform",
         `translate(${0.28 * long} ${(crossed ? 1 : -1) * (link / 2 + 5)})${crossed ? " rotate(180)" : ""}`,
@@ -277,7 +277,7 @@ function movingParts() {
   };
 
   /**
-   * Mark the angle between the rod and the normal of the slider line, on the rod's side. along: from the slider pin.
+   * Mark the angle between the rod and the normal of the slider line, on the rod's side. along: direction from the slider pin.
    * @param {Page.Point} along @param {number | null | undefined} degrees @param {boolean} settled
    */
   function angleBetween(along, degrees, settled) {

@@ -1,4 +1,4 @@
-/** Extent of a mechanism that must be visible, and its place on the screen. */
+/** Extent of a mechanism, and its position on the screen. */
 
 import { extremes } from "../charts/cycle.js";
 
@@ -7,12 +7,12 @@ import { extremes } from "../charts/cycle.js";
  * @typedef {ReturnType<typeof fitted>} View
  */
 
-const MARGIN = 26; // pixels, for what stands beside the mechanism
+const MARGIN = 26; // pixels for parts beside the mechanism
 const HEIGHTS = [170, 430];
-const LOW = 96; // least height of a small drawing
+const LOW = 96; // minimum height of a small drawing
 
 /**
- * Return the inner and outer end of the slider's way, each {angle, value}; whoever draws a mechanism has one that turns.
+ * Return the inner and outer end of the slider's travel, each {angle, value}.
  * @param {Api.Curves} motion
  */
 export function sliderRange(motion) {
@@ -23,8 +23,8 @@ export function sliderRange(motion) {
 }
 
 /**
- * Return {left, right, low, high, block, tall}, mm, of a mechanism; block is two thirds of the length of its slider, tall its height.
- * outlines: of the API, of what else is drawn.
+ * Return {left, right, low, high, block, tall}, mm, of a mechanism. block: two thirds of the slider's length; tall: its height. outlines:
+ * further drawn parts, from the API.
  * @param {Page.Lengths} linkage @param {Api.Curves} motion @param {Api.Outlines} [outlines] @returns {Frame}
  */
 export function frameOf(linkage, motion, outlines) {
@@ -46,7 +46,7 @@ export function frameOfExtent([left, low, right, high]) {
 }
 
 /**
- * Return the same of a mechanism whose slider goes from one position to another, mm.
+ * Return the frame of a mechanism whose slider moves between two positions, mm.
  * @param {Page.Lengths} linkage @param {number} inner @param {number} outer @returns {Frame}
  */
 export function frameWithin({ crank_mm: r, offset_mm: e }, inner, outer) {
@@ -62,9 +62,9 @@ export function frameWithin({ crank_mm: r, offset_mm: e }, inner, outer) {
   };
 }
 
-/** Return the frame that holds all of these; mechanisms drawn in one frame have one scale. @param {Frame[]} frames @returns {Frame} */
+/** Return a frame that contains several others; mechanisms drawn in one frame have one scale. @param {Frame[]} frames @returns {Frame} */
 export function around(frames) {
-  // Not by Math.min(...): of 100,000 frames and more its arguments are too many.
+  // Math.min(...) fails with 100,000 arguments and more.
   return frames.reduce((all, one) => ({
     left: Math.min(all.left, one.left),
     right: Math.max(all.right, one.right),
@@ -76,8 +76,8 @@ export function around(frames) {
 }
 
 /**
- * Return {width, height, unit, x(mm), y(mm)} of a frame in so many pixels of width; unit: pixels in a millimetre; small: whether it
- * may be low.
+ * Return {width, height, unit, x(mm), y(mm)} of a frame for a width in pixels. unit: pixels per millimetre. small: whether a low height
+ * is permitted.
  * @param {Frame} frame @param {number} width @param {boolean} small
  */
 export function fitted(frame, width, small = false) {
@@ -100,7 +100,10 @@ export function fitted(frame, width, small = false) {
   };
 }
 
-/** Return the place in the mechanism, mm, of one on the screen. @param {Element} node that shows it @param {View} view @param {number} x @param {number} y @returns {Page.Point} */
+/**
+ * Return the position in the mechanism, mm, of a point on the screen.
+ * @param {Element} node that shows it @param {View} view @param {number} x @param {number} y @returns {Page.Point}
+ */
 export function placeIn(node, view, x, y) {
   const box = node.getBoundingClientRect();
   const factor = view.width / box.width;

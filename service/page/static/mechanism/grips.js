@@ -18,11 +18,11 @@ const PARTS = [
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // steps
 const ROUNDING = 1e-6; // of a step
-const WIDTH = 24; // pixels, of what a finger can hit
+const WIDTH = 24; // pixels; size of a touch target
 
 /**
- * Return the grips of a drawing: {nodes, isHeld(), move}. changed(lengths, angle): a length was dragged, or stepped by a key, and where
- * the crank then stands, deg, null for where it stood; released(): the pointer was lifted.
+ * Return the grips of a drawing: {nodes, isHeld(), move}. changed(lengths, angle): called when a length is dragged or changed by a key,
+ * with the crank angle, deg, or null if unchanged. released(): called when the pointer is released.
  * @param {{ changed: (lengths: Page.Lengths, angle: number | null) => void, released: () => void }} told
  */
 export function grips({ changed, released }) {
@@ -30,7 +30,7 @@ export function grips({ changed, released }) {
   let drawn = null;
   /** @type {keyof Page.Lengths | null} */
   let held = null;
-  let from = /** @type {Page.Point} */ ([0, 0]); // of the grip to the pointer, mm
+  let from = /** @type {Page.Point} */ ([0, 0]); // from grip to pointer, mm
   /** @type {View | null} */
   let taken = null; // in which the grip was taken: a pointer keeps its scale
   const nodes = PARTS.map(({ key, title }) => {
@@ -139,7 +139,7 @@ export function grips({ changed, released }) {
 }
 
 /**
- * Return between which lengths, mm, both excluded, a mechanism can be assembled while its others stay: |e| < r + l.
+ * Return the open interval of a length, mm, in which a mechanism with the other lengths can be assembled: |e| < r + l.
  * @param {Page.Lengths} linkage @returns {Record<keyof Page.Lengths, Page.Point>}
  */
 function boundsOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {
@@ -150,7 +150,7 @@ function boundsOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {
   };
 }
 
-/** Return the step of lengths that a screen shows: a power of ten of the shown unit, about a pixel. @param {View} view */
+/** Return the step of lengths for a screen: a power of ten in the display unit, about one pixel. @param {View} view */
 function stepOf({ unit }) {
   return 10 ** Math.floor(Math.log10(inDisplayUnit(1, "mm") / unit));
 }

@@ -1,4 +1,4 @@
-/** A lever on a fixed pivot, and the cylinder that moves it and turns about another. */
+/** Lever on a fixed pivot, and its cylinder, which turns about another pivot. */
 
 import { svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
@@ -19,7 +19,7 @@ export function leverAt({ crank_mm: r, rod_mm: f, offset_mm: e }, lever, { x, y 
   );
   const [right, up] = [f * Math.cos(frame), f * Math.sin(frame)];
   const [across, high] = [r * Math.cos(crank), r * Math.sin(crank)];
-  // From A to B: its part along the cylinder's line is the length, that across it the offset.
+  // From A to B: the component along the cylinder's line is the length, the one across it the offset.
   const [u, v] = [across - right, high - up];
   const square = u * u + v * v;
   const length = Math.sqrt(square - e * e);
@@ -35,7 +35,7 @@ export function leverAt({ crank_mm: r, rod_mm: f, offset_mm: e }, lever, { x, y 
   };
 }
 
-/** Outline of a cylinder from the foot of its line along +x. @param {number} barrel @param {number} length @param {number} lug @param {number} width */
+/** Outline of a cylinder along +x. @param {number} barrel @param {number} length @param {number} lug @param {number} width */
 const shape = (barrel, length, lug, width) =>
   `M0 ${lug}V0M0 ${-width / 2}H${barrel}V${width / 2}H0ZM${barrel} ${-width / 5}H${length}V${width / 5}H${barrel}`;
 
@@ -64,7 +64,7 @@ export function cylinder() {
 }
 
 /**
- * Return what stands still: both bearings, the path of the pin, both ends of the swing and, if written, dimensions.
+ * Return the fixed parts: both bearings, the path of the pin, both ends of the swing and, if written, dimensions.
  * @param {{ linkage: Page.Lengths, lever: Lever, view: View, link: number, written: boolean }} options
  */
 export function leverScenery({ linkage, lever, view, link, written }) {
@@ -72,7 +72,7 @@ export function leverScenery({ linkage, lever, view, link, written }) {
   const angles = [lever.start_deg, lever.end_deg];
   const ends = angles.map((angle) => leverAt(linkage, lever, view, angle));
   const { pivot, base } = ends[0];
-  /** Whether a point is left of the way from O to A. @param {Page.Point} point */
+  /** Whether a point is left of the line from O to A. @param {Page.Point} point */
   const isLeft = ([x, y]) =>
     (base[0] - pivot[0]) * (y - pivot[1]) < (base[1] - pivot[1]) * (x - pivot[0]);
   const away = isLeft(ends[0].pin) ? 1 : -1;

@@ -3,8 +3,7 @@
 const POINTS = 360;
 
 /**
- * Return the inner and outer position of the slider, mm, of a linkage that turns fully on the open branch:
- * x = sqrt((l ∓ r)^2 − e^2).
+ * Return the inner and outer slider position, mm, of a fully rotating linkage on the open branch: x = sqrt((l ∓ r)^2 − e^2).
  * @param {Page.Lengths} linkage
  */
 export function deadCentresOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {

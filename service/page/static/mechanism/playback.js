@@ -1,12 +1,12 @@
-/** The place in the cycle (for a turn, the crank angle) that all parts of the view share, and its playback. */
+/** Position in the cycle (for a revolution, the crank angle) shared by all parts of the view, and its playback. */
 
 import { turned } from "../charts/cycle.js";
 
 /** @typedef {{ seconds: number, title: string, chosen: boolean }} Pace */
 
-const READABLE = [1, 8]; // s of a turn that can be followed at its real speed
-const TURNS = [16, 8, 4, 2, 1]; // s of a turn, to choose from
-const SHORTEST = 0.2; // s of a turn that a screen can show
+const READABLE = [1, 8]; // s; minimum duration of a revolution shown at real speed
+const TURNS = [16, 8, 4, 2, 1]; // s per revolution, to choose from
+const SHORTEST = 0.2; // s; shortest revolution that a screen can show
 
 /**
  * Return the shared crank angle: {angle, direction, playing, arc, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
@@ -37,7 +37,7 @@ export function playback(rpm, signal, cycle = "one turn") {
     );
   /** @param {number} now */
   const step = (now) => {
-    const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after the browser was suspended, it continues where it was
+    const seconds = last ? Math.min((now - last) / 1000, 0.1) : 0; // after a suspension of the browser, continue from the same angle
     last = now;
     const next = state.angle + (sense * state.direction * 360 * seconds) / state.pace.seconds;
     state.angle = within(next, state.arc);
@@ -91,7 +91,7 @@ function within(angle, arc) {
 }
 
 /**
- * Return the speeds to choose from, each {seconds, title, chosen}, the slowest first; seconds: of a turn on the screen.
+ * Return the available speeds, each {seconds, title, chosen}, slowest first. seconds: duration of a revolution on the screen.
  * @param {number} rpm @param {string} cycle @returns {Pace[]}
  */
 function pacesOf(rpm, cycle) {

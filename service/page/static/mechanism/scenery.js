@@ -9,7 +9,7 @@ import { barrel, walls } from "./attached.js";
 
 /** @import { View } from "./frame.js" */
 
-const PITCH = 9; // pixels between the strokes of a hatching
+const PITCH = 9; // pixels between hatching lines
 
 /**
  * Return the parts that stand still, as SVG elements.
@@ -128,7 +128,7 @@ function rotation(view, r, direction) {
   const [from, to] = direction > 0 ? [2.0, 2.6] : [2.6, 2.0];
   const [start, end] = [pointAt(from), pointAt(to)];
   const radius = view.unit * r;
-  const head = to + (direction > 0 ? Math.PI / 2 : -Math.PI / 2); // which way it points there
+  const head = to + (direction > 0 ? Math.PI / 2 : -Math.PI / 2); // its direction there
   /** @param {number} by */
   const wing = (by) => `${end[0] - 9 * Math.cos(head + by)} ${end[1] + 9 * Math.sin(head + by)}`;
   const arc = `M${start}A${radius} ${radius} 0 0 ${direction > 0 ? 0 : 1} ${end}`;
@@ -145,7 +145,7 @@ function offset(view, e, x, written) {
     "g",
     { class: "dimension" },
     svg("path", { d: `M${x} ${from}V${to}${heads}` }),
-    // Beside the line, not over it to the right: there the crank passes.
+    // Beside the line, not over it to the right, where the crank passes.
     !written || view.width < 330
       ? null
       : svg(
@@ -189,7 +189,7 @@ function crankOf(view, r, e, link) {
   const radius = view.unit * r;
   if (radius < 45) return null;
   const down = e < 0 ? -1 : 1;
-  const turn = 0.35 * Math.PI; // from the line of centres, outward and away from the slider line
+  const turn = 0.35 * Math.PI; // outward, away from the slider line
   /** @param {number} size @returns {Page.Point} */
   const at = (size) => [
     view.x(0) + size * Math.cos(turn),
@@ -215,7 +215,7 @@ function crankOf(view, r, e, link) {
  */
 function strokeAngles(view, r, e, [inner, outer], direction) {
   const radius = 0.5 * view.unit * r;
-  const share = e < 0 ? 0.6 : 0.4; // where the values stand: beside the dimension of the crank
+  const share = e < 0 ? 0.6 : 0.4; // values beside the dimension of the crank
   if (radius < 24) return null;
   const span = turned(outer.angle - inner.angle); // counter-clockwise from the inner to the outer dead centre
   /** @param {number} degrees @param {number} size */
@@ -261,7 +261,7 @@ export function bar(length, width) {
   return `M0 ${-half}H${length}A${half} ${half} 0 0 1 ${length} ${half}H0A${half} ${half} 0 0 1 0 ${-half}Z`;
 }
 
-/** Return the transform that lays such a link from one point towards another. @param {Page.Point} from @param {Page.Point} to */
+/** Return the transform of such a link from one point towards another. @param {Page.Point} from @param {Page.Point} to */
 export function placed(from, to) {
   const turn = (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
   return `translate(${from[0].toFixed(2)} ${from[1].toFixed(2)}) rotate(${turn.toFixed(3)})`;

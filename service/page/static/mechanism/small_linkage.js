@@ -14,7 +14,7 @@ const HEIGHTS = [26, 64];
 const ANGLES = [60, 30, 90, 0, 120, 330, 180, 270]; // crank angles, deg: no links overlap at the first, but not every linkage closes there
 
 /**
- * Return a picture of a linkage in a frame that several share, so that they have one scale.
+ * Return a picture of a linkage in a frame shared by several, so that they have one scale.
  * @param {Page.Lengths} linkage @param {Frame} frame @param {Lever | null} [lever] half-way, for a linkage that is one
  */
 export function smallLinkage(linkage, frame, lever) {

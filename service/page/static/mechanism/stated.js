@@ -1,4 +1,4 @@
-/** The mechanism that an address states: three lengths and a speed. */
+/** Mechanism stated in an address: three lengths and a speed. */
 
 import { system } from "../lib/numbers.js";
 
@@ -11,8 +11,7 @@ const FIRST = {
 };
 
 /**
- * Return {stated, unread} of an address: its numbers, the first mechanism's where it has none, and by key the texts that are
- * not valid numbers.
+ * Return {stated, unread} of an address: its numbers, with defaults for missing ones, and invalid texts by key.
  * @param {URLSearchParams} query @returns {{ stated: Stated, unread: { [key in keyof Stated]?: string } }}
  */
 export function statedIn(query) {
@@ -30,7 +29,7 @@ export function statedIn(query) {
   return { stated, unread };
 }
 
-/** Return the job that asks the service to look. @param {Stated} stated */
+/** Return the job for a check by the service. @param {Stated} stated */
 export function jobOf({ crank_mm, rod_mm, offset_mm, rpm }) {
   return {
     mechanism: { speed: `${rpm} rpm` },

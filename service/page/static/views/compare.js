@@ -14,9 +14,9 @@ import { headedRow, numberCell, table as tableOf } from "../lib/table.js";
 export const title = "Compare runs";
 
 const MOST = 6;
-const MOST_DESIGNS = 300; // designs of each run in the picture
+const MOST_DESIGNS = 300; // maximum number of designs per run in the picture
 
-/** Fronts of several runs over each other, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} options */
+/** View of several runs: their fronts in one picture, and their best values side by side. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
   const numbers = [...new Set((query.get("jobs") ?? "").split(",").map(Number))].filter(
     (number) => Number.isInteger(number) && number > 0,
@@ -60,7 +60,7 @@ export async function show(place, { query, signal }) {
   const words = h("div");
   const table = h("div", { class: "scroll" });
 
-  /** Return the quantity that the address names for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
+  /** Return the quantity named by the address for an axis, if the runs share it. @type {(name: string, otherwise: string) => string} */
   function chosen(name, otherwise) {
     const requestedKey = query.get(name);
     return requestedKey !== null && shared.includes(requestedKey) ? requestedKey : otherwise;
@@ -133,7 +133,7 @@ export async function show(place, { query, signal }) {
                 : value;
         const { unit } = known(column);
         const [best] = [...values].sort((one, other) => rank(one) - rank(other));
-        /** Whether a value reads as the best one does. @param {Api.Row[string]} value */
+        /** Whether a value equals the best one as displayed. @param {Api.Row[string]} value */
         const isBest = (value) => text(value, unit, 5) === text(best, unit, 5);
         return h(
           "tr",
@@ -190,12 +190,15 @@ export async function show(place, { query, signal }) {
     );
   }
 
-  /** Return words that lead to a design, counted from 0; alone without one. @param {number} job @param {number | null} row @param {string} words */
+  /**
+   * Return words as a link to a design, counted from 0; plain text without a design.
+   * @param {number} job @param {number | null} row @param {string} words
+   */
   function toDesign(job, row, words) {
     return row === null ? words : h("a", { href: link(["jobs", job, "designs", row + 1]) }, words);
   }
 
-  /** Show which run is better in what, and the differences between the jobs. */
+  /** Show which run is better where, and the differences between the jobs. */
   async function drawWords() {
     const query = { job: runs.map(({ job }) => String(job.id)), units: apiSystem() };
     await attempt(

@@ -1,4 +1,4 @@
-/** One design of a front: moving, its curves, its numbers, what if; and up to two others beside it. */
+/** View of a design: its motion, curves, numbers and what-if sliders, with up to two others beside it. */
 
 import { analyses } from "../design/analyses.js";
 import { endsOf } from "../design/extremes.js";
@@ -216,7 +216,7 @@ export async function show(place, { parts, query, signal }) {
   );
   /** @type {Page.Machine[]} */
   let series = []; // of the curves
-  let refused = false; // whether the last change is impossible, so that everything shows the design itself
+  let refused = false; // whether the last change is impossible, so that everything shows the unchanged design
   /** Show the objectives of the first of some designs, and which allowable values all of them violate. @param {Page.Machine[]} designs */
   const glance = (designs) => {
     const [shown] = designs;
@@ -288,7 +288,7 @@ export async function show(place, { parts, query, signal }) {
       changed = answer;
       refused = impossible;
       clearTimeout(later);
-      later = setTimeout(draw(), SOON); // the tables, once the length rests
+      later = setTimeout(draw(), SOON); // updates the tables once the length stays
       changedNumbers = lengths ?? null;
       for (const each of [files.show, charts.of]) each(changedNumbers);
       keepAll();
@@ -325,12 +325,15 @@ export async function show(place, { parts, query, signal }) {
         main.exact = endsOf(/** @type {Api.Extremes} */ (analysis.extremes), main);
         charts.show(series);
       })
-      .catch(() => {}); // the analysis of that name says so
+      .catch(() => {}); // the analysis of that name reports it
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) angle.play();
   focusLastStep(place);
 }
 
-/** Return the lengths of an address, or what is wrong with them; nothing without any. @param {URLSearchParams} query @returns {{ lengths?: Page.Numbers, wrong?: string }} */
+/**
+ * Return the lengths in an address, or what is wrong with them; neither without lengths.
+ * @param {URLSearchParams} query @returns {{ lengths?: Page.Numbers, wrong?: string }}
+ */
 function startOf(query) {
   const texts = LENGTHS.map((key) => /** @type {const} */ ([key, query.get(key)?.trim() || null]));
   if (texts.every(([, text]) => text === null)) return {};

@@ -1,4 +1,4 @@
-/** Help: how it works, and every quantity with a sentence, a picture, its formula and its source. */
+/** View of the help: how the search works, and every quantity with a sentence, a picture, its formula and its source. */
 
 import { formula, symbolsOf } from "../help/formula.js";
 import { picture } from "../help/picture.js";

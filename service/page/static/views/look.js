@@ -1,4 +1,4 @@
-/** One mechanism: three lengths, typed or dragged, and its motion, without a search or a stored run. */
+/** View of one mechanism: three lengths, typed or dragged, and its motion, without a search or a stored run. */
 
 import { abscissaOf } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
@@ -24,8 +24,8 @@ import { jobOf, statedIn } from "../mechanism/stated.js";
 
 export const title = "One mechanism";
 
-const WRONG = "look-wrong"; // id of the sentence that says what is wrong
-const START = 50; // deg, where all links are apart
+const WRONG = "look-wrong"; // id of the error message
+const START = 50; // deg: no links overlap
 /** @type {({ key: string } & Page.Heading)[]} */
 const PANELS = [
   { key: "slider_position_mm", title: "Slider position", unit: "mm" },
@@ -40,7 +40,7 @@ export async function show(place, { query, signal }) {
   if (signal.aborted) return;
   place.classList.add("of-design"); // reuses the styles of drawing, curves and lengths
   const { stated, unread } = statedIn(query);
-  const angle = playback(0, signal); // at paces of the screen: the speed changes
+  const angle = playback(0, signal); // at screen speeds: the crank speed changes
   angle.set(START);
   const [stage, strip, nothing, curves, wrong, facts, next] = [
     h("section", { class: "panel stage" }),
@@ -105,16 +105,16 @@ export async function show(place, { query, signal }) {
   let busy = false;
   let again = false;
 
-  /** Return why the typed texts state no mechanism, or "". */
+  /** Return why the typed texts do not state a mechanism, or "". */
   const mistakes = () => [...rows.map((row) => row.wrong()), typedSpeed].filter(Boolean).join(" ");
 
-  /** Keep the stated values in the address; other text as it was typed. */
+  /** Store the stated values in the address, invalid text as typed. */
   function keepStated() {
     const typed = rows.filter((row) => row.wrong()).map((row) => [row.key, row.text()]);
     keep({ ...stated, ...Object.fromEntries(typed), ...(typedSpeed && { rpm: speed.value }) });
   }
 
-  /** Show no mechanism while a field holds no number. */
+  /** Hide the mechanism while a field is invalid. */
   function refuse() {
     keepStated();
     draw();

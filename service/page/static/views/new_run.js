@@ -1,4 +1,4 @@
-/** A new run: the job form, checked while you type, with a sketch. */
+/** View of a new run: the job form, checked during typing, with a sketch. */
 
 import { checker } from "../form/check.js";
 import { keepDraft, kept, newKey } from "../form/draft.js";
@@ -26,7 +26,7 @@ const correction = (wrong) =>
     ? `${IMPOSSIBLE} Change the marked fields.`
     : "Correct the marked fields first.";
 
-/** Show the form: what was typed before, a preset, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} options */
+/** Show the form with the draft, an included job, or a copy of a job. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
   const [schema, { quantities, functions }, shipped] = await Promise.all([
     get("schema", {}, signal),
@@ -49,7 +49,7 @@ export async function show(place, { query, signal }) {
 }
 
 /**
- * Return the draft that the address asks for: what was typed in it before comes first.
+ * Return the draft for the address: first what was typed in it before.
  * @param {URLSearchParams} query @param {Api.Preset[]} shipped @param {AbortSignal} signal @returns {Promise<Form.Draft>}
  */
 async function first(query, shipped, signal) {
@@ -80,7 +80,7 @@ function begin(job, source) {
   return { job: structuredClone(job), submission: {}, source, key: newKey() };
 }
 
-/** Return what the address says of where a draft began. @param {string} source */
+/** Return the origin of a draft that the address states. @param {string} source */
 function addressOf(source) {
   const [kind, name] = source.split(" ");
   const key = { preset: "preset", job: "from", around: "around" }[kind];
@@ -93,8 +93,8 @@ function addressOf(source) {
  */
 function build(place, { draft, before, schema, quantities, functions, shipped, signal }) {
   /** @type {Api.Preview | null} */
-  let checked = null; // what the service said of the job as it is; null while it has not
-  let undone = before; // what was typed elsewhere, when the address asks for something else
+  let checked = null; // the service's findings on the current job; null while unknown
+  let undone = before; // the draft of another address
   const drawn = sketch(signal);
   const facts = h("div", {});
   const status = h("p", { role: "status", class: "status", tabindex: -1 });
@@ -145,7 +145,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       ...(form.said?.names ?? []),
       ...functions.map(({ name }) => ({ name, title: "function", unit: null, behind: "(" })),
     ],
-    quantity: (name) => /** @type {Api.Quantity} */ (form.quantities.get(name)), // those that the form names itself
+    quantity: (name) => /** @type {Api.Quantity} */ (form.quantities.get(name)), // problems that the form itself reports
     judging: () => quantities.filter(({ name }) => schema.property(["objectives", name])),
     why: (name) => ({ sentence: form.quantity(name).sentence, name }),
     redraw,
@@ -185,7 +185,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     if (checked) mark(checked.wrong);
   }
   /**
-   * Replace the draft with another one; the old one can be restored.
+   * Replace the draft; the old one can be restored.
    * @param {Pick<Form.Draft, "job" | "submission" | "source">} other @param {{ text?: boolean }} options
    */
   function take(other, { text = false } = {}) {
@@ -224,13 +224,13 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   function showCheck(answer) {
     form.said = answer;
     for (const field of form.fields.slice()) field.tell?.();
-    document.activeElement?.dispatchEvent(new Event("names")); // there may be others now
+    document.activeElement?.dispatchEvent(new Event("names")); // the mistakes may have changed
     mark(answer.wrong);
     const count = answer.wrong.filter(({ infeasible }) => !infeasible).length;
     status.classList.toggle("good", answer.wrong.length === 0);
     if (count) say(count === 1 ? "One thing to correct." : `${count} things to correct.`);
     else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
-    start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled: Enter still says what to change
+    start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled, so that Enter still reports what to change
     showFacts(facts, answer, ({ path, value }) => {
       form.put(parted(path), value ?? undefined);
       redraw();
@@ -251,7 +251,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       return;
     }
     start.disabled = true;
-    keepDraft(draft); // with its key: should the answer be lost, the same is sent again
+    keepDraft(draft); // with its key: after a lost response, the same submission is sent again
     const { priority, ...limits } = form.submission;
     const { from } = addressOf(draft.source);
     try {
@@ -267,7 +267,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       );
       keepDraft(null);
       if (signal.aborted) return;
-      history.replaceState({ ...history.state, submission: form.submission }, ""); // back leads to the form as it was sent
+      history.replaceState({ ...history.state, submission: form.submission }, ""); // the Back button leads to the form as submitted
       keep({ from: job.id });
       go(["jobs", String(job.id)]);
     } catch (error) {

@@ -12,18 +12,18 @@ export const title = "Run";
 
 const SIZES = ["crank_mm", "rod_mm", "offset_mm"];
 
-/** A run: its progress while it is solved, then the explorer of its front. @param {HTMLElement} place @param {Page.Visit} options */
+/** View of a run: its progress during the search, then the explorer of its front. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { parts, signal }) {
   const number = Number(parts[1]);
   if (!Number.isInteger(number) || number < 1)
     throw new Problem(404, "A run must be given by its number; choose one from the list.");
   const head = h("header", { class: "run-head" });
   const body = h("div", { class: "run-body" });
-  const files = h("ul"); // of the front, that its explorer makes
-  const decision = h("p", { class: "decision", hidden: true }); // which it says too
+  const files = h("ul"); // written by the explorer of the front
+  const decision = h("p", { class: "decision", hidden: true });
   /** @type {{ control: AbortController, live: boolean } | null} */
-  let inner = null; // stops what the body shows
-  const explorer = import("../front/explorer.js"); // loads while the job is requested
+  let inner = null; // ends the current body
+  const explorer = import("../front/explorer.js"); // loads during the request for the job
 
   /** Show a job in its current state; null if it was deleted. @param {Api.Job | null} job */
   async function showJob(job) {
@@ -49,8 +49,8 @@ export async function show(place, { parts, signal }) {
     }
     const bodySignal = /** @type {{ control: AbortController }} */ (inner).control.signal;
     const pendingFront =
-      live || !job.summary?.designs ? null : designs(job.id, job.summary.best, bodySignal); // on its way while the head is drawn
-    pendingFront?.catch(() => {}); // who waits for it says so
+      live || !job.summary?.designs ? null : designs(job.id, job.summary.best, bodySignal); // requested while the head is drawn
+    pendingFront?.catch(() => {}); // whoever awaits it reports the failure
     const hadFocus = focused(head);
     drawHead(job);
     if (hadFocus) first(head, "button:not(.skip), summary, a")?.focus();
@@ -62,7 +62,7 @@ export async function show(place, { parts, signal }) {
   }
 
   /**
-   * Ask for what the explorer shows of a job unless it is told otherwise.
+   * Request the columns that the explorer shows by default.
    * @param {number} id @param {object} best of the objectives, by column @param {AbortSignal} own
    */
   function designs(id, best, own) {
@@ -75,7 +75,7 @@ export async function show(place, { parts, signal }) {
 
   /** @param {Api.Job} job */
   function drawHead(job) {
-    const summary = ENDED.includes(job.state) ? job.summary : null; // of a resumed search, it is no longer true
+    const summary = ENDED.includes(job.state) ? job.summary : null; // outdated after a resumed search
     const facts = [
       `run ${job.id}`,
       summary && counted(summary.designs, "design"),

@@ -14,7 +14,7 @@ const EACH = 2000; // ms between polls while the page is visible
 const PAGE = 25;
 const SORTS = /** @type {const} */ (["newest", "oldest", "name", "state", "decided"]);
 
-/** The list of runs, kept up to date while it is looked at. @param {HTMLElement} place @param {Page.Visit} options */
+/** View of the list of runs, kept up to date while visible. @param {HTMLElement} place @param {Page.Visit} options */
 export async function show(place, { query, signal }) {
   /** @type {{ state: string, name: string, before: string, sort: typeof SORTS[number] }} */
   const filters = {
@@ -119,7 +119,7 @@ export async function show(place, { query, signal }) {
     );
   };
 
-  /** Poll once, and again after a while. */
+  /** Poll now, and again after an interval. */
   async function look() {
     clearTimeout(timer);
     const before = filters.before || null;
@@ -186,7 +186,7 @@ export async function show(place, { query, signal }) {
     place.classList.toggle("empty", empty);
     search.hidden = empty;
     welcome.hidden = !empty;
-    single.hidden = empty; // the welcome has it
+    single.hidden = empty; // shown by the welcome
     first(place, "h1")?.replaceChildren(empty ? "No runs yet" : title);
     if (empty) machines.begin();
     status.textContent =
@@ -207,7 +207,7 @@ export async function show(place, { query, signal }) {
   const machines = gallery(signal);
   const single = h(
     "a",
-    { class: "button", href: link(["look"]), hidden: true }, // until there are runs
+    { class: "button", href: link(["look"]), hidden: true }, // shown while there are no runs
     "Look at one mechanism",
   );
   const welcome = h(
