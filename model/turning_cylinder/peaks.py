@@ -67,7 +67,14 @@ class LeverBatch:
         return np.array([names.index(name) for name in curves])
 
     def values(
-        self, table: Complexes, lever: IntArray, curve: IntArray, place: Array, probe: Array, *, slow: bool = False
+        self,
+        table: Complexes,
+        lever: IntArray,
+        curve: IntArray,
+        place: Array | Complexes,
+        probe: Array,
+        *,
+        slow: bool = False,
     ) -> Complexes:
         """Return curves (p, k) of levers (p,) by their codes (p,) at places (p, k); probe (p,): in the same piece.
 
@@ -103,7 +110,9 @@ class _Rows:
     curves: IntArray
     numbers: int
 
-    def values(self, table: Complexes, row: IntArray, place: Array, probe: Array, *, slow: bool = False) -> Complexes:
+    def values(
+        self, table: Complexes, row: IntArray, place: Array | Complexes, probe: Array, *, slow: bool = False
+    ) -> Complexes:
         """Return the curves (p, k) of rows at places (p, k); see `LeverBatch.values`."""
         curve, lever = np.divmod(row, self.batch.count)
         return self.batch.values(table, lever, self.curves[curve], place, probe, slow=slow)
@@ -113,7 +122,7 @@ class _Rows:
     ) -> tuple[Array, Array]:
         """Return value, slope and derivatives; see `peak_search.Curve`. Breakpoints do not move."""
         plain, *stepped = self.batch.tables[: 1 + self.numbers] if gradients else self.batch.tables[:1]
-        found = self.values(plain, row, place + 1j * STEP, probe)
+        found = self.values(plain, row, np.asarray(place + 1j * STEP, dtype=np.complex128), probe)
         slopes = [self.values(table, row, place, probe).imag / STEP for table in stepped]
         curve = np.stack([found.real, found.imag / STEP, *slopes], axis=-1)
         return curve, np.abs(found.real)

@@ -200,7 +200,7 @@ class Connection(H11Protocol):
 
     def _refuse(self, status: HTTPStatus, text: str, headers: dict[str, str] | None = None) -> None:
         self._log_each_minute(f"refused with {status}")
-        if self.cycle is None or self.cycle.response_complete or not self.cycle.response_started:
+        if self.cycle is None or self.cycle.response_complete or not self.cycle.response_started:  # type: ignore[redundant-expr]
             response = problem_response(status, text, {**(headers or {}), "Connection": "close"})
             lines = b"".join(b"%s: %s\r\n" % header for header in response.raw_headers)
             start = f"HTTP/1.1 {status} {status.phrase}\r\n".encode()

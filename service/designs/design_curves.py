@@ -158,7 +158,7 @@ def _lever_design_curves(design: StoredDesign, motion: Swing, count: int) -> Des
     machine, _ = lever_machine(design.mechanism, linkage, motion)
     if motion.of_full_turn:
         speed = design.mechanism.speed
-        angles = np.arange(count) * math.copysign(2.0 * np.pi / count, speed)
+        angles: Array = np.arange(count, dtype=np.float64) * math.copysign(2.0 * np.pi / count, speed)
         columns = crank_turn_columns(design.mechanism, linkage, angles)
         least, greatest = machine.sizes.length_range
         return DesignCurves(

@@ -74,7 +74,7 @@ def _outlines_of_lever(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> 
     if machine.lever.mass:
         centre = centre_of_lever(machine) * cmath.exp(-1j * sizes.pin_angle)
         body = 1e3 * centre.real, 1e3 * centre.imag
-    angles = (math.degrees(angle) for angle in (sizes.frame_angle, sizes.pin_angle, placed.start, placed.end))
-    lever = LeverOutlines(*angles, 1e3 * barrel_length(machine, placed))
+    frame, pin, start, end = map(math.degrees, (sizes.frame_angle, sizes.pin_angle, placed.start, placed.end))
+    lever = LeverOutlines(frame, pin, start, end, 1e3 * barrel_length(machine, placed))
     side = 0.08 * max(1e3 * sizes.crank, 1e3 * sizes.frame)
     return Outlines(lever_extent(machine, placed), (0.0, 0.0), (), None, body, side, lever)

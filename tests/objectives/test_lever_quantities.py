@@ -30,8 +30,15 @@ from tests.model.turning_cylinder.machines import some_machine
 from tests.objectives.richardson import derivatives
 
 CYLINDER = Cylinder(
-    **{"closed_length": 0.6, "stroke": 0.5, "bore": 0.08, "rod": 0.04, "supply_pressure": 2e7},
-    **{"seal_friction": 35.0, "barrel_mass": 9.0, "piston_rod_mass": 4.0, "length_tolerance": 1e-3},
+    closed_length=0.6,
+    stroke=0.5,
+    bore=0.08,
+    rod=0.04,
+    supply_pressure=2e7,
+    seal_friction=35.0,
+    barrel_mass=9.0,
+    piston_rod_mass=4.0,
+    length_tolerance=1e-3,
 )
 ANGLES: dict[str, Any] = {"start": math.radians(-20.0), "end": math.radians(50.0)}
 TIPPER = Mechanism(

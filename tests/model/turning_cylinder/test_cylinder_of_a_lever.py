@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -108,10 +109,11 @@ def test_the_cylinder_holds_the_lever_at_both_ends_whatever_the_law(law: LeverLa
 
 
 def test_needs_suffice_as_reported() -> None:
-    for field, pattern, unit, given in (
+    cases: tuple[tuple[str, str, float, dict[str, Any]], ...] = (
         ("supply_pressure", r"needs ([\d.]+) bar", 1e5, {"bore": 0.04, "supply_pressure": 1e6}),
         ("rod", r"use at least ([\d.]+) mm", 1e-3, {"rod": 0.008}),
-    ):
+    )
+    for field, pattern, unit, given in cases:
         with pytest.raises(InputError) as refused:
             summarise(TIPPER, SLOW, Cylinder(**given))
         (reported,) = re.findall(pattern, str(refused.value))
@@ -157,7 +159,7 @@ def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
         ({"seal_friction": -1.0}, "the friction of a seal must be zero or more and finite; got -1 N"),
     ],
 )
-def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes: dict[str, float], part: str) -> None:
+def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes: dict[str, Any], part: str) -> None:
     with pytest.raises(InputError, match=part):
         summarise(TIPPER, SLOW, Cylinder(**sizes))
 

@@ -68,7 +68,8 @@ def test_the_copy_is_queued_and_knows_where_it_is_from(store: Store, client: htt
     job = client.get(f"{API}/jobs/{made.json()['id']}/job").json()
     assert job["variables"]["rod"] == ["585 mm", "715 mm"]
     (start,) = bookmarks_of(store, made.json()["id"])
-    assert (start.name, start.dimensions) == (f"Start, from run {solved.number}", pytest.approx((0.138, 0.65, 0.06)))
+    assert start.name == f"Start, from run {solved.number}"
+    assert start.dimensions == pytest.approx((0.138, 0.65, 0.06))
     locked = client.post(f"{solved.path}/nearby", json={**lengths, "rod_mm": 195.0, "share": 0.9})
     assert bookmarks_of(store, locked.json()["id"]) == []
     assert client.post(f"{solved.path}/nearby", json={**lengths, "share": 1.0}).status_code == 422
