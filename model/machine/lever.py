@@ -10,6 +10,7 @@ from ..checks import require_field_types, require_numbers
 from ..errors import InputError
 from .arm import Arm
 from .lever_cylinder import Cylinder
+from .lever_spring import LeverSpring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,16 +19,19 @@ class Lever:
 
     frame_angle: direction from the lever's pivot to the cylinder's, rad from +x. pin_angle: angle from the crank's own
     line to its pin, rad. cylinder: its known data. arm: what the line turns if the crank rotates fully.
+    spring: one that acts on the lever, if any.
     """
 
     frame_angle: float
     pin_angle: float = 0.0
     cylinder: Cylinder = Cylinder()
     arm: Arm = Arm()
+    spring: LeverSpring | None = None
 
     def __post_init__(self) -> None:
         require_numbers(self, "frame_angle", "pin_angle", phrase="the {} of a lever")
-        require_field_types(self, {"cylinder": Cylinder, "arm": Arm}, "tables of a job state them")
+        parts = {"cylinder": Cylinder, "arm": Arm, "spring": LeverSpring | None}
+        require_field_types(self, parts, "tables of a job state them")
 
     @property
     def texts(self) -> list[str]:
@@ -35,6 +39,7 @@ class Lever:
         pin = f", pin {math.degrees(self.pin_angle):.6g} deg from the crank's line" if self.pin_angle else ""
         frame = f"the rod is the frame, at {math.degrees(self.frame_angle):.6g} deg from the lever's pivot{pin}"
         arm = [] if self.arm == Arm() else [f"arm: {self.arm.text}"]
+        arm += [] if self.spring is None else [f"spring: {self.spring.text}"]
         return [frame, *([] if self.cylinder == Cylinder() else [f"cylinder: {self.cylinder.text}"]), *arm]
 
 

@@ -85,10 +85,16 @@ _LEVER = {
     **{"cylinder.barrel_mass": "kg", "cylinder.piston_rod_mass": "kg", "cylinder.modulus": "Pa"},
     **{"cylinder.dead_length": "m"},
     **{"arm.mass": "kg", "arm.centre": "m", "arm.inertia": "kg m^2", "arm.torque": "N m"},
+    **dict.fromkeys(("spring.frame", "spring.lever", "spring.length"), "m"),
+    **{"spring.frame_angle": "rad", "spring.pin_angle": "rad", "spring.force": "N", "spring.stiffness": "N/m"},
     **{"arm.ram": "m", "arm.ram_mass": "kg", "arm.ram_force": "N"},
 }
 LEVER = {name: 10**8 + 5 + len(_DRIVE) + place for place, name in enumerate(_LEVER)}
 """Slots of a lever, its cylinder and its arm, which read their own."""
+SPRING = tuple(
+    f"spring.{name}" for name in ("frame", "frame_angle", "lever", "pin_angle", "force", "length", "stiffness")
+)
+"""Numbers of a lever's spring, in the order of `turning_cylinder.states.LeverNumbers`."""
 _SLOTS |= {f"lever.{name}": (slot, _LEVER[name]) for name, slot in LEVER.items()}
 _POLAR = {"counterweight.radius": "m", "counterweight.angle": "rad"}
 

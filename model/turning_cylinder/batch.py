@@ -16,7 +16,7 @@ from ..machine.lever_cylinder import buckling_number, piston_areas
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
-from ..machine.raw_numbers_of_designs import LEVER, START, RawNumbers, raw_machine_numbers
+from ..machine.raw_numbers_of_designs import LEVER, SPRING, START, RawNumbers, raw_machine_numbers
 from ..machine.varying_numbers import number_at
 from ..swing.swing import Swing
 from .peaks import LeverBatch
@@ -80,16 +80,15 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     if _is_known(cylinder.dead_length):
         closed_length = cylinder.dead_length + (stroke if _is_known(stroke) else magnitude(last - first))
     length = closed_length if _is_known(closed_length) else np.where(rises, first, last)
-    found = LeverNumbers._make(
-        [
-            *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
-            *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
-            *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
-            *of_block("crank_error", "rod_error", "offset_error"),
-            *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
-            *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
-            *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
-        ]
+    found = LeverNumbers(
+        *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
+        *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
+        *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
+        *of_block("crank_error", "rod_error", "offset_error"),
+        *(cylinder.length_tolerance, cylinder.seal_friction, *piston_areas(bore, rod_of_area)),
+        *(cylinder.supply_pressure, buckling_number(rod, cylinder.modulus)),
+        *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
+        *(() if machine.lever is None or machine.lever.spring is None else map(part, SPRING)),
     )
     return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
 

@@ -22,6 +22,7 @@ from ..arrays import Array
 from ..checks import require_all_finite, require_numbers
 from ..errors import InputError
 from ..machine.lever_cylinder import Cylinder, buckling_number
+from ..machine.lever_spring import LeverSpring
 from ..machine.loads.load import require_word
 from ..swing.swing_types import LeverLaw
 from .lever import DimensionErrors, TurningCylinder, Vectors
@@ -72,19 +73,20 @@ class UniformBar:
 
 @dataclass(frozen=True, kw_only=True)
 class LeverMachine:
-    """Masses of a lever and its cylinder, and gravity along x and y, m/s^2."""
+    """Masses of a lever and its cylinder, gravity along x and y, m/s^2, and a spring on the lever."""
 
     sizes: TurningCylinder
     lever: LeverBody = LeverBody()
     barrel: UniformBar = UniformBar()
     piston_rod: UniformBar = UniformBar()
     gravity: tuple[float, float] = (0.0, -9.81)
+    spring: LeverSpring | None = None
 
     def __post_init__(self) -> None:
         require_all_finite("gravity", self.gravity)
 
     def energy_to_lift(self, start: float, end: float) -> float:
-        """Return the work, J, against gravity from one lever angle to another, rad."""
+        """Return the work, J, against gravity and spring from one lever angle to another, rad."""
         return float(lift(numbers_of_machine(self, LeverSwing(start, end))))
 
 
@@ -145,7 +147,7 @@ def numbers_of_machine(
     """Return the numbers of one machine over a swing."""
     sizes, lever, barrel, rod = machine.sizes, machine.lever, machine.barrel, machine.piston_rod
     cylinder = cylinder or Cylinder()
-    return LeverNumbers(
+    numbers = LeverNumbers(
         *(sizes.crank, sizes.frame, sizes.frame_angle, sizes.offset, sizes.pin_angle),
         *(swing.start, swing.end, 0.0 if swing.duration is None else 1.0 / swing.duration),
         *(lever.mass, lever.moment_along, lever.moment_across, lever.inertia),
@@ -157,6 +159,8 @@ def numbers_of_machine(
         math.nan if cylinder.supply_pressure is None else cylinder.supply_pressure,
         math.nan if cylinder.rod is None else buckling_number(cylinder.rod, cylinder.modulus),
     )
+    spring = machine.spring
+    return numbers if spring is None else numbers._replace(**{f"spring_{name}": x for name, x in vars(spring).items()})
 
 
 def lever_curves(machine: LeverMachine, swing: LeverSwing, share: Array) -> LeverCurves:

@@ -80,6 +80,7 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
         barrel=UniformBar(mass=cylinder.barrel_mass, length=length),
         piston_rod=UniformBar(mass=cylinder.piston_rod_mass, length=length),
         gravity=mechanism.gravity,
+        spring=mechanism.lever.spring,
     )
     errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
     return machine, DimensionErrors(*errors)

@@ -24,7 +24,7 @@ class LeverNumbers(NamedTuple):
     annular area; NaN if there is no bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN if
     there is none. supply: pressure; NaN if there is none, as closed_length and stroke. speed: of the crank, rad/s, if
     it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; ram: 0 without one; see
-    `machine.arm`.
+    `machine.arm`. spring: see `machine.lever_spring`; without force and stiffness if there is none.
     """
 
     crank: Any
@@ -64,6 +64,13 @@ class LeverNumbers(NamedTuple):
     ram: Any = 0.0
     ram_mass: Any = 0.0
     ram_force: Any = 0.0
+    spring_frame: Any = 1.0
+    spring_frame_angle: Any = 0.0
+    spring_lever: Any = 0.0
+    spring_pin_angle: Any = 0.0
+    spring_force: Any = 0.0
+    spring_length: Any = 0.0
+    spring_stiffness: Any = 0.0
 
     def length(self, lever_angle: Any) -> Any:
         """Return the length of the cylinder, m, at lever angles, rad."""
@@ -165,17 +172,34 @@ def bodies_at(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any)
     rod_acceleration = difference(turning(scaled(c.crank, motion.radial), turn, rise), turning(arm, line_1, line_2))
     rod_force = scaled(c.rod_mass, difference(gravity, rod_acceleration))
     inertia = (c.barrel_mass * c.barrel_length * c.barrel_length + c.rod_mass * c.rod_length * c.rod_length) / 12.0
+    spring_pin, spring, _ = spring_at(c, angle)
     return Bodies(
-        carried=difference(turning(moment, turn, rise), scaled(c.lever_mass, gravity)),
+        carried=difference(difference(turning(moment, turn, rise), scaled(c.lever_mass, gravity)), spring),
         rod=rod_force,
         barrel=barrel_force,
-        about_o=c.inertia * rise - cross(moment, gravity),
+        about_o=c.inertia * rise - cross(moment, gravity) - cross(spring_pin, spring),
         about_a=cross(barrel, barrel_force) + cross(difference(motion.span, arm), rod_force) - inertia * line_2,
     )
 
 
+@analytic
+def spring_at(c: LeverNumbers, angle: Any) -> tuple[Vector, Vector, Any]:
+    """Return the pin of the spring on the lever, its force there, and its energy, J, at a lever angle."""
+    pin = (
+        c.spring_lever * np.cos(angle + c.spring_pin_angle),
+        c.spring_lever * np.sin(angle + c.spring_pin_angle),
+    )
+    frame = c.spring_frame * np.cos(c.spring_frame_angle), c.spring_frame * np.sin(c.spring_frame_angle)
+    span = difference(pin, frame)
+    length = size(span)
+    extension = length - c.spring_length
+    push = c.spring_force - c.spring_stiffness * extension
+    energy = (0.5 * c.spring_stiffness * extension - c.spring_force) * extension
+    return pin, scaled(push * inverse(length), span), energy
+
+
 def lift(c: LeverNumbers) -> Any:
-    """Return the work against gravity from start to end, J."""
+    """Return the work against gravity and spring from start to end, J."""
     first, last = (_potential(c, angle) for angle in (c.start, c.end))
     return last - first
 
@@ -189,7 +213,7 @@ def _potential(c: LeverNumbers, angle: Any) -> Any:
     moment_x = moment_x + c.barrel_mass * (half * x - c.offset * y) + c.rod_mass * (c.crank * rx - back * x)
     moment_y = c.along * sine + c.across * cosine
     moment_y = moment_y + c.barrel_mass * (half * y + c.offset * x) + c.rod_mass * (c.crank * ry - back * y)
-    return -(c.gravity_x * moment_x + c.gravity_y * moment_y)
+    return spring_at(c, angle)[2] - (c.gravity_x * moment_x + c.gravity_y * moment_y)
 
 
 @analytic

@@ -35,7 +35,7 @@ from .parser import parse
 from .quantity import FormulaQuantity, column_key_of_formula, leaves_of
 from .ranges import FormulaBounds, Interval
 
-ROOTS = ("mechanism", "cylinder", "arm", "load", "friction", "drive", "tolerances", "sections", "motion")
+ROOTS = ("mechanism", "cylinder", "arm", "spring", "load", "friction", "drive", "tolerances", "sections", "motion")
 """Tables whose numbers may vary, and then begin the names in formulas."""
 _WORD = re.compile(r"[A-Za-z_]\w*(?:\.\w+)*")
 _NEAREST = 3

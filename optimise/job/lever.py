@@ -8,20 +8,25 @@ from ...model.errors import JobError
 from ...model.machine.arm import Arm
 from ...model.machine.lever import Lever
 from ...model.machine.lever_cylinder import Cylinder, Mounting
+from ...model.machine.lever_spring import LeverSpring
 from ...model.swing.swing import CRANK_TURN, Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart
 from .value_types import (
+    Angle,
     Checked,
     Clearance,
     DrivingTorque,
+    Force,
     Inertia,
     Length,
     Mass,
     NonNegativeForce,
     PositiveLength,
     Pressure,
+    Stiffness,
     optional,
+    required,
 )
 
 TURNING_CYLINDER = "turning cylinder"
@@ -68,7 +73,23 @@ class ArmPart(Checked[Arm]):
     ram_force: NonNegativeForce = optional("against the motion of the ram on its slow stroke", "2 kN", default=0.0)
 
 
-def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None, arm: ArmPart | None) -> Lever | None:
+class SpringPart(Checked[LeverSpring]):
+    """A gas or coil spring between the frame and a lever."""
+
+    makes = LeverSpring
+
+    frame: PositiveLength = required("from the lever's pivot to the spring's pin on the frame", "500 mm")
+    frame_angle: Angle = required("direction to that pin, counter-clockwise from +x", "-90 deg")
+    lever: PositiveLength = required("from the lever's pivot to the spring's pin on the lever", "300 mm")
+    pin_angle: Angle = optional("angle to that pin from the lever's own line", "10 deg", default=0.0)
+    force: Force = required("push at its length; below 0 for a pull", "600 N")
+    length: PositiveLength = required("length between its pins at which it has the force", "450 mm")
+    stiffness: Stiffness = optional("what the push loses per extension", "1.2 N/mm", default=0.0)
+
+
+def lever_of(
+    mechanism: MechanismPart, cylinder: CylinderPart | None, arm: ArmPart | None, spring: SpringPart | None
+) -> Lever | None:
     """Return the lever that a job states; None for a slider-crank. Raises `JobError` for keys of the other machine."""
     if mechanism.inversion is None:
         stated = {
@@ -76,6 +97,7 @@ def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None, arm: ArmPa
             "mechanism.pin_angle": mechanism.pin_angle or None,
             "cylinder": cylinder,
             "arm": arm,
+            "spring": spring,
         }
         for key, value in stated.items():
             if value is not None:
@@ -91,7 +113,9 @@ def lever_of(mechanism: MechanismPart, cylinder: CylinderPart | None, arm: ArmPa
         )
     known = Cylinder() if cylinder is None else cylinder.build()
     driven = Arm() if arm is None else arm.build()
-    return Lever(frame_angle=mechanism.frame_angle, pin_angle=mechanism.pin_angle, cylinder=known, arm=driven)
+    pushing = None if spring is None else spring.build()
+    angles = {"frame_angle": mechanism.frame_angle, "pin_angle": mechanism.pin_angle}
+    return Lever(**angles, cylinder=known, arm=driven, spring=pushing)
 
 
 def swing_of(mechanism: MechanismPart, motion: MotionPart) -> Swing | None:

@@ -20,7 +20,7 @@ from .constraints_and_objectives import ConstraintsPart, ObjectivesPart, Stated,
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
 from .drive import DrivePart
 from .friction_and_clearance import ClearancePart, FrictionPart
-from .lever import ArmPart, CylinderPart, lever_of, swing_of
+from .lever import ArmPart, CylinderPart, SpringPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
@@ -117,6 +117,10 @@ class Job(Part):
         'arm that the crank of inversion = "turning cylinder" turns about the cylinder\'s pivot: masses, torque, ram',
         {"inertia": "0.5 kg m^2", "ram": "500 mm", "ram_force": "2 kN"},
     )
+    spring: SpringPart | None = optional(
+        'gas or coil spring on the lever of inversion = "turning cylinder"',
+        {"frame": "500 mm", "frame_angle": "-90 deg", "lever": "300 mm", "force": "600 N", "length": "450 mm"},
+    )
     load: tuple[Load, ...] = optional(
         "loads on the slider along its line, or on the crank; several add up",
         [{"force": "200 N", "opposes": "outward stroke"}],
@@ -208,7 +212,7 @@ class Job(Part):
             branch=mechanism.branch,
             strength=None if self.sections is None else self.sections.strength(),
             start=self.motion.start,
-            lever=lever_of(mechanism, self.cylinder, self.arm),
+            lever=lever_of(mechanism, self.cylinder, self.arm, self.spring),
             **{name: part.build() for name, part in parts.items() if part is not None},
         )
 

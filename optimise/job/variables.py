@@ -53,6 +53,7 @@ class VariablesPart(Part):
     tolerances: Table = _variable_table("[tolerances]", {"crank": ["0.02 mm", "0.1 mm"]})
     motion: Table = _variable_table("[motion]: where a swing starts", {"from": ["0 deg", "40 deg"]})
     cylinder: Table = _variable_table("[cylinder]", {"bore": ["40 mm", "63 mm"]})
+    spring: Table = _variable_table("[spring] of a lever", {"force": ["300 N", "800 N"]})
     arm: Table = _variable_table("[arm]", {"ram": ["400 mm", "600 mm"]})
     sections: Table = _variable_table("[sections]", {"pins": {"crank_pin": ["10 mm", "20 mm"]}})
 

@@ -26,7 +26,7 @@ from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.evaluate_quantities import evaluate
 from slidercrank.objectives.tables.swing_columns import swing_quantities
-from tests.model.turning_cylinder.machines import some_machine
+from tests.model.turning_cylinder.machines import some_machine, some_spring
 from tests.objectives.richardson import derivatives
 
 CYLINDER = Cylinder(
@@ -58,7 +58,9 @@ def some_case(random: np.random.Generator) -> Case:
         crank=RigidLink(mass=mass, centre=centre, centre_across=across, inertia=inertia),
         gravity=drawn.gravity,
         tolerances=Tolerances(crank=Tolerance(absolute=1e-3), rod=Tolerance(fraction=1e-3)),
-        lever=Lever(frame_angle=sizes.frame_angle, pin_angle=sizes.pin_angle, cylinder=CYLINDER),
+        lever=Lever(
+            frame_angle=sizes.frame_angle, pin_angle=sizes.pin_angle, cylinder=CYLINDER, spring=some_spring(random)
+        ),
     )
     swing = Swing(start=placed.start, end=placed.end, driver="cylinder", law=placed.law, duration=placed.duration)
     return mechanism, swing, np.array([[sizes.crank, sizes.frame, sizes.offset]])
@@ -141,6 +143,8 @@ VARYING = (
     Varying(name="bore", sets=(("lever.cylinder.bore", 1.0),), lower=0.05, upper=0.1),
     Varying(name="mass", sets=(("crank.mass", 1.0),), lower=1.0, upper=90.0),
     Varying(name="supply", sets=(("lever.cylinder.supply_pressure", 1.0),), lower=1e6, upper=4e7),
+    Varying(name="spring force", sets=(("lever.spring.force", 1.0),), lower=-900.0, upper=900.0),
+    Varying(name="spring pin", sets=(("lever.spring.lever", 1.0),), lower=0.1, upper=0.5),
     Varying(name="start", sets=(("start.angle", 1.0),), lower=-20.0, upper=20.0),
 )
 
@@ -150,7 +154,9 @@ def _varied(case: Case) -> Case:
     mechanism, swing, design = case
     assert mechanism.lever is not None
     assert isinstance(mechanism.crank, RigidLink)
-    numbers = [mechanism.lever.frame_angle, 0.08, mechanism.crank.mass, 2e7, swing.start]
+    spring = mechanism.lever.spring
+    assert spring is not None
+    numbers = [mechanism.lever.frame_angle, 0.08, mechanism.crank.mass, 2e7, spring.force, spring.lever, swing.start]
     return replace(mechanism, varying=VARYING), swing, np.array([[*design[0], *numbers]])
 
 

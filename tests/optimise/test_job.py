@@ -348,7 +348,7 @@ def test_the_examples_of_the_schema_are_valid() -> None:
     properties = job_schema()["properties"]
     for key, node in properties.items():
         for example in node["examples"]:
-            others = {"cylinder": LEVER, "arm": SHAPER}
+            others = {"cylinder": LEVER, "arm": SHAPER, "spring": LEVER}
             given = deepcopy(others[key]) if key in others else small(tolerances={"crank": "0.05 mm"})
             parse_job(given | {key: example})
     for name, node in job_schema()["$defs"]["Objectives"]["properties"].items():

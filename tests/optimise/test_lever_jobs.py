@@ -70,6 +70,18 @@ def test_the_jobs_of_the_guide_have_a_front_of_levers(pytestconfig: pytest.Confi
     assert set(re.findall(r"`(\w+)`", guide)) >= {of.name for of in swing_facts() if isinstance(of, LeverQuantity)}
 
 
+def test_a_spring_of_a_job_unloads_the_cylinder() -> None:
+    spring = {"frame": "500 mm", "frame_angle": "-90 deg", "lever": "350 mm", "force": "900 N", "length": "600 mm"}
+    plain, sprung = sc.problem(lever()), sc.problem(lever(spring=spring | {"stiffness": "0.5 N/mm"}))
+    names = ["peak_cylinder_force", "lever_work"]
+    assert (sprung.evaluate(TIPPER, names) < plain.evaluate(TIPPER, names)).all()
+    assert sprung.ask("lever", TIPPER)["peak_push_N"] == pytest.approx(sprung.evaluate(TIPPER, names[:1])[0], rel=1e-9)
+    varying = sc.problem(lever(spring=spring, variables={"spring.force": ["200 N", "1200 N"]}))
+    assert "spring.force" in varying.ranges
+    with pytest.raises(JobError, match=r"spring: the pins of a lever's spring must be at different distances"):
+        sc.problem(lever(spring=spring | {"lever": "500 mm"}))
+
+
 def test_the_cylinder_of_a_job_must_be_long_strong_and_stiff_enough() -> None:
     names = {c.quantity: c.lower for c in constraints_of(sc.problem(lever()))}
     assert names == pytest.approx(

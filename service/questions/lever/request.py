@@ -80,6 +80,7 @@ def lever_request(
         barrel=UniformBar(mass=cylinder.barrel_mass, length=closed),
         piston_rod=UniformBar(mass=cylinder.piston_rod_mass, length=closed),
         gravity=_gravity(mechanism, inputs.get("gravity")),
+        spring=None if own is None else own.spring,
     )
     errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
     return LeverRequest(machine, lever_swing, cylinder, DimensionErrors(*errors))

@@ -35,6 +35,10 @@ def _rotated(angle: complex, point: tuple[float, float]) -> tuple[NDArray[np.com
     return turned, np.array([-turned[1], turned[0]])
 
 
+def _complex(vector: NDArray[np.complex128]) -> complex:
+    return complex(vector[0].real, vector[1].real)
+
+
 class Bodies:
     """The three bodies of a machine, with the places of their joints in their own axes."""
 
@@ -52,6 +56,7 @@ class Bodies:
         masses = [lever.mass, *(rod.mass for rod in rods)]
         inertias = [lever.inertia - lever.mass * float(centre @ centre), *(rod.inertia for rod in rods)]
         self.mass = np.diag([size for m, i in zip(masses, inertias, strict=True) for size in (m, m, i)])
+        self.spring = machine.spring
         self.weight = np.array([size for m in masses for size in (*(m * np.array(machine.gravity)), 0.0)])
 
     def constraints(self, q: NDArray[np.complex128]) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
@@ -76,6 +81,17 @@ class Bodies:
         values[7] -= self.offset
         return values, rows
 
+    def forces(self, q: Numbers) -> Numbers:
+        """Return the weights, and the force of the spring on the lever with its moment about the mass centre."""
+        forces, spring = self.weight.copy(), self.spring
+        if spring is not None:
+            arm = spring.lever * np.exp(1j * (q[2] + spring.pin_angle)) + _complex(_rotated(q[2], self.at_o)[0])
+            span = complex(q[0], q[1]) + arm - spring.frame * np.exp(1j * spring.frame_angle)
+            push = spring.force - spring.stiffness * (abs(span) - spring.length)
+            force = push * span / abs(span)
+            forces[:3] += force.real, force.imag, (arm.conjugate() * force).imag
+        return forces
+
     def joint_forces(self, guess: Numbers, length: float, speed: float, acceleration: float) -> JointForces:
         """Return the forces for the motion of the cylinder's length, from a guess of the coordinates."""
         q: NDArray[np.complex128] = guess.astype(np.complex128)
@@ -90,6 +106,6 @@ class Bodies:
         rate = np.linalg.solve(slopes, driver * speed)
         bend = self.constraints(q + 1j * STEP * rate)[1].imag / STEP @ rate
         matrix = np.block([[self.mass, slopes.T], [slopes, np.zeros((9, 9))]])
-        solved = np.linalg.solve(matrix, np.concatenate([self.weight, driver * acceleration - bend]))[9:]
+        solved = np.linalg.solve(matrix, np.concatenate([self.forces(q.real), driver * acceleration - bend]))[9:]
         force = solved[0::2][:3] + 1j * solved[1::2][:3]
         return JointForces(-float(solved[8]), complex(force[2]), -complex(force[0]), -complex(force[1]), q.real)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from slidercrank.model.machine.lever_spring import LeverSpring
 from slidercrank.model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
 from slidercrank.model.turning_cylinder.lever import TurningCylinder
 
@@ -51,3 +52,11 @@ def some_machine(random: np.random.Generator) -> tuple[LeverMachine, LeverSwing]
     law = str(random.choice(["slow", "constant", "trapezoid", "harmonic", "cycloidal", "polynomial"]))
     duration = None if law == "slow" else float(random.uniform(0.3, 3.0))
     return machine, LeverSwing(*some_ends(sizes, random), law, duration)  # type: ignore[arg-type]
+
+
+def some_spring(random: np.random.Generator) -> LeverSpring:
+    """Return a random spring that pushes or pulls."""
+    numbers = random.uniform((0.6, -3.0, 0.1, -3.0, -900.0, 0.3, 0.0), (1.0, 3.0, 0.5, 3.0, 900.0, 1.0, 2000.0))
+    frame, frame_angle, lever, pin_angle, force, length, stiffness = numbers.tolist()
+    places = {"frame": frame, "frame_angle": frame_angle, "lever": lever, "pin_angle": pin_angle}
+    return LeverSpring(**places, force=force, length=length, stiffness=stiffness)

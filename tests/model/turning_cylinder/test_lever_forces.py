@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.model.machine.lever_spring import LeverSpring
 from slidercrank.model.quadrature import gauss_nodes_and_weights
 from slidercrank.model.swing.law import travel_speed_acceleration
 from slidercrank.model.turning_cylinder.forces import (
@@ -20,7 +21,7 @@ from slidercrank.model.turning_cylinder.forces import (
 )
 from slidercrank.model.turning_cylinder.lever import TurningCylinder
 from tests.model.turning_cylinder.constrained_bodies import Bodies
-from tests.model.turning_cylinder.machines import some_machine
+from tests.model.turning_cylinder.machines import some_machine, some_spring
 
 LIFT = math.radians(-20.0), math.radians(50.0)
 
@@ -31,10 +32,13 @@ def carrying_80_kg(crank: float, frame: float) -> LeverMachine:
     return LeverMachine(sizes=sizes, lever=LeverBody().carrying(80.0, 0.7))
 
 
-def test_forces_of_300_machines_are_those_of_free_bodies_with_constraints() -> None:
+@pytest.mark.parametrize("sprung", [False, True])
+def test_forces_of_random_machines_are_those_of_free_bodies_with_constraints(sprung: bool) -> None:
     random = np.random.default_rng(42)
-    for _ in range(300):
+    for _ in range(60 if sprung else 300):
         machine, swing = some_machine(random)
+        if sprung:
+            machine = replace(machine, spring=some_spring(random))
         share = random.uniform(0.05, 0.95, 1)
         curves = lever_curves(machine, swing, share)
         rate = 0.0 if swing.duration is None else 1.0 / swing.duration
@@ -53,12 +57,14 @@ def test_forces_of_300_machines_are_those_of_free_bodies_with_constraints() -> N
         assert curves.cylinder_pivot[0] == pytest.approx(found.cylinder_pivot, abs=1e-8 * size)
 
 
-def test_the_work_of_the_slow_cylinder_lifts_the_weights() -> None:
+def test_the_work_of_the_slow_cylinder_lifts_the_weights_and_loads_the_spring() -> None:
     """Integral of P dL against the rise of all mass centres, with 40 Gauss points."""
     random = np.random.default_rng(7)
     share, weight = gauss_nodes_and_weights(40)
-    for _ in range(60):
+    for index in range(60):
         machine, swing = some_machine(random)
+        if index % 2:
+            machine = replace(machine, spring=some_spring(random))
         slow = replace(swing, law="slow", duration=None)
         curves = lever_curves(machine, slow, share)
         first, last = (float(machine.sizes.length(angle)) for angle in (slow.start, slow.end))
@@ -141,3 +147,14 @@ def test_bodies_with_negative_or_undefined_masses_are_refused() -> None:
         UniformBar(length=math.nan)
     with pytest.raises(InputError, match="gravity must be finite; got inf"):
         replace(carrying_80_kg(0.4, 0.6), gravity=(0.0, math.inf))
+
+
+def test_a_spring_that_carries_the_lever_leaves_its_cylinder_idle() -> None:
+    """80 kg on a level lever, carried by a vertical spring: F x = m g 0.7 m."""
+    spring = LeverSpring(frame=1.0, frame_angle=-math.pi / 3.0, lever=0.5, force=80.0 * 9.81 * 1.4, length=3.0**0.5 / 2)
+    machine = replace(carrying_80_kg(0.35, 0.9), spring=spring)
+    found = lever_curves(machine, LeverSwing(0.0, 0.5), np.array([0.0, 1.0]))
+    assert found.push[0] == pytest.approx(0.0, abs=1e-9)
+    assert found.pivot[0] == pytest.approx(complex(0.0, 80.0 * 9.81 * (1.0 - 1.4)), abs=1e-9)
+    with pytest.raises(InputError, match=r"at different distances from the lever's pivot.*; got 500 mm for both"):
+        replace(spring, frame=0.5)
