@@ -118,7 +118,8 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
         at_inner, at_outer = (1e3 * float(x) for x in design.linkage.dead_centres)
         return DesignCurves(turns, seconds, (inner, outer), (at_inner, at_outer), columns)
     if design.mechanism.lever is not None:
-        return _lever_design_curves(design, design.part.motion, require_even_point_count(count, MOST))
+        count = require_even_point_count(count, MOST)
+        return lever_design_curves(design.mechanism, design.linkage, design.part.motion, count)
     linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
     swing = swing_between_crank_angles(design.mechanism, linkage, design.part.motion)
     ways = curves_at_even_times(design.mechanism, linkage, swing, require_even_point_count(count, MOST))
@@ -152,14 +153,14 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
     return rows
 
 
-def _lever_design_curves(design: StoredDesign, motion: Swing, count: int) -> DesignCurves:
+def lever_design_curves(mechanism: Mechanism, linkage: Linkage, motion: Swing, count: int) -> DesignCurves:
     """Return the curves of a lever at even times, out and back: the same places and forces, but opposite speeds."""
-    linkage = lever_linkage(design.mechanism, design.linkage, motion)
-    machine, _ = lever_machine(design.mechanism, linkage, motion)
+    linkage = lever_linkage(mechanism, linkage, motion)
+    machine, _ = lever_machine(mechanism, linkage, motion)
     if motion.of_full_turn:
-        speed = design.mechanism.speed
+        speed = mechanism.speed
         angles: Array = np.arange(count, dtype=np.float64) * math.copysign(2.0 * np.pi / count, speed)
-        columns = crank_turn_columns(design.mechanism, linkage, angles)
+        columns = crank_turn_columns(mechanism, linkage, angles)
         least, greatest = machine.sizes.length_range
         return DesignCurves(
             0,
@@ -168,7 +169,7 @@ def _lever_design_curves(design: StoredDesign, motion: Swing, count: int) -> Des
             (1e3 * least, 1e3 * greatest),
             [CurveColumn(key, title, unit, values.tolist()) for key, title, unit, values in columns],
         )
-    swing = lever_swing(design.mechanism, linkage, motion)
+    swing = lever_swing(mechanism, linkage, motion)
     share = np.arange(count, dtype=np.float64) * (2.0 / count)
     columns = lever_columns(lever_curves(machine, swing, np.minimum(share, 2.0 - share)))
     way = np.where(share <= 1.0, 1.0, -1.0)

@@ -24,7 +24,12 @@ _NECK = 0.93  # length of the barrel as a fraction of the shortest length
 
 
 def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
-    """Return bearings, path of the pin, both ends dashed, and the lever with its cylinder at an angle, rad."""
+    """Return the fixed shapes, and the lever with its cylinder at an angle, rad."""
+    return [*fixed_lever_shapes(machine, swing), *moving_lever_shapes(machine, swing, angle)]
+
+
+def fixed_lever_shapes(machine: LeverMachine, swing: LeverSwing) -> list[Shape]:
+    """Return bearings, path of the pin, and both ends dashed."""
     size = _size(machine)
     shapes: list[Shape] = []
     for pivot in (0j, _pivot(machine)):
@@ -33,14 +38,47 @@ def lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list
     shapes.append(Arc(on.PATHS, (0.0, 0.0), _MM * machine.sizes.crank, first, last))
     for layer, end in ((on.START, swing.start), (on.END, swing.end)):
         shapes += _links((layer,) * 3, machine, swing, end)
-    shapes += _links((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
-    if machine.lever.mass:
-        centre = centre_of_lever(machine) * np.exp(1j * angle)
-        ends = (centre - 0.04 * size * direction / _MM for direction in (1.0, -1.0, 1j, -1j))
-        left, right, low, high = (_point(end) for end in ends)
-        shapes += [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point(centre), 0.025 * size)]
+    return shapes
+
+
+def moving_lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
+    """Return the lever with its cylinder at an angle, rad."""
+    shapes = _links((on.ACTUATOR, on.ROD, on.CRANK), machine, swing, angle)
     pins = (0j, _pivot(machine), machine.sizes.crank * np.exp(1j * (angle + machine.sizes.pin_angle)))
-    return [*shapes, *(Circle(on.PINS, _point(pin), _PIN * size) for pin in pins)]
+    circles = (Circle(on.PINS, _point(pin), _PIN * _size(machine)) for pin in pins)
+    return [*shapes, *_body(machine, complex(np.exp(1j * angle))), *circles]
+
+
+def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shape]]:
+    """Return piston rod, barrel or slotted arm, lever and pins, each in its own coordinates, by the name of a link.
+
+    The piston rod lies behind its pin, barrel and arm before the cylinder's pivot, as the rod and slider of a linkage.
+    """
+    size, barrel = _size(machine), barrel_length(machine, swing)
+    foot, pin = 1j * machine.sizes.offset, machine.sizes.crank * complex(np.exp(1j * machine.sizes.pin_angle))
+    lengths = [float(machine.sizes.length(end)) for end in (swing.start, swing.end)]
+    longest = machine.sizes.length_range[1] if swing.of_full_turn else max(lengths)
+    end = longest / _NECK if swing.of_full_turn else barrel
+    circle = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
+    rod: Shape = circle[0] if swing.of_full_turn else _strip(on.ROD, complex(barrel - longest), 0j, _ROD * size)
+    lug = [Line(on.ACTUATOR, (0.0, 0.0), _point(foot))] if foot else []
+    lever = bar(on.CRANK, (0.0, 0.0), _point(pin), _LEVER * size)
+    return {
+        "rod": [rod],
+        "slider": [_strip(on.ACTUATOR, foot, foot + end, _BARREL * size), *lug],
+        "crank": [lever, *_body(machine, 1.0 + 0j)],
+        **dict.fromkeys(("pivot", "crank-pin", "slider-pin"), circle),
+    }
+
+
+def _body(machine: LeverMachine, direction: complex) -> list[Shape]:
+    """Return the mark of the mass centre of a lever in a direction, a unit vector; none without mass."""
+    if not machine.lever.mass:
+        return []
+    size, centre = _size(machine), centre_of_lever(machine) * direction
+    ends = (centre - 0.04 * size * way / _MM for way in (1.0, -1.0, 1j, -1j))
+    left, right, low, high = (_point(end) for end in ends)
+    return [Line(on.BODY, left, right), Line(on.BODY, low, high), Circle(on.BODY, _point(centre), 0.025 * size)]
 
 
 def lever_extent(machine: LeverMachine, swing: LeverSwing) -> Extent:

@@ -15,8 +15,11 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
+from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.swing_curves import curves_at_even_times
+from ..designs.design_curves import lever_design_curves
+from ..drawings.lever_parts import fixed_lever_shapes, lever_extent, moving_lever_shapes
 from ..drawings.linkage_shapes import fixed_shapes, linkage_sizes, moving_shapes, pin_positions
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
@@ -48,9 +51,10 @@ def animated_gif(
     system: unit system of the numbers shown. Raises `AssemblyError` for a linkage that does not rotate fully, or the
     errors of `require_swing`.
     """
-    scene = (
-        _turn_scene(mechanism, linkage, system) if swing is None else _swing_scene(mechanism, linkage, swing, system)
-    )
+    if swing is None:
+        scene = _turn_scene(mechanism, linkage, system)
+    else:
+        scene = (_swing_scene if mechanism.lever is None else _lever_scene)(mechanism, linkage, swing, system)
     frames = _draw_frames(scene, f"{name}, {design}" if design else name)
     out = io.BytesIO()
     options: dict[str, Any] = {"append_images": frames[1:], "duration": MILLISECONDS, "loop": 0, "optimize": False}
@@ -100,6 +104,22 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: S
         reading = f"{way}, crank angle {round(math.degrees(angle))}°, slider at {_length_text(slider[0], system)}"
         frames.append((moving_swing_shapes(drawn, angle), reading))
     return _Scene(drawn.extent, drawn.look.size, fixed_swing_shapes(drawn), frames, "ends of the swing dashed")
+
+
+def _lever_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System) -> _Scene:
+    curves = lever_design_curves(mechanism, linkage, swing, FRAMES)
+    placed, (machine, _) = lever_swing(mechanism, linkage, swing), lever_machine(mechanism, linkage, swing)
+    by_key = {column.key: column.values for column in curves.columns}
+    frames = [
+        (
+            moving_lever_shapes(machine, placed, math.radians(angle)),
+            f"crank angle {round(angle)}°, cylinder {_length_text(length, system)}",
+        )
+        for angle, length in zip(by_key["lever_angle_deg"], by_key["length_mm"], strict=True)
+    ]
+    extent, ends = lever_extent(machine, placed), "fast stroke" if placed.of_full_turn else "swing"
+    size = max(extent[2] - extent[0], extent[3] - extent[1])
+    return _Scene(extent, size, fixed_lever_shapes(machine, placed), frames, f"ends of the {ends} dashed")
 
 
 def _length_text(mm: float, system: System) -> str:

@@ -17,10 +17,12 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
+from ...model.turning_cylinder.machine import lever_machine, lever_swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves
-from ..designs.design_curves import CurveColumn, cycle_table
+from ..designs.design_curves import CurveColumn, cycle_table, lever_design_curves
 from ..drawings import layers as on
+from ..drawings.lever_parts import fixed_lever_shapes, lever_extent, lever_parts
 from ..drawings.linkage_shapes import LinkageSizes, bar, fixed_shapes, lengths_in_words, linkage_sizes, slider_block
 from ..drawings.shapes import Circle, Shape
 from ..drawings.swing_parts import body_shapes, fixed_swing_shapes, piston_rod_and_barrel, swing_sizes
@@ -86,6 +88,15 @@ _SWING = PlayerText(
     span_name="the swing, back and forth",
     note="Both ends of the swing are dashed in the drawing; a dotted line in the curves marks the reversal. "
     + EXACT_PARTS.format("slider, pins, the cylinder and the body on the crank are schematic"),
+)
+_LEVER = replace(
+    _SWING,
+    note="Both ends of the swing are dashed in the drawing; a dotted line in the curves marks the reversal. "
+    "Pivots and pins are exact; the widths and the barrel are schematic.",
+)
+_LEVER_TURN = replace(
+    _TURNS,
+    note="Both ends of the fast stroke are dashed in the drawing. Pivots and pins are exact; widths are schematic.",
 )
 _LEFT_OUT = ("crank_angle", "load")
 
@@ -210,4 +221,37 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
         extent=drawn.extent,
         size=drawn.look.size,
         words=_SWING,
+    )
+
+
+def lever_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Playback:
+    """Return the motion of a lever and its cylinder. system: unit system of the summary. Raises as `lever_linkage`."""
+    curves = lever_design_curves(mechanism, linkage, swing, ANGLES)
+    placed, (machine, _) = lever_swing(mechanism, linkage, swing), lever_machine(mechanism, linkage, swing)
+    by_key = {column.key: column.values for column in curves.columns}
+    sizes, extent = machine.sizes, lever_extent(machine, placed)
+    base = 1e3 * sizes.frame * math.cos(sizes.frame_angle), 1e3 * sizes.frame * math.sin(sizes.frame_angle)
+    start, end = (math.degrees(angle) for angle in (placed.start, placed.end))
+    turns = placed.of_full_turn
+    lengths, *_ = lengths_in_words(linkage, system, digits=6).split("; ")
+    motion = "rotates fully" if turns else f"swings from {start:.6g} to {end:.6g} deg"
+    return Playback(
+        summary=f"{lengths}; the crank {motion}",
+        record={
+            "crank": 1e3 * sizes.crank,
+            "pin": math.degrees(sizes.pin_angle),
+            "offset": base[1],
+            "slider": [base[0]] * ANGLES,
+            "rod": [round(angle, 7) for angle in by_key["cylinder_angle_deg"]],
+            "angles": [round(angle, 9) for angle in by_key["lever_angle_deg"]],
+            "direction": 1,
+            "perSecond": 1.0 / curves.seconds if curves.seconds else 0.0,
+        },
+        columns=[column for column in curves.columns if not column.key.endswith(("_x_N", "_y_N"))],
+        marks=() if turns else (0.5 * ANGLES,),
+        still=fixed_lever_shapes(machine, placed),
+        moving=lever_parts(machine, placed),
+        extent=extent,
+        size=max(extent[2] - extent[0], extent[3] - extent[1]),
+        words=_LEVER_TURN if turns else _LEVER,
     )

@@ -18,7 +18,7 @@ from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import opening_tag, svg_elements
 from ..render.numerals import format_number as number
-from .playback import ANGLES, Playback, swing_playback, turn_playback
+from .playback import ANGLES, Playback, lever_playback, swing_playback, turn_playback
 
 _PLAYER = Path(__file__).parent / "player"
 _STRIP = (float(ANGLES), 64.0)  # width, one unit per degree of one revolution, and height
@@ -45,7 +45,7 @@ def player_page(
     if swing is None:
         play = turn_playback(mechanism, linkage, system)
     else:
-        play = swing_playback(mechanism, linkage, swing, system)
+        play = (swing_playback if mechanism.lever is None else lever_playback)(mechanism, linkage, swing, system)
     play = replace(play, columns=[_column_in_units(column, system) for column in play.columns])
     title = f"{name}, {design}" if design else name
     readout = (

@@ -4,7 +4,7 @@ const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id)); // 
 /**
  * Curves have a value each degree of one turn or two; of a crank that swings each 360th of the way forth and back, angles
  * are its own there. Lengths are mm, angles deg.
- * @type {{ crank: number, offset: number, direction: number, turns: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], curves: Record<string, (number | null)[]> }}
+ * @type {{ crank: number, offset: number, direction: number, turns: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], pin?: number, curves: Record<string, (number | null)[]> }}
  */
 const data = JSON.parse(at("data").textContent ?? "");
 const slide = /** @type {HTMLInputElement} */ (at("angle"));
@@ -45,14 +45,15 @@ function put(id, x, y, turn = 0) {
 
 function draw() {
   const crank = data.angles ? (between(data.angles, angle) ?? NaN) : angle;
-  const radians = (crank * Math.PI) / 180;
+  const radians = ((crank + (data.pin ?? 0)) * Math.PI) / 180;
   const x = data.crank * Math.cos(radians);
   const y = data.crank * Math.sin(radians);
   const slider = between(data.slider, angle) ?? NaN;
   put("crank", 0, 0, crank);
   put("crank-pin", x, y);
-  put("rod", x, y, between(data.rod, angle) ?? NaN);
-  put("slider", slider, data.offset);
+  const rod = between(data.rod, angle) ?? NaN;
+  put("rod", x, y, rod);
+  put("slider", slider, data.offset, data.pin === undefined ? 0 : rod); // the barrel of a lever's cylinder turns
   put("slider-pin", slider, data.offset);
   if (document.getElementById("push")) put("push", slider, data.offset);
   for (const cursor of cursors) {

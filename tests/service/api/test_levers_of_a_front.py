@@ -22,10 +22,12 @@ ANSWERED = (
     "/lever.svg",
     "/linkage.dxf",
     "/linkage.svg",
+    "/motion.gif",
+    "/motion.html",
     "/requirements",
 )
 REFUSED = {
-    **dict.fromkeys(("/motion.gif", "/motion.html", "/swing"), "needs a crank with rod and slider"),
+    "/swing": "needs a crank with rod and slider",
     **dict.fromkeys(("/counterweight", "/law", "/sections"), "needs a rotating crank; the lever of this job swings"),
 }
 
