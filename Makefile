@@ -15,8 +15,9 @@ export PYTHONDONTWRITEBYTECODE :=
 # Tests already use every processor; further threads of OpenBLAS spin while they wait, a sixth of the processor time.
 export OPENBLAS_NUM_THREADS := 1
 
-# Two per processor, because many tests wait for processes and pages; at most 8, because each loads its own numba.
-WORKERS := $(shell expr $$(getconf _NPROCESSORS_ONLN) \* 2)
+# Three for two processors, because many tests wait for processes and pages; each takes a quarter of a minute to collect
+# all tests, and imports what they need. At most 8, because each loads its own numba.
+WORKERS := $(shell expr \( $$(getconf _NPROCESSORS_ONLN) \* 3 + 1 \) / 2)
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --maxprocesses 8 --dist worksteal
 MARKED := not slow
 test: $(VENV)/.installed-test
