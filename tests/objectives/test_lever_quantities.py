@@ -26,6 +26,7 @@ from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.evaluate_quantities import evaluate
 from slidercrank.objectives.tables.swing_columns import swing_quantities
+from tests.case_count import case_count
 from tests.model.turning_cylinder.machines import some_machine, some_spring
 from tests.objectives.richardson import derivatives
 
@@ -98,7 +99,7 @@ def test_quantities_are_those_of_dense_curves_in_both_directions() -> None:
     random = np.random.default_rng(31)
     jumps = [third + side for third in (1.0 / 3.0, 2.0 / 3.0) for side in (-1e-9, 0.0, 1e-9)]  # of a trapezoid
     share = np.sort([*np.linspace(0.0, 1.0, 8001), *jumps])
-    for _ in range(30):
+    for _ in range(case_count(12, 30)):
         mechanism, swing, design = some_case(random)
         machine, errors = lever_machine(mechanism, Linkage(*design[0].tolist()), swing)
         placed = lever_swing(mechanism, Linkage(*design[0].tolist()), swing)
@@ -164,7 +165,7 @@ def _varied(case: Case) -> Case:
 def test_gradients_are_those_of_extrapolated_differences() -> None:
     """Also by numbers of the cylinder, the mass of the lever, and the start of the swing."""
     random, misses, compared = np.random.default_rng(32), [], 0
-    for index in range(8):
+    for index in range(case_count(4, 8)):
         mechanism, swing, design = some_case(random) if index % 2 else _varied(some_case(random))
         step = 1e-3 * np.maximum(np.abs(design), 0.05)
         for of in swing_quantities(swing):
@@ -184,7 +185,7 @@ def test_gradients_are_those_of_extrapolated_differences() -> None:
                 continue
             compared += 1
             misses.append((float(np.abs(found.gradients - expected).max() / size), of.name, swing.law))
-    assert compared > 70
+    assert compared > case_count(30, 70)
     assert max(misses)[0] < 1e-7, max(misses)
 
 

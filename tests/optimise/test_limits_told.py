@@ -18,6 +18,7 @@ from slidercrank.optimise import solve as solving
 from slidercrank.optimise.certificate.infeasibility_certificate import prove_infeasible
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.solve import solve
+from tests.case_count import case_count
 
 pytestmark = pytest.mark.usefixtures("little")
 
@@ -172,11 +173,11 @@ def tried(job: Job) -> int:
 
 @pytest.mark.slow
 def test_every_number_that_is_told_can_be_had_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of 50 random jobs, refused by the parser or searched in vain; a proof would only add to the message."""
+    """Of random jobs, refused by the parser or searched in vain; a proof would only add to the message."""
     monkeypatch.setattr(solving, "prove_infeasible", lambda *_, **__: False)
     random = np.random.default_rng(3)  # messages of every kind come with this seed
-    counts = [tried(random_job(random)) for _ in range(50)]
-    assert sum(count > 0 for count in counts) >= 12
+    counts = [tried(random_job(random)) for _ in range(case_count(25, 50))]
+    assert sum(count > 0 for count in counts) >= case_count(6, 12)
 
 
 @pytest.mark.parametrize(("seed", "number"), [(4, 24), (6, 7)])

@@ -7,6 +7,7 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.problem.problem import Problem
+from tests.case_count import case_count
 from tests.optimise.independent import (
     CLOSED,
     Array,
@@ -23,7 +24,7 @@ from tests.optimise.independent import (
 from tests.optimise.problems import JOBS, shipped, shipped_front
 
 pytestmark = pytest.mark.parametrize("job", JOBS)
-RANDOM = 20_000
+RANDOM = case_count(5_000, 20_000)
 
 
 def spans(job: str) -> Array:

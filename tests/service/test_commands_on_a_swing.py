@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.service.cli import app
 from slidercrank.service.jobs.job_toml import job_toml
+from tests.optimise.problems import search_little
 from tests.service.conftest import Command
 
 BAR = {"width": "120 mm", "depth": "80 mm", "density": "7800 kg/m^3"}
@@ -106,8 +107,11 @@ def test_the_report_has_the_numbers_of_the_front(command: Command, place: Path, 
 
 
 @pytest.mark.slow
-def test_round_like_and_wish_answer_with_designs_that_swing(command: Command, place: Path) -> None:
+def test_round_like_and_wish_answer_with_designs_that_swing(
+    command: Command, place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each tells of its design what `swing` tells of these lengths; the machine is that of the design."""
+    search_little(monkeypatch)
     rows = rows_of(command, place)
     least = min(row["actuator_travel_mm"] for row in rows)
     near = json_output(command, place, "round", 1, "--to", "10 mm")

@@ -21,6 +21,7 @@ from slidercrank.objectives.tables.swing_columns import swing_quantities
 from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective, Sense
+from tests.case_count import ALL_CASES
 from tests.optimise import problems
 from tests.optimise.certificate.test_box_bounds import assert_close_to_designs, check
 from tests.optimise.problems import degrees, problem
@@ -68,12 +69,18 @@ DRIVEN = [
     (name, driver) for name in SWINGS for driver in ("crank", "slider") if (name, driver) != ("dead centre", "slider")
 ]
 """Every swing and its driver; a slider drives no crank over a dead point."""
+CASES = [
+    (name, driver, machine, width)
+    for row, (name, driver) in enumerate(DRIVEN)
+    for column, machine in enumerate(("loaded", "stepped"))
+    for rank, width in enumerate((0.1, 0.004))
+    if ALL_CASES or (row + column + rank) % 2 == 0
+]
+"""Every swing with both machines, one in wide boxes and the other in narrow ones; or with all of them."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "driver"), DRIVEN)
-@pytest.mark.parametrize("machine", ["loaded", "stepped"])
-@pytest.mark.parametrize("width", [0.1, 0.004])
+@pytest.mark.parametrize(("name", "driver", "machine", "width"), CASES)
 def test_no_sample_of_a_swing_is_better_than_its_box(name: str, driver: Any, machine: str, width: float) -> None:
     swing = replace(SWINGS[name], driver=driver, actuator_tolerance=1e-4 if driver == "slider" else 0.0)
     given = swinging({"loaded": LOADED, "stepped": STEPPED}[machine], swing)
