@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from playwright.sync_api import expect
 
 from slidercrank.objectives.registry import FACTS
@@ -17,6 +19,13 @@ def test_the_help_lists_every_quantity_and_finds_those_of_some_words(open_page: 
     expect(cards).to_have_count(every)
     assert page.locator(".picture").count() == every
     assert page.locator(".picture:not(:has(.mark))").count() == 0  # each points something out
+    glossary = (Path(__file__).parents[3] / "docs/glossary.md").read_text()
+    terms, meanings = (page.locator(f".terms {part}").all_text_contents() for part in ("dt", "dd"))
+    assert len(terms) == len(meanings) > 10
+    for term, meaning in zip(terms, meanings, strict=True):
+        assert f"| {term} | {meaning} |" in glossary
+    page.get_by_label("Search").fill("knee")
+    expect(page.locator(".terms dt")).to_have_text(["knee"])
     page.get_by_label("Search").fill("torque motor")
     expect(page.get_by_role("link", name="RMS torque")).to_be_visible()
     expect(page.get_by_role("link", name="footprint")).to_have_count(0)

@@ -549,6 +549,18 @@ def test_a_question_mark_opens_the_sentence_and_leads_to_the_help(form: Open, st
 
 
 @pytest.mark.slow
+def test_points_in_a_form_do_not_widen_the_page(form: Open, store: Store) -> None:
+    page = form(store, "#/new?preset=press", viewport={"width": 390, "height": 844})
+    expect(page.get_by_role("button", name="Read a file …")).to_be_visible()
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.locator("#f-variables-crank-0").fill("abc")
+    expect(status(page)).to_have_text("One thing to correct.")
+    expect(page.get_by_role("complementary")).to_contain_text("Give valid ranges of crank, rod and offset")
+    expect(page.get_by_role("complementary")).not_to_contain_text("rotates fully")
+    page.get_by_role("button", name="One thing to correct.").click()
+    expect(page.locator("[aria-invalid=true]").first).to_be_focused()
+
+
 def test_the_form_is_accessible_in_both_schemes_and_fits_a_narrow_screen(form: Open, store: Store) -> None:
     page = form(store, "#/new?preset=support")
     ready(page)

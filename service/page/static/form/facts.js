@@ -45,7 +45,11 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
   if (!allowed) {
     fill(
       place,
-      h("p", { class: "quiet" }, "Give ranges of crank, rod and offset to see what they allow."),
+      h(
+        "p",
+        { class: "quiet" },
+        "Give valid ranges of crank, rod and offset to see what they allow.",
+      ),
     );
     return;
   }
@@ -59,7 +63,11 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       row("strokes", between(allowed.stroke_mm, "mm")),
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
-      row("meets everything", share(allowed.feasible_share, example?.feasible), tried(allowed)),
+      row(
+        allowed.unchecked.length ? "meets the others" : "meets everything",
+        share(allowed.feasible_share, example?.feasible),
+        tried(allowed),
+      ),
       allowed.slow_strokes.length ? row("slow stroke", allowed.slow_strokes.join(" or ")) : null,
     ),
     notesOf(allowed.unchecked, understood, { said: allowed.said.map(warning), open }),
@@ -140,5 +148,5 @@ function between(ends, unit) {
   const [low, high] = ends;
   if (isConstant(low, high)) return withUnit(low, unit);
   const sign = unitOf(unit);
-  return `${limitText(low, unit, "up")} to ${limitText(high, unit, "down")}${sign && sign !== "°" ? "\u00a0" : ""}${sign}`;
+  return `${limitText(low, unit, "up", 4)} to ${limitText(high, unit, "down", 4)}${sign && sign !== "°" ? "\u00a0" : ""}${sign}`;
 }

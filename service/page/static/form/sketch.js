@@ -79,14 +79,16 @@ export function sketch(signal) {
 
   return {
     node,
-    /** @param {Api.Example | null} example */
-    show(example) {
+    /** @param {Api.Example | null} example @param {boolean} hasRanges whether the ranges are valid */
+    show(example, hasRanges) {
       if (ends) [ends, angle] = [null, 40];
       node.classList.remove("swinging");
       way = example?.clockwise ? -1 : 1;
       const sentence = example
         ? `A design within the ranges that ${example.feasible ? "meets all checked requirements" : "rotates fully but does not meet every requirement"}: crank ${withUnit(example.crank_mm, "mm", 4)}, rod ${withUnit(example.rod_mm, "mm", 4)}, offset ${withUnit(example.offset_mm, "mm", 4)}, stroke ${withUnit(example.stroke_mm, "mm", 4)}`
-        : "No linkage within these ranges rotates fully.";
+        : hasRanges
+          ? "No linkage within these ranges rotates fully."
+          : "";
       draw(example, sentence, { direction: way });
     },
     /** @param {Api.SwingPreview} preview */

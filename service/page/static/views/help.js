@@ -19,22 +19,58 @@ const STEPS = [
   ],
   [
     "Watch",
-    "The search needs no help. Its front of best compromises grows as you watch; you can pause it and resume later.",
+    "The search needs no help. Its front of best compromises grows as you watch; you can stop it and resume later.",
     "#/",
     "Runs",
   ],
   [
     "Explore",
-    "Narrow the front down to acceptable designs and inspect them: how they move, what they need, and what an improvement costs.",
+    "Narrow the front down to acceptable designs and inspect them: how they move, what they need, and what an improvement costs. Say what should improve: a new search finds the nearest optimal design.",
     null,
     null,
   ],
   [
     "Decide",
-    "Choose a design and export it: a drawing for CAD, its numbers, the motion, a report for the review.",
+    "Round the lengths of a design, compare it with others, and choose it with a reason. Export a drawing for CAD, its numbers, the motion, and a report for the review.",
     null,
     null,
   ],
+];
+/** Terms of docs/glossary.md that the page uses. */
+const TERMS = [
+  [
+    "dead centre",
+    "slider position at which the motion reverses, because crank and rod are in line: outer (stretched) or inner (folded)",
+  ],
+  ["quick return", "a time ratio above 1: the machine works slowly and returns quickly"],
+  ["requirement, constraint", "a quantity that must stay within bounds, or equal a value"],
+  [
+    "front, Pareto front",
+    "the feasible designs that no other design dominates; better in one objective then means worse in another",
+  ],
+  [
+    "knee",
+    "the design on the front nearest to the ideal point, with objectives scaled to their ranges",
+  ],
+  [
+    "ideal point",
+    "the best value of each objective, all together; no single design reaches it unless the objectives agree",
+  ],
+  ["trade-off rate", "the cost in other objectives of an improvement in one, to first order"],
+  ["active constraint", "a bound that a design lies on"],
+  [
+    "aspiration level",
+    "a value that you would like an objective to reach; it is not a bound. The command is `wish`",
+  ],
+  [
+    "bookmark, decision",
+    "a design that people save, with a note; the design that they choose, with the reason",
+  ],
+  [
+    "hypervolume",
+    "volume in the space of the objectives that a front dominates; it grows as the front improves",
+  ],
+  ["certificate", "a proven bound on what any other design could gain over the front"],
 ];
 const DOCUMENTS = [
   [
@@ -63,6 +99,7 @@ export async function show(place, { parts, query, signal }) {
 /** @param {HTMLElement} place @param {Api.Quantity[]} quantities @param {string} sought */
 function overview(place, quantities, sought) {
   const list = h("ul", { class: "quantities" });
+  const terms = h("dl", { class: "terms" });
   const none = h("p", { class: "quiet", role: "status" });
   const search = h("input", {
     type: "search",
@@ -77,22 +114,24 @@ function overview(place, quantities, sought) {
   });
   const draw = () => {
     const words = search.value.toLowerCase().split(/\s+/).filter(Boolean);
-    const matches = quantities.filter((quantity) => {
-      const all = [
-        quantity.title,
-        quantity.name,
-        quantity.column,
-        quantity.sentence,
-        quantity.advice,
-      ]
-        .join(" ")
-        .toLowerCase();
+    /** @param {string[]} parts */
+    const isMatch = (parts) => {
+      const all = parts.join(" ").toLowerCase();
       return words.every((word) => all.includes(word));
-    });
+    };
+    const shownTerms = TERMS.filter(isMatch);
+    fill(
+      terms,
+      shownTerms.map(([term, meaning]) => [h("dt", {}, term), h("dd", {}, meaning)]),
+    );
+    const matches = quantities.filter(({ title: heading, name, column, sentence, advice }) =>
+      isMatch([heading, name, column, sentence, advice]),
+    );
     fill(list, matches.map(card));
-    none.textContent = matches.length
-      ? `${matches.length} of ${quantities.length} quantities`
-      : "No quantity matches these words.";
+    none.textContent =
+      matches.length || shownTerms.length
+        ? `${matches.length} of ${quantities.length} quantities, ${shownTerms.length} of ${TERMS.length} terms`
+        : "Nothing matches these words.";
   };
   fill(
     place,
@@ -128,8 +167,9 @@ function overview(place, quantities, sought) {
       h(
         "section",
         { "aria-labelledby": "all" },
-        h("h2", { id: "all" }, "Quantities"),
+        h("h2", { id: "all" }, "Terms and quantities"),
         h("p", { class: "row" }, h("label", { for: "help-search" }, "Search"), search, none),
+        terms,
         list,
       ),
       h(
@@ -141,6 +181,12 @@ function overview(place, quantities, sought) {
           "ul",
           {},
           DOCUMENTS.map(([file, what]) => h("li", {}, h("code", {}, file), ` – ${what}`)),
+          h(
+            "li",
+            {},
+            h("a", { href: "api/v1/docs" }, "The API, to read and to try"),
+            " – every request, on this service",
+          ),
         ),
       ),
     ),

@@ -223,7 +223,7 @@ export async function show(place, { query, signal }) {
         stated.crank_mm,
         stated.rod_mm,
         stated.offset_mm,
-        example.stroke_mm,
+        Number(example.stroke_mm.toPrecision(10)),
         stated.rpm,
       ].join(),
     });

@@ -170,10 +170,18 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     keepDraft(draft);
     file.refresh();
     refusal.hidden = true;
-    checked = null;
     start.ariaDisabled = null;
+    showChecking();
     check(form);
   }
+  /** Show that what is said is of an earlier job. */
+  function showChecking() {
+    checked = null;
+    facts.ariaBusy = "true";
+    status.classList.remove("good");
+    say("Checking …");
+  }
+
   /** @param {string | null | undefined} focus */
   function redraw(focus = document.activeElement?.id) {
     /** @param {Element} one its title, without the line of what it has */
@@ -199,11 +207,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     keep(addressOf(draft.source));
     redraw();
     file.refresh();
-    checked = null;
-    if (!text) {
-      status.classList.remove("good");
-      say("Checking …");
-    }
+    showChecking();
     check(form, { now: true });
   }
   /** @param {Api.Wrong[]} wrong @param {{ missing?: boolean }} options */
@@ -223,12 +227,21 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
   /** @param {Api.Preview} answer */
   function showCheck(answer) {
     form.said = answer;
+    facts.ariaBusy = "false";
     for (const field of form.fields.slice()) field.tell?.();
     document.activeElement?.dispatchEvent(new Event("names")); // the mistakes may have changed
-    mark(answer.wrong);
+    const worst = mark(answer.wrong);
     const count = answer.wrong.filter(({ infeasible }) => !infeasible).length;
     status.classList.toggle("good", answer.wrong.length === 0);
-    if (count) say(count === 1 ? "One thing to correct." : `${count} things to correct.`);
+    if (count)
+      fill(
+        status,
+        h(
+          "button",
+          { type: "button", onclick: () => worst?.controls[0].focus() },
+          count === 1 ? "One thing to correct." : `${count} things to correct.`,
+        ),
+      );
     else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
     start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled, so that Enter still reports what to change
     showFacts(facts, answer, ({ path, value }) => {
@@ -237,7 +250,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       status.focus();
     });
     if (answer.swing) drawn.swing(answer.swing);
-    else drawn.show(answer.example);
+    else drawn.show(answer.example, answer.allowed !== null);
   }
 
   /** @param {SubmitEvent} event */

@@ -223,8 +223,8 @@ export async function show(place, { query, signal }) {
       { class: "row" },
       h("a", { class: "button primary", href: "#/new" }, "New run"),
       h("a", { class: "button", href: link(["look"]) }, "Look at one mechanism"),
-      h("span", { class: "quiet" }, "from scratch, or start from an example:"),
     ),
+    h("h2", {}, "Start from an example"),
     machines.node,
   );
   await new Promise((ready) => {
