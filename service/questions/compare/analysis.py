@@ -112,9 +112,10 @@ def _reorder_objectives(result: Result, first: Result) -> Result:
     return replace(result, objectives=tuple(by_key[_objective_identity(item)] for item in first.objectives))
 
 
-def _objectives_text(result: Result, system: System = "metric") -> str:
+def _objectives_text(result: Result, system: System = "metric", *, titles: bool = False) -> str:
     return ", ".join(
-        f"{item.sense} {item.quantity}" + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
+        f"{item.sense} {item.title if titles else item.quantity}"
+        + ("" if item.target is None else f" {item.target:g} {item.unit}".rstrip())
         for item in (convert_objective(objective, system) for objective in result.objectives)
     )
 
@@ -164,7 +165,7 @@ def _front_measures(solved: Sequence[ComparedRun], comparison: Comparison, units
 
 
 def _heading(solved: Sequence[ComparedRun]) -> Block:
-    objectives = Phrase(*(_objectives_text(solved[0].result, system) for system in _SYSTEMS))
+    objectives = Phrase(*(_objectives_text(solved[0].result, system, titles=True) for system in _SYSTEMS))
     return heading("{count} runs: {objectives}", count=str(len(solved)), objectives=objectives)
 
 
@@ -259,8 +260,15 @@ def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence
     if not places:
         return [title, sentence("The jobs differ only in their names.")]
     columns = (column(head, left=True) for head in ("Place in the job", *names))
-    rows = ((place, *(value or "–" for value in values)) for place, values in places)
+    rows = ((_place_in_words(place), *(value or "–" for value in values)) for place, values in places)
     return [title, Table(tuple(columns), tuple(rows))]
+
+
+def _place_in_words(place: str) -> str:
+    """Return a path in a job for people: "load 1 force", "constraints time ratio min"."""
+    table, _, key = place.partition(".")
+    parts = (table, *key.rpartition(".")[::2]) if table == "constraints" else place.split(".")  # formulas have points
+    return " ".join(filter(None, parts)).replace("_", " ")
 
 
 def differences_between_jobs(jobs: Sequence[Mapping[str, Any]]) -> list[tuple[str, tuple[str | None, ...]]]:

@@ -359,7 +359,12 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     assert turns == {"(-10.000)"}
     assert page.locator("figure[data-key='torque_Nm'] .curve").count() == 3
     columns = page.get_by_role("region", name="All numbers").locator("thead th").all_inner_texts()
-    assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change", "Unit"]
+    assert columns == ["Quantity", "Unit", "Design 3", "Design 1", "change", "Design 5", "change"]
+    angles = page.locator(".numbers tr", has=page.get_by_role("link", name="outer dead centre", exact=True))
+    assert all(text.endswith("°") for text in angles.locator("td.quiet.number").all_inner_texts())
+    ratios = page.locator(".objective").first.locator(".of-other")
+    expect(ratios).to_contain_text(["Design 1", "Design 5"])
+    expect(ratios.first).to_contain_text(re.compile(r"[▲▼] [+−].*% (better|worse)"))
     requirements = page.get_by_role("region", name="Requirements of the job")
     assert requirements.evaluate("node => node.scrollWidth <= node.clientWidth")  # the whole width is theirs
     page.get_by_label("Remove design 1").click()

@@ -250,7 +250,7 @@ def test_the_table_is_sorted_best_first_and_its_columns_are_chosen(open_page: Op
     for number in kept[1:]:
         page.get_by_label("Next design").click()
         page.wait_for_url(re.compile(rf"designs/{number}$"))
-    expect(page.get_by_role("heading", level=1)).to_contain_text(f"{kept[-1]} of 8, 5. of the 5 in the list")
+    expect(page.get_by_role("heading", level=1)).to_contain_text(f"{kept[-1]} of 8, 5 of 5 listed")
     expect(page.get_by_label("Next design")).to_have_count(0)
     page.locator(".back a").click()
     expect_designs(page, kept)

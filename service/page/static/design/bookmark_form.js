@@ -139,24 +139,23 @@ export function withdraw(job, { name, number }, done) {
 }
 
 /**
- * Return {node, show(shown)}: buttons and status of a design. design: its original on the front. dimensions(): its dimensions, or null if
- * unchanged. lengths(): the centre of a search nearby. kept(bookmark): called for a new bookmark. shown: number of its bookmark or null,
- * its name without a bookmark, and its missed requirements.
- * @param {{ job: string, design: number, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
+ * Return {node, show(shown)}: buttons and status of a design. design: its original on the front. list: the bookmarks, requested if omitted.
+ * dimensions(): its dimensions, or null if unchanged. lengths(): the centre of a search nearby. kept(bookmark): called for a new bookmark.
+ * shown: number of its bookmark or null, its name without a bookmark, and its missed requirements.
+ * @param {{ job: string, design: number, list?: List, dimensions: () => Record<string, Api.Row[string]> | null, kept: (bookmark: Api.Kept) => unknown, lengths: () => Page.Lengths }} options
  */
-export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
+export function bookmarkForm({ job, design, list, dimensions, kept, lengths }) {
   const standing = h("div", { class: "standing", role: "status" });
-  /** @type {List} */
-  let list = { designs: [], history: [] };
   let shown = {
     number: /** @type {number | null} */ (null),
     title: "",
     faults: /** @type {string[]} */ ([]),
   };
-  const known = () => list.designs.find(({ number }) => number === shown.number);
+  const known = () => list?.designs.find(({ number }) => number === shown.number);
   const load = async () => {
-    list = await get(`jobs/${job}/kept`);
+    const now = (list = await get(`jobs/${job}/kept`));
     draw();
+    return now;
   };
   /** @param {object} body */
   const send = async (body) => {
@@ -171,8 +170,7 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
   };
   const [deciding, noting] = [true, false].map((isDecision) => {
     const open = async () => {
-      await load();
-      askRemarks({ deciding: isDecision, list, known: known(), ...shown, send });
+      askRemarks({ deciding: isDecision, list: await load(), known: known(), ...shown, send });
     };
     return h("button", {
       type: "button",
@@ -181,6 +179,7 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
   });
   function draw() {
     const one = known();
+    if (!list) return;
     const { decided } = decisionOf(list);
     const href = decided && hrefOf(job, decided);
     deciding.textContent = one?.decided ? "Change the reason" : "Decide for this design";
@@ -208,7 +207,8 @@ export function bookmarkForm({ job, design, dimensions, kept, lengths }) {
       one && notesOn(list, one.number),
     );
   }
-  attempt(load);
+  if (list) draw();
+  else attempt(load);
   return {
     node: h(
       "div",

@@ -57,7 +57,7 @@ export function designHead({ job, number, named, undo, front, others }) {
         h(
           "span",
           { class: "quiet" },
-          ` of ${front.count}${listed ? `, ${place}. of the ${count} in the list` : ""}`,
+          ` of ${front.count}${listed ? `, ${place} of ${count} listed` : ""}`,
         ),
       ),
       undo,

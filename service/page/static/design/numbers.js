@@ -89,11 +89,14 @@ function cell(value, column, { tag = "td", digits = 5, name = "" } = {}) {
 }
 
 /**
- * Return the relative difference of a value from another as text: "+1.2 %"; empty if it has no meaning.
- * @param {Api.Row[string] | undefined} value @param {Api.Row[string] | undefined} from
+ * Return the difference of a value from another as text: "+1.2 %", of an angle "+1.2°"; empty if it has no meaning.
+ * @param {Api.Row[string] | undefined} value @param {Api.Row[string] | undefined} from @param {string} [unit]
  */
-export function difference(value, from) {
-  if (typeof value !== "number" || typeof from !== "number" || from === 0) return "";
+export function difference(value, from, unit = "") {
+  if (typeof value !== "number" || typeof from !== "number") return "";
+  if (unit === "deg" && Math.abs(value - from) >= 0.0005)
+    return `${value > from ? "+" : ""}${withUnit(value - from, unit, 3)}`;
+  if (from === 0) return "";
   const percent = (100 * (value - from)) / Math.abs(from);
   if (Math.abs(percent) < 0.005) return "=";
   return `${percent > 0 ? "+" : "−"}${Math.abs(percent) >= 1000 ? Math.round(Math.abs(percent)) : Number(Math.abs(percent).toPrecision(3))} %`;
@@ -109,20 +112,27 @@ function table(caption, designs, groups, names) {
     "tr",
     {},
     h("th", { scope: "col" }, "Quantity"),
+    h("th", { scope: "col" }, "Unit"),
     heading(first),
     others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]),
-    h("th", { scope: "col" }, "Unit"),
   );
+  /** @param {Api.Column} column */
+  const unitCell = ({ unit }) => h("td", { class: "quiet" }, unitOf(unit));
   /** @param {Api.Column} column */
   const line = (column) =>
     headedRow(
       helpLink(column, names),
+      others.length > 0 && unitCell(column),
       cell(first.row[column.key], column, { name: first.name }),
       others.map(({ row, name }) => [
         cell(row[column.key], column, { name }),
-        h("td", { class: "number quiet" }, difference(row[column.key], first.row[column.key])),
+        h(
+          "td",
+          { class: "number quiet" },
+          difference(row[column.key], first.row[column.key], column.unit),
+        ),
       ]),
-      h("td", { class: "quiet" }, unitOf(column.unit)),
+      others.length === 0 && unitCell(column),
     );
   const bodies = groups.map(({ title, columns }) =>
     h(

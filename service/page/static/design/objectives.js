@@ -2,8 +2,8 @@
 
 import { fill, h } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
-import { helpLink } from "./numbers.js";
-import { rankInFront } from "./rank.js";
+import { difference, helpLink } from "./numbers.js";
+import { rankInFront, rankOf } from "./rank.js";
 
 const KEY = 4; // digits of a key figure; a tooltip has all of them
 const ALL = 12;
@@ -14,12 +14,16 @@ export function sense({ sense: way, target, unit }) {
 }
 
 /**
- * Put the objectives of the design into `place`. front: values of every design by column. row: values of the design. changed: what-if
- * change, see `rankInFront`. before: the unchanged design, or null. whose: owner of the objectives, "" for the displayed design.
+ * Put the objectives of the design into `place`. front: values of every design by column. row: values of the design. others: designs beside
+ * it. changed: what-if change, see `rankInFront`. before: the unchanged design, or null. whose: owner of the objectives, "" for the
+ * displayed design.
  * @param {HTMLElement} place
- * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, before: Api.Row | null, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
+ * @param {{ objectives: Api.Objective[], front: Api.Row[], row: Api.Row, others: { name: string, series: number | string, row: Api.Row }[], before: Api.Row | null, changed: { broken: boolean } | null, whose: string, names: Record<string, string> }} options
  */
-export function showObjectives(place, { objectives, front, row, before, changed, whose, names }) {
+export function showObjectives(
+  place,
+  { objectives, front, row, others, before, changed, whose, names },
+) {
   fill(
     place,
     whose && h("p", { class: "whose" }, whose),
@@ -50,7 +54,24 @@ export function showObjectives(place, { objectives, front, row, before, changed,
           withUnit(value, objective.unit, KEY),
         ),
         bar,
-        h("span", { class: "quiet" }, words),
+        h("span", { class: "quiet ranked" }, words),
+        others.map((other) => {
+          const by = rankOf(other.row[objective.column], objective) - rankOf(value, objective);
+          const word = by > 0 ? "worse" : by < 0 ? "better" : "same";
+          const sign = { worse: "▼ ", better: "▲ ", same: "" }[word];
+          return h(
+            "span",
+            { class: "of-other", "data-series": other.series },
+            h("span", { class: "name" }, other.name),
+            h("b", {}, withUnit(other.row[objective.column], objective.unit, KEY)),
+            h(
+              "span",
+              { class: { worse: "bad", better: "good", same: "quiet" }[word], title: word },
+              `${sign}${difference(other.row[objective.column], value, objective.unit)}`,
+              h("span", { class: "hidden" }, ` ${word}`),
+            ),
+          );
+        }),
       );
     }),
   );

@@ -270,7 +270,7 @@ function comparison(objectives, before, after) {
         "td",
         { class: same ? "quiet" : gain > 0 ? "good" : "bad" },
         same ? "= same" : `${gain > 0 ? "▲" : "▼"} ${word}`,
-        same ? null : h("span", { class: "quiet by" }, difference(to, from)),
+        same ? null : h("span", { class: "quiet by" }, difference(to, from, objective.unit)),
       ),
     );
   });

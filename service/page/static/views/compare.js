@@ -149,7 +149,7 @@ export async function show(place, { query, signal }) {
               value,
               toDesign(runs[n].job.id, bestDesign(runs[n], column), text(value, unit, 5)),
               isBest(value) && !values.every(isBest)
-                ? h("strong", { class: "best" }, " best")
+                ? h("strong", { class: "best", title: "best of these runs" }, " ✓")
                 : null,
             ),
           ),
@@ -180,6 +180,7 @@ export async function show(place, { query, signal }) {
         ],
         [
           plain("state", ({ job }) => badge(job)),
+          plain("decision", ({ job }) => job.decision ?? "none"),
           rows,
           plain("designs", ({ front }) => grouped(front.count)),
           plain("evaluated", ({ front }) => grouped(front.evaluations)),
@@ -202,7 +203,18 @@ export async function show(place, { query, signal }) {
   async function drawWords() {
     const query = { job: runs.map(({ job }) => String(job.id)), units: apiSystem() };
     await attempt(
-      async () => fill(words, blocks((await get("comparison", query, signal)).blocks, title)),
+      async () => {
+        const nodes = blocks((await get("comparison", query, signal)).blocks, title);
+        const start = nodes.findIndex((node) => node.matches(".hint"));
+        const end = nodes.findLastIndex((node) => node.matches("h3"));
+        const measures = start < 0 ? [] : nodes.splice(start, end - start);
+        fill(
+          words,
+          nodes,
+          measures.length > 0 &&
+            h("details", {}, h("summary", {}, "Measures of the fronts"), measures),
+        );
+      },
       (problem) => fill(words, h("p", { class: "error" }, sentenceOf(problem))),
     );
   }

@@ -46,11 +46,12 @@ export async function show(place, { parts, query, signal }) {
   if (!Number.isInteger(number) || number < 1)
     throw new Problem(404, `A design must be given by its number, from 1; got ${designText}.`);
   const path = /** @type {const} */ (`jobs/${job}/designs/${number}`);
-  const [front, main, requirements, asked] = await Promise.all([
+  const [front, main, requirements, asked, kept] = await Promise.all([
     get(`jobs/${job}/front`, {}, signal),
     loadDesign(job, number, 1, signal),
     get(`${path}/requirements`, {}, signal),
     get("topics", {}, signal),
+    get(`jobs/${job}/kept`, {}, signal),
   ]);
   const questions = [...asked.topics, ...asked.questions];
   const { names } = requirements;
@@ -59,6 +60,10 @@ export async function show(place, { parts, query, signal }) {
     ...comparedDesigns(query, number).map((other, n) => loadDesign(job, other, n + 2, signal)),
   ]);
   if (signal.aborted) return;
+  for (const shown of [main, ...others])
+    shown.name =
+      kept.designs.find(({ design, changed }) => design === shown.number && !changed)?.name ??
+      shown.name;
 
   const objectives = front.objectives;
   const named = h("span", {});
@@ -124,6 +129,7 @@ export async function show(place, { parts, query, signal }) {
   const remarks = bookmarkForm({
     job,
     design: number,
+    list: kept,
     dimensions: () => sliders.dimensions(),
     lengths: () => sliders.lengths(),
     kept: ({ name, number: bookmark }) => {
@@ -225,6 +231,7 @@ export async function show(place, { parts, query, signal }) {
       objectives,
       front: rows,
       row: shown.row,
+      others,
       before: shown === main ? null : main.row,
       changed: shown === main ? null : { broken: Boolean(changed?.broken.length) },
       whose,
