@@ -7,7 +7,7 @@ import numpy as np
 from ..model.turning_cylinder.closed_forms import (
     dead_point_margin,
     extension_ratio,
-    spare_reach,
+    spare_extension,
     transmission_angle,
     travel,
 )
@@ -106,8 +106,8 @@ CYLINDER_LENGTH_MARGIN = _length(
     forms=(
         lambda c, _: c.ends[0] - c.closed_length,
         lambda c, _: c.ends[1] - c.closed_length,
-        lambda c, _: spare_reach(c, c.ends[0]),
-        lambda c, _: spare_reach(c, c.ends[1]),
+        lambda c, _: spare_extension(c, c.ends[0]),
+        lambda c, _: spare_extension(c, c.ends[1]),
     ),
     least=True,
     known=("closed_length or dead_length",),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -12,8 +12,8 @@ from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import InputError
 from .loads.load import require_word
+from .mounting import Mounting
 
-Mounting = Literal["clevis", "trunnion"]
 STEEL = 210e9
 """Modulus of elasticity of steel, Pa."""
 

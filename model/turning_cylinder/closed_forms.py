@@ -36,7 +36,7 @@ def travel(c: LeverNumbers) -> Any:
     return magnitude(last - first)
 
 
-def spare_reach(c: LeverNumbers, length: Any) -> Any:
+def spare_extension(c: LeverNumbers, length: Any) -> Any:
     """Return the length, m, by which a cylinder reaches beyond a length of the motion.
 
     Of a cylinder whose stroke follows the travel, the length by which it is off the closed one, as it always reaches.

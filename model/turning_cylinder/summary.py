@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..machine.lever_cylinder import Cylinder, Mounting
+from ..machine.lever_cylinder import Cylinder
+from ..machine.mounting import Mounting
 from .forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
 from .lever import DimensionErrors, sizes_for_stroke
 from .peaks import LeverBatch, lever_peaks

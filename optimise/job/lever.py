@@ -7,8 +7,9 @@ from dataclasses import replace
 from ...model.errors import JobError
 from ...model.machine.arm import Arm
 from ...model.machine.lever import Lever
-from ...model.machine.lever_cylinder import Cylinder, Mounting
+from ...model.machine.lever_cylinder import Cylinder
 from ...model.machine.lever_spring import LeverSpring
+from ...model.machine.mounting import Mounting
 from ...model.swing.swing import CRANK_TURN, Swing
 from .mechanism import MechanismPart
 from .motion import MotionPart

@@ -21,7 +21,7 @@ from docs.site.quantity_reference import quantity_reference, requirement, sectio
 from docs.site.schema_tables import kind
 from slidercrank.objectives.registry import FACTS
 from slidercrank.optimise.job import job_schema, parse_job, with_files
-from tests.optimise.problems import LEVER
+from tests.optimise.problems import LEVER, SHAPER
 
 
 def places(nav: Any) -> list[str]:
@@ -52,7 +52,7 @@ def test_examples_of_the_reference_of_jobs_are_parts_of_jobs(tmp_path: Path) -> 
     for block in blocks:
         part = tomllib.loads(block)
         ((name, table),) = part.items()
-        whole = LEVER if name == "cylinder" else whole_job()
+        whole = {"cylinder": LEVER, "spring": LEVER, "arm": SHAPER}.get(name) or whole_job()
         swings = name == "load" and "torque_per_angle" in table[0]
         merged = {**whole[name], **table} if isinstance(whole.get(name), dict) and name != "objectives" else table
         if not swings:

@@ -1,6 +1,6 @@
 """Lever moved by a cylinder that pivots about a fixed point; the crank is the lever."""
 
-from ....model.machine.lever_cylinder import Mounting
+from ....model.machine.mounting import Mounting
 from ....model.swing.swing_types import LeverLaw
 from ....objectives.kinds import ACCELERATION, ANGLE, FORCE, LENGTH, MASS, PRESSURE, TIME
 from ..design_question import DesignQuestion, QuestionCommand
