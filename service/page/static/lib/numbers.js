@@ -170,7 +170,7 @@ export function withUnit(value, unit = "", digits = 5) {
 }
 
 /**
- * Return the ends of an axis as text: a millionth of the axis is zero to every reader.
+ * Return the ends of an axis as text; a millionth of the axis counts as zero.
  * @param {Page.Range} options @param {string} unit @param {number} digits
  */
 export function ends({ low, high }, unit, digits = 4) {
@@ -179,12 +179,12 @@ export function ends({ low, high }, unit, digits = 4) {
   );
 }
 
-/** Return how many of something there are: "1 design", "2,000 designs". @param {number} count @param {string} one */
+/** Return a count with its noun: "1 design", "2,000 designs". @param {number} count @param {string} one */
 export function counted(count, one) {
   return `${grouped(count)} ${one}${count === 1 ? "" : "s"}`;
 }
 
-/** Return a count with its thousands apart: "10,000". Not by the browser's locales: making those ready takes it 50 ms. @param {number} count */
+/** Return a count with thousands separators: "10,000". The browser's locales take 50 ms to prepare. @param {number} count */
 export function grouped(count) {
   return String(count).replace(/\B(?=(\d{3})+$)/g, ",");
 }

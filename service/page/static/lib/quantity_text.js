@@ -1,4 +1,4 @@
-/** What people type into a field of a quantity, in the unit of the API: "37,5", "2*19", "1 1/2 in". */
+/** Parsing of typed quantities into API units: "37,5", "2*19", "1 1/2 in". */
 
 import { fromDisplayUnit, plainUnitOf, unitOf } from "./numbers.js";
 import { parseNumber } from "./number_text.js";
@@ -7,7 +7,8 @@ import { kindOf, measureOf } from "./units.js";
 /** @typedef {{ value: number, said: string | null, wrong?: undefined, empty?: undefined } | { wrong: string, value?: undefined, empty?: undefined } | { empty: true, value?: undefined, wrong?: undefined }} Measured */
 
 /**
- * Return {value, said} in a unit of the API, and how it was read unless that is plain; {wrong} with a sentence; or {empty}. A number without a unit is in the one that is shown.
+ * Return {value, said} with the value in the API unit and an explanation unless it is obvious; {wrong} with a sentence; or {empty}. A
+ * number without a unit is in the display unit.
  * @param {string} typed @param {string} unit of the API @returns {Measured}
  */
 export function parseQuantity(typed, unit) {

@@ -1,4 +1,4 @@
-/** Refusals of the service in the words of the page: fields by their titles, with values in the units that are shown. */
+/** Refusals by the service in the words of the page: with titles of fields, and values in display units. */
 
 import { Problem } from "./api.js";
 import { keyOf, withUnit } from "./numbers.js";
@@ -7,7 +7,7 @@ import { capital, inWords } from "./words.js";
 const OF_A_FIELD = /^(?:body|query|path) ([\w.]+): (.+)$/s;
 const VALUE = /\b(at least|at most|above|below|got) "?(-?\d[\d.]*(?:e[+-]?\d+)?)"?(?=;|$)/g;
 
-/** Return an error as a sentence, a refusal of the service in the words of the page. @type {(error: unknown) => string} */
+/** Return an error as a sentence; refusals by the service in the words of the page. @type {(error: unknown) => string} */
 export function sentenceOf(error) {
   return error instanceof Problem
     ? refusalInWords(error.message)

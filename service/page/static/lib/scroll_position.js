@@ -1,22 +1,22 @@
-/** Where the reader is in a view, down the page and with the focus: kept with its entry in the history, found again by back, forward and reload. */
+/** Scroll position and focus in a view, stored with its history entry and restored by back, forward and reload. */
 
 import { byId } from "./dom.js";
 
 const PAUSE = 150; // ms after the last movement
-const PATIENCE = 20_000; // ms that a view has to become as long as it was
-const QUIET = 2_000; // ms without a change of its length, after which it is taken as whole: what still comes above moves the place
+const PATIENCE = 20_000; // ms within which a view must regain its length
+const QUIET = 2_000; // ms without a change of length after which a view counts as complete
 
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
-let looking = false; // for a place: what moves meanwhile is not the reader
+let looking = false; // a restoration is pending: scrolling is not by the user
 
-/** Note the place in this entry of the history. @param {Record<string, string | null>} [more] */
+/** Store the position in the current history entry. @param {Record<string, string | null>} [more] */
 function note(more) {
   clearTimeout(timer);
   if (!looking) history.replaceState({ ...history.state, top: Math.round(scrollY), ...more }, "");
 }
 
-/** Return a selector for what is used in a view, to find it when the view is drawn again; null without one. @param {EventTarget | null} target */
+/** Return a selector for the focused element of a view, to find it after a redraw; null without one. @param {EventTarget | null} target */
 function selectorOf(target) {
   const node =
     target instanceof Element ? target.closest("#main :is([id], a[href], [aria-label])") : null;
@@ -24,7 +24,7 @@ function selectorOf(target) {
   return name ? `[${name}="${CSS.escape(node?.getAttribute(name) ?? "")}"]` : null;
 }
 
-/** Keep the place from now on; what leads elsewhere notes it before. */
+/** Store the position from now on, and before navigation. */
 export function rememberScroll() {
   history.scrollRestoration = "manual";
   window.addEventListener(
@@ -39,7 +39,7 @@ export function rememberScroll() {
     document.addEventListener(
       name,
       (event) => {
-        // Enter leads elsewhere without a click in a chart. Other keys are many, and browsers count the notes.
+        // In a chart, Enter navigates without a click. Other keys are frequent, and browsers limit history updates.
         const leads = !(event instanceof KeyboardEvent) || event.key === "Enter";
         if (leads) note({ focus: selectorOf(event.target) });
         else if (timer) note();
@@ -49,8 +49,8 @@ export function rememberScroll() {
 }
 
 /**
- * Begin a view; the function that is returned goes to the place where it was left and gives back the focus, as soon as the view is long
- * enough for that, or to its beginning. The reader who moves meanwhile is left alone.
+ * Prepare a view. The returned function restores scroll position and focus as soon as the view is long enough, or goes to its beginning;
+ * it does nothing if the user has scrolled in the meantime.
  * @param {AbortSignal} signal of the view
  */
 export function restoreScroll(signal) {

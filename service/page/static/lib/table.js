@@ -1,8 +1,11 @@
-/** Tables: a caption for who does not see what stands above, a row of heads, and rows. */
+/** Tables: a caption for screen readers, a row of heads, and rows. */
 
 import { h } from "./dom.js";
 
-/** Return a table. heads: cells, none without. @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows */
+/**
+ * Return a table. heads: cells of the head row; without them, no head row.
+ * @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows
+ */
 export function table(caption, heads, rows) {
   return h(
     "table",
@@ -27,25 +30,25 @@ export function headsOf(titles, isNumber) {
   );
 }
 
-/** Return a row of a table after its head. @param {Dom.Child} title @param {...Dom.Child} cells */
+/** Return a table row that begins with a row heading. @param {Dom.Child} title @param {...Dom.Child} cells */
 export function headedRow(title, ...cells) {
   return h("tr", {}, h("th", { scope: "row" }, title), cells);
 }
 
 /**
- * Return the cell of a number, which tests and scripts read from its attributes.
+ * Return the cell of a number, whose attributes serve tests and scripts.
  * @param {string | null} key of the column @param {string | number | null | undefined} value @param {...Dom.Child} shown
  */
 export function numberCell(key, value, ...shown) {
   return h("td", { class: "number", "data-key": key, "data-value": String(value ?? "") }, shown);
 }
 
-/** Return a node within a region that scrolls sideways, by keyboard, too. @param {string} label @param {Element} node */
+/** Return a node within a region that scrolls sideways, also by keyboard. @param {string} label @param {Element} node */
 export function scrolled(label, node) {
   return h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, node);
 }
 
-/** Return such a region with a table of the same name. @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows */
+/** Return such a region with a table; both have the same name. @param {string} caption @param {Dom.Child} heads @param {Dom.Child} rows */
 export function scrolledTable(caption, heads, rows) {
   return scrolled(caption, table(caption, heads, rows));
 }

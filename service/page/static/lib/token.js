@@ -1,11 +1,11 @@
-/** The token of the service, asked for in front of the view that lacks it: what was typed there stays. */
+/** Dialog that asks for the service's token above the current view, whose input is kept. */
 
 import { formOf, h } from "./dom.js";
 
 /** @type {Promise<boolean> | null} */
 let asking = null;
 
-/** Ask for the token, once for all requests that lack it; true once it was given, false when the reader gives up. */
+/** Ask for the token, once for all requests that lack it; true once it is valid, false if the user cancels. */
 export function letIn() {
   asking ??= ask().finally(() => (asking = null));
   return asking;

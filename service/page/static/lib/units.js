@@ -1,12 +1,12 @@
-/** The units that a field offers, and values with units as job files have them: "40 mm". */
+/** Units that fields offer, and values with units in the notation of job files: "40 mm". */
 
 import { system, unitTable } from "./numbers.js";
 import { parseNumber } from "./number_text.js";
 
 /** @type {Record<string, Record<string, number>>} */
-let KINDS = {}; // by kind, what one of each unit is in the SI unit, which comes first: a plain number of a job is in it
+let KINDS = {}; // by kind: factor of each unit to SI; the SI unit comes first and applies to plain numbers in jobs
 /** @type {Record<string, Record<string, string>>} */
-let SPOKEN = {}; // by kind, the unit that other words mean there: 1/min of a speed
+let SPOKEN = {}; // by kind: units for other words, such as 1/min for a speed
 /** @type {Record<string, Record<string, string>>} */
 let USUAL = { si: {}, inch: {} };
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)\s*(.*)$/s;
@@ -28,8 +28,7 @@ export async function readyKinds() {
 }
 
 /**
- * Return what is known of the units of a kind: {factors, what one of each is in its SI unit; spoken, other words for them}; nothing for a
- * number without a kind.
+ * Return the units of a kind: {factors, spoken}, with factors to SI and other words for them; empty without a kind.
  * @param {string | null | undefined} kind
  */
 export function measureOf(kind) {
@@ -41,26 +40,26 @@ export function kinds() {
   return Object.keys(KINDS);
 }
 
-/** Return the kind of value that a unit measures, "length" for "mm"; null for none. @param {string} unit */
+/** Return the kind of a unit, such as "length" for "mm", or null. @param {string} unit */
 export function kindOf(unit) {
   return Object.keys(KINDS).find((kind) => unit in KINDS[kind]) ?? null;
 }
 
 /**
- * Return the units of a kind, smallest system first; percent: with the share of a dimension.
+ * Return the units of a kind, those of the smallest system first. percent: whether to include % of a dimension.
  * @param {string} kind @param {{ percent?: boolean }} options
  */
 export function unitsOf(kind, { percent = false } = {}) {
   return [...Object.keys(KINDS[kind] ?? {}), ...(percent ? ["%"] : [])];
 }
 
-/** Return the unit that an empty field of a kind begins with, by what the reader prefers. @param {string} kind */
+/** Return the default unit of an empty field in the chosen unit system. @param {string} kind */
 export function usual(kind) {
   return USUAL[system()][kind] ?? USUAL.si[kind] ?? Object.keys(KINDS[kind] ?? { "": 1 })[0];
 }
 
 /**
- * Return {number, unit} of a value of a job, both text: what is no value with a unit stays as it is, as the number.
+ * Return {number, unit} of a job value as text; text that is not a value with a unit becomes the number.
  * @param {unknown} value @param {string | null | undefined} kind
  */
 export function split(value, kind) {
@@ -76,8 +75,7 @@ export function split(value, kind) {
 }
 
 /**
- * Return the ends of a range that a job states as its middle and half its width, "180 mm +- 0.5 mm", each as a value of a job; null for
- * what states no such range.
+ * Return the ends of a range stated as its middle and half its width, "180 mm +- 0.5 mm", as job values; null for other text.
  * @param {unknown} value @param {string | null | undefined} kind @returns {[string, string] | null}
  */
 export function spread(value, kind) {
@@ -90,16 +88,16 @@ export function spread(value, kind) {
   return [low, high];
 }
 
-/** Return the value of a job for a number and a unit as typed; undefined for an empty number. @param {string} number @param {string} unit */
+/** Return the job value for a typed number and a unit; undefined for an empty number. @param {string} number @param {string} unit */
 export function join(number, unit) {
   const typed = number.trim().replaceAll("−", "-");
   if (typed === "") return undefined;
-  if (/[a-z_]{3}|\(/i.test(typed)) return typed; // a formula, whose numbers have units of their own
+  if (/[a-z_]{3}|\(/i.test(typed)) return typed; // a formula, whose numbers contain their units
   return unit ? `${typed} ${unit}` : typed;
 }
 
 /**
- * Return a number as typed in another unit of its kind, to ten digits; what is no number, or a share, stays.
+ * Return a typed number in another unit of its kind, with ten digits; other text and fractions stay unchanged.
  * @param {string} number @param {string} from @param {string} to @param {string | null | undefined} kind
  */
 export function convert(number, from, to, kind) {

@@ -1,8 +1,8 @@
-/** Sentences of the service in the words of the page: its messages name the keys of a job file, which the page has no need of. */
+/** Sentences of the service in the words of the page: titles replace the keys of job files. */
 
 import { inDisplayUnits } from "./numbers.js";
 
-/** Titles of the parts of the form, by the tables of a job. @type {Record<string, string>} */
+/** Titles of form sections by table of the job. @type {Record<string, string>} */
 const PARTS = {
   mechanism: "Masses and loads",
   motion: "Motion",
@@ -20,7 +20,7 @@ const PARTS = {
   clearance: "Loose joint",
   costs: "Tolerances",
 };
-/** Titles of the parts that have some keys of a table for themselves. @type {Record<string, string>} */
+/** Titles of form sections that contain only some keys of a table. @type {Record<string, string>} */
 const PART_TITLES = {
   "mechanism.speed": "Motion",
   "mechanism.cycle_time": "Motion",
@@ -30,7 +30,7 @@ const PART_TITLES = {
   "mechanism.counterweight": "Counterweight",
 };
 
-/** What stands for what, in this order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
+/** Replacements, in order. @type {[RegExp, string | ((...found: string[]) => string)][]} */
 const SAID = [
   [/\bunknown (?:key|heading)\b/g, "unknown entry"],
   [
@@ -119,7 +119,7 @@ const SAID = [
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];
 
-/** Names of bounds, in words. @type {Record<string, string>} */
+/** Bounds in words. @type {Record<string, string>} */
 export const WORDS = {
   min: "at least",
   max: "at most",
@@ -138,7 +138,7 @@ export function inWords(sentence) {
   );
 }
 
-/** Return a sentence with a capital at its beginning. @param {string} sentence */
+/** Return a sentence with an initial capital. @param {string} sentence */
 export function capital(sentence) {
   return sentence.charAt(0).toUpperCase() + sentence.slice(1);
 }

@@ -1,11 +1,11 @@
-/** Forces as arrows: of the frame on the crank, crank on rod, rod on slider, guide on slider, and the load; or those of a lever. */
+/** Forces as arrows: frame on crank, crank on rod, rod on slider, guide on slider, and the load; or those on a lever. */
 
 import { between } from "../charts/cycle.js";
 import { h, svg } from "../lib/dom.js";
 import { fromDisplayUnit, inDisplayUnit, withUnit } from "../lib/numbers.js";
 
-const LONGEST = 110; // pixels, of the greatest force over the turn
-const SHORTEST = 3; // less is a dot
+const LONGEST = 110; // pixels of the greatest force over the revolution
+const SHORTEST = 3; // pixels; shorter arrows become dots
 const DOT = 2.5;
 const HEAD = 7;
 
@@ -72,7 +72,7 @@ export function arrows() {
   const lines = ARROWS.map(({ name }) => svg("path", { class: `force ${name}` }));
   /** @type {Api.Curves} */
   let curves = {};
-  let unit = 0; // pixels in a newton
+  let unit = 0; // pixels per newton
   return {
     node: svg("g", { class: "forces", hidden: true }, lines),
     /** @param {Api.Curves} motion @param {unknown} _view @param {number | undefined} largest */
