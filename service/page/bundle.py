@@ -1,7 +1,7 @@
 """The page's modules joined into one script, and its styles into one stylesheet: two requests instead of seventy.
 
-The first view of 10,000 designs appears a fifth sooner. The modules stay unchanged, and are tested as served. Comment
-lines, types and indentation are removed, which saves three tenths of the text. The modules use a small part of
+The first view of 10,000 designs appears a fifth sooner. The modules stay unchanged, and are tested as served. Comments,
+types and indentation are removed, which saves three tenths of the text. The modules use a small part of
 JavaScript's module syntax; anything else is rejected when the service starts: `import { a, b as c } from "./file.js";`,
 `import("./file.js")`, and `export` before a function, class or const.
 """
@@ -17,7 +17,8 @@ _LATER = re.compile(r'\bimport\("([^"]+)"\)')
 _EXPORT = re.compile(r"^export ((?:async )?function\*? |class |const )(\w+)", re.MULTILINE)
 _LEFT = re.compile(r"^(?:import|export)\b.*|\bimport\(.*", re.MULTILINE)
 _EXPLAINED = re.compile(
-    r"^[ \t]*(?:/\*\*(?:(?!\*/).)*\*/|//[^\n]*)\n|/\*\* @type [^\n]*?\*/ ", re.MULTILINE | re.DOTALL
+    r"^[ \t]*(?:/\*\*(?:(?!\*/).)*\*/|//[^\n]*)\n|/\*\* @type [^\n]*?\*/ |[ \t]+// [^\"'`\n]*$",
+    re.MULTILINE | re.DOTALL,
 )
 _INDENTATION = re.compile(r"^[ \t]+", re.MULTILINE)
 _TAKE = """const made = {};

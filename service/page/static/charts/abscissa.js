@@ -1,7 +1,7 @@
 /** Abscissas of curves: crank angle, time, slider displacement, or both strokes of a swing. */
 
 import { inDisplayUnit, unitOf } from "../lib/numbers.js";
-import { between, crankAt, turned } from "./cycle.js";
+import { interpolatedValue, crankAt, wrappedAngle } from "./cycle.js";
 import { range } from "./scale.js";
 
 /**
@@ -46,7 +46,7 @@ const ENDS = [
 
 /** Return the slider's displacement from its inner dead centre at a crank angle, mm. @param {Curved} one @param {number} angle */
 export function wayAt({ curves, sliderEnds: [inner] }, angle) {
-  const position = between(curves.slider_position_mm, angle);
+  const position = interpolatedValue(curves.slider_position_mm, angle);
   return position === null ? null : position - inner;
 }
 
@@ -82,8 +82,8 @@ function overTime(seconds, direction) {
         x: (seconds * k) / count,
         n: (((direction * k) % count) + count) % count,
       })),
-    place: (_, angle) => (seconds * turned(direction * angle)) / 360,
-    angle: (x) => turned((direction * 360 * x) / seconds),
+    place: (_, angle) => (seconds * wrappedAngle(direction * angle)) / 360,
+    angle: (x) => wrappedAngle((direction * 360 * x) / seconds),
   };
 }
 
@@ -113,7 +113,8 @@ function overCrank() {
 function overWay(name) {
   /** @param {Curved} one @param {number} angle */
   const place = (one, angle) => {
-    const way = name === "way" ? wayAt(one, angle) : between(one.curves.slider_position_mm, angle);
+    const way =
+      name === "way" ? wayAt(one, angle) : interpolatedValue(one.curves.slider_position_mm, angle);
     return way === null ? null : inDisplayUnit(way, "mm");
   };
   return {

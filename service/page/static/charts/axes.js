@@ -34,7 +34,7 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   Object.assign(context, { globalAlpha: 1, textAlign: "center", textBaseline: "top" });
   for (const [value, text] of x.ticks) context.fillText(text, x.at(value), bottom + 6);
   context.fillStyle = ink.text;
-  context.fillText(titled(x), (area.left + right) / 2, bottom + 24, right - area.left);
+  context.fillText(axisTitle(x), (area.left + right) / 2, bottom + 24, right - area.left);
   Object.assign(context, { fillStyle: ink.quiet, textAlign: "right", textBaseline: "middle" });
   for (const [value, text] of y.ticks)
     context.fillText(text, area.left - 6, y.at(value), area.left - 22);
@@ -42,11 +42,11 @@ export function drawAxes(context, { x, y, area, width, height, ink }) {
   context.translate(11, (area.top + bottom) / 2);
   context.rotate(-Math.PI / 2);
   Object.assign(context, { textAlign: "center", fillStyle: ink.text });
-  context.fillText(titled(y), 0, 0, bottom - area.top);
+  context.fillText(axisTitle(y), 0, 0, bottom - area.top);
   context.restore();
 }
 
 /** Return the heading of an axis and its better direction. @param {Page.Axis} axis */
-function titled({ column, better }) {
+function axisTitle({ column, better }) {
   return better ? `${headed(column)} (${better})` : headed(column);
 }

@@ -74,7 +74,7 @@ export function centreLines({ x, abscissa, height }, first) {
 }
 
 /** @param {Drawn} one @param {Pen} pen */
-export function line(one, { x, y, abscissa }) {
+export function curveLine(one, { x, y, abscissa }) {
   const { values, series } = one;
   let path = "";
   let pen = "M";
@@ -122,7 +122,7 @@ export function peaks(one, { x, y, abscissa }) {
  * Return a sentence on a curve's minimum and maximum, if known, and where they are.
  * @param {string} words @param {string} unit @param {Shown[]} series @param {string} key @param {Abscissa} abscissa
  */
-export function summary(words, unit, series, key, abscissa) {
+export function extremesSentence(words, unit, series, key, abscissa) {
   const known = series.filter(({ exact }) => exact?.[key] !== null);
   const each = known.map((one) => {
     const { name, curves, exact } = one;

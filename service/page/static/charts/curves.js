@@ -3,8 +3,8 @@
 import { fill, h, svg } from "../lib/dom.js";
 import { inDisplayUnit, text, unitOf } from "../lib/numbers.js";
 import { abscissaOf } from "./abscissa.js";
-import { axes, centreLines, line, peaks, MARGIN, summary } from "./curve_parts.js";
-import { between } from "./cycle.js";
+import { axes, centreLines, curveLine, peaks, MARGIN, extremesSentence } from "./curve_parts.js";
+import { interpolatedValue } from "./cycle.js";
 import { range, scale } from "./scale.js";
 
 /**
@@ -255,14 +255,14 @@ function chart(panel, turned, resize) {
       };
       y = scale(low, high, height - MARGIN.bottom, MARGIN.top, height > 200 ? 6 : 3);
       picture.setAttribute("viewBox", `0 0 ${width} ${height}`);
-      picture.setAttribute("aria-label", summary(words, unit, series, key, abscissa));
+      picture.setAttribute("aria-label", extremesSentence(words, unit, series, key, abscissa));
       dots = series.map((one) => h("div", { class: "dot", "data-series": one.series }));
       const pen = { x, y, abscissa, height };
       fill(
         picture,
         axes(pen, width),
         centreLines(pen, series[0]),
-        series.map((one) => line(one, pen)).reverse(),
+        series.map((one) => curveLine(one, pen)).reverse(),
         series[0] && peaks(series[0], pen),
       );
       fill(plot, picture, cursor, dots.toReversed());
@@ -273,7 +273,7 @@ function chart(panel, turned, resize) {
       const scaled = x;
       const places = series.map((one) => scaled.at(abscissa.place(one, angle) ?? NaN));
       cursor.style.transform = `translate(${(places[0] ?? 0).toFixed(1)}px, ${MARGIN.top}px)`;
-      const values = series.map((one) => between(one.values, angle));
+      const values = series.map((one) => interpolatedValue(one.values, angle));
       values.forEach(
         (value, n) =>
           (dots[n].style.transform =

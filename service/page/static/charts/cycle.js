@@ -7,7 +7,7 @@
 
 /** Return the crank angle at a position in the cycle, deg. @param {Cranked} machine @param {number} place @returns {number} */
 export function crankAt({ curves, turns }, place) {
-  return turns ? turns * place : (between(curves.crank_angle_deg, place) ?? NaN);
+  return turns ? turns * place : (interpolatedValue(curves.crank_angle_deg, place) ?? NaN);
 }
 
 /**
@@ -15,20 +15,20 @@ export function crankAt({ curves, turns }, place) {
  * the cycle.
  * @param {Cranked} machine @param {number} angle @param {number} now a place
  */
-export function placeOf(machine, angle, now) {
-  const half = turned(now) < 180 ? 0 : 180;
-  if (machine.turns === 1) return turned(angle);
-  if (machine.turns === 2) return half + turned(angle) / 2;
+export function positionOfAngle(machine, angle, now) {
+  const half = wrappedAngle(now) < 180 ? 0 : 180;
+  if (machine.turns === 1) return wrappedAngle(angle);
+  if (machine.turns === 2) return half + wrappedAngle(angle) / 2;
   let [best, least] = [half, Infinity];
   for (let place = half; place <= half + 180; place += 0.25) {
-    const off = Math.abs(turned(crankAt(machine, place) - angle + 180) - 180);
+    const off = Math.abs(wrappedAngle(crankAt(machine, place) - angle + 180) - 180);
     if (off < least) [best, least] = [place, off];
   }
-  return turned(best);
+  return wrappedAngle(best);
 }
 
 /** Return an angle in [0, 360). @param {number} angle */
-export function turned(angle) {
+export function wrappedAngle(angle) {
   return ((angle % 360) + 360) % 360;
 }
 
@@ -36,8 +36,8 @@ export function turned(angle) {
  * Return the value of a curve at a crank angle, deg, by linear interpolation; null where it is undefined.
  * @param {readonly (number | null)[]} values @param {number} angle @returns {number | null}
  */
-export function between(values, angle) {
-  const place = (turned(angle) * values.length) / 360; // this order keeps the angle of a point exact
+export function interpolatedValue(values, angle) {
+  const place = (wrappedAngle(angle) * values.length) / 360; // this order keeps the angle of a point exact
   const first = Math.floor(place);
   const [from, to] = [values[first % values.length], values[(first + 1) % values.length]];
   if (from === null || place === first) return from;

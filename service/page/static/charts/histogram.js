@@ -8,7 +8,7 @@ const WIDE = 16; // pixels, of the fullest bin of an axis
  * @param {Int16Array} heights of every design on every axis, less than 0 where it has no value
  * @param {number} axes @param {ArrayLike<number>} mask @param {number} top of the axes @param {number} bottom
  */
-export function binned(heights, axes, mask, top, bottom) {
+export function countsInBins(heights, axes, mask, top, bottom) {
   const counts = new Uint32Array(axes * BINS);
   for (let row = 0; row < mask.length; row += 1) {
     if (!mask[row]) continue;
@@ -29,9 +29,9 @@ export function binned(heights, axes, mask, top, bottom) {
  * @param {Page.Canvas} context @param {{ axes: readonly unknown[], across: number[], heights: Int16Array, height: number, ink: Page.Ink }} view
  * @param {ArrayLike<number>} mask @param {number} room above and below the axes
  */
-export function histograms(context, { axes, across, heights, height, ink }, mask, room) {
+export function drawHistograms(context, { axes, across, heights, height, ink }, mask, room) {
   const [top, bottom] = [room, height - room];
-  const counts = binned(heights, axes.length, mask, top, bottom);
+  const counts = countsInBins(heights, axes.length, mask, top, bottom);
   const tall = (bottom - top) / BINS;
   context.fillStyle = ink.quiet;
   context.globalAlpha = 0.35;

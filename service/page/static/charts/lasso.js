@@ -6,7 +6,7 @@ const MOST = 32; // corners, to keep links short
  * Return whether a point is inside a closed line [[x, y], ...]: a ray from the point crosses the line an odd number of times.
  * @param {readonly Page.Point[]} line @param {number} x @param {number} y
  */
-export function inside(line, x, y) {
+export function isInside(line, x, y) {
   let odd = false;
   for (let here = 0, before = line.length - 1; here < line.length; before = here, here += 1) {
     const [[x1, y1], [x2, y2]] = [line[here], line[before]];

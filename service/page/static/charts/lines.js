@@ -1,6 +1,6 @@
 /** Lines of designs over parallel axes: drawing single lines, and finding the line under the pointer. */
 
-import { nearest } from "./by_pointer.js";
+import { nearest } from "./pointer_access.js";
 
 const NEAR = 8; // vertical pixels within which the pointer is on a line
 
@@ -8,7 +8,7 @@ const NEAR = 8; // vertical pixels within which the pointer is on a line
  * Draw the line of a design. across, heights: pixels of the axes, and of all designs on them; negative for a missing value.
  * @param {Page.Canvas} context @param {number} row @param {number} axes @param {number[]} across @param {Int16Array} heights
  */
-export function line(context, row, axes, across, heights) {
+export function drawLine(context, row, axes, across, heights) {
   context.beginPath();
   let down = false;
   for (let axis = 0; axis < axes; axis += 1) {

@@ -21,7 +21,7 @@ const VIRIDIS = [
  * Return stacked layers: {place, resize(width, height), contexts}; lengths in CSS pixels.
  * @param {number} count @param {string} label
  */
-export function layers(count, label) {
+export function canvasLayers(count, label) {
   const canvases = Array.from({ length: count }, () => h("canvas", { "aria-hidden": "true" }));
   const place = h("div", { class: "layers", role: "img", "aria-label": label }, canvases);
   const contexts = canvases.map((canvas) => /** @type {Page.Canvas} */ (canvas.getContext("2d")));
@@ -64,7 +64,7 @@ export function layers(count, label) {
  * @param {Page.Canvas} context @param {ArrayLike<number>} across @param {ArrayLike<number>} up @param {Uint8Array | null} mask @param {Uint8Array} of
  * @param {string[]} colours
  */
-export function squares(context, across, up, mask, of, colours) {
+export function drawSquares(context, across, up, mask, of, colours) {
   const { width, height } = context.canvas;
   const image = new ImageData(width, height);
   const pixels = new Uint32Array(image.data.buffer);

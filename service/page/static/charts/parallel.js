@@ -3,11 +3,11 @@
 import { inDisplayUnit, text } from "../lib/numbers.js";
 import { wordTicks } from "./axes.js";
 import { Density } from "./density.js";
-import { histograms } from "./histogram.js";
-import { line, nearestLine } from "./lines.js";
-import { FONT, layers, rgb, writeOver } from "./paint.js";
-import { byKeys } from "./by_keys.js";
-import { byPointer } from "./by_pointer.js";
+import { drawHistograms } from "./histogram.js";
+import { drawLine, nearestLine } from "./lines.js";
+import { FONT, canvasLayers, rgb, writeOver } from "./paint.js";
+import { addKeyboardAccess } from "./keyboard_access.js";
+import { addPointerAccess } from "./pointer_access.js";
 import { colours, logScale, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
@@ -53,7 +53,7 @@ const [BACK, FRONT, OVER] = [0, 1, 2];
  * @param {Chart} chart
  */
 export function parallel(chart) {
-  const stack = layers(
+  const stack = canvasLayers(
     3,
     "Parallel coordinates: arrow keys move between designs and axes, Enter opens a design, Space selects it. The menu of an axis sets the same limits as dragging.",
   );
@@ -130,7 +130,7 @@ export function parallel(chart) {
     for (let row = 0; row < chart.data.count; row += 1) {
       if (!wanted(row)) continue;
       context.strokeStyle = colour(row);
-      line(context, row, axes.length, across, heights);
+      drawLine(context, row, axes.length, across, heights);
     }
     context.globalAlpha = 1;
   }
@@ -179,7 +179,7 @@ export function parallel(chart) {
     stack.clear(OVER);
     const context = contexts[OVER];
     const { ink, axes, across, scales, heights, height } = view;
-    histograms(context, view, chart.limits.mask, MARGIN);
+    drawHistograms(context, view, chart.limits.mask, MARGIN);
     Object.assign(context, { font: FONT, textBaseline: "middle" });
     axes.forEach(({ key }, axis) => {
       const x = across[axis];
@@ -202,8 +202,8 @@ export function parallel(chart) {
     for (const { row = 0, cells, colour, width = 2.5, read = false } of chart.marks()) {
       context.strokeStyle = colour;
       context.lineWidth = width;
-      if (cells) line(context, 0, axes.length, across, heightsOf(cells));
-      else line(context, row, axes.length, across, heights);
+      if (cells) drawLine(context, 0, axes.length, across, heightsOf(cells));
+      else drawLine(context, row, axes.length, across, heights);
       if (read) drawValues(context, row);
     }
   }
@@ -325,7 +325,7 @@ export function parallel(chart) {
     return true;
   }
 
-  const at = byPointer(stack.top, chart, {
+  const at = addPointerAccess(stack.top, chart, {
     isDrawn: () => Boolean(view),
     under: ({ x, y }) => nearestLine(view, chart.limits.mask, x, y),
     cursor: (here, row) =>
@@ -343,7 +343,7 @@ export function parallel(chart) {
     if (axis >= 0) chart.limit(view.axes[axis].key, null);
   });
   let along = 0; // the axis along which keys move between designs
-  byKeys(place, {
+  addKeyboardAccess(place, {
     mask: () => chart.limits.mask,
     point: chart.point,
     open: chart.open,

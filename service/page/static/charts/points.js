@@ -3,7 +3,7 @@
 import { svg } from "../lib/dom.js";
 import { inDisplayUnit } from "../lib/numbers.js";
 import { headed } from "../front/columns.js";
-import { nearest } from "./by_pointer.js";
+import { nearest } from "./pointer_access.js";
 import { range, scale } from "./scale.js";
 
 /** Default width and height of a picture, in its own units. @type {Page.Point} */
@@ -91,7 +91,7 @@ export function points(series, x, y, label, held = null, handlers = undefined, s
     ),
   );
   if (handlers)
-    pointed(
+    trackPointer(
       picture,
       series,
       (point) => [
@@ -108,7 +108,7 @@ export function points(series, x, y, label, held = null, handlers = undefined, s
  * @param {SVGSVGElement} picture @param {{ points: Api.Row[string][][] }[]} series @param {(point: Page.Point) => Page.Point} place
  * @param {{ at: (series: number | null, point: number) => void, open: (series: number, point: number) => void }} told
  */
-function pointed(picture, series, place, { at, open }) {
+function trackPointer(picture, series, place, { at, open }) {
   const all = series.flatMap((one, number) =>
     one.points.flatMap((point, row) => (isPoint(point) ? [{ number, row, at: place(point) }] : [])),
   );
@@ -150,7 +150,7 @@ export function isPoint(point) {
 }
 
 /** Return the legend symbol of a series. @param {number} index */
-export function sign(index) {
+export function legendSymbol(index) {
   return svg(
     "svg",
     { class: "sign", viewBox: "0 0 12 12", "aria-hidden": "true" },

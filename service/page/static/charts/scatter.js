@@ -3,9 +3,9 @@
 import { inDisplayUnit } from "../lib/numbers.js";
 import { drawAxes, wordTicks } from "./axes.js";
 import { drawLasso, thinned } from "./lasso.js";
-import { FONT, layers, squares, writeOver } from "./paint.js";
-import { byKeys } from "./by_keys.js";
-import { byPointer, nearest } from "./by_pointer.js";
+import { FONT, canvasLayers, drawSquares, writeOver } from "./paint.js";
+import { addKeyboardAccess } from "./keyboard_access.js";
+import { addPointerAccess, nearest } from "./pointer_access.js";
 import { colours, logScale, range, scale } from "./scale.js";
 import { shadesOf } from "./shades.js";
 
@@ -57,7 +57,7 @@ function diamond(context, x, y, size) {
  * @param {Chart} chart
  */
 export function scatter(chart) {
-  const stack = layers(
+  const stack = canvasLayers(
     3,
     "Scatter plot of two quantities: arrow keys move between designs, Enter opens one, Space selects it. The table below lists the same designs.",
   );
@@ -96,7 +96,7 @@ export function scatter(chart) {
     };
     const context = contexts[BACK];
     // Squares replace the content of the layer, so they come first.
-    if (many) squares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
+    if (many) drawSquares(context, across, up, null, new Uint8Array(data.count), [view.ink.line]);
     drawAxes(context, { x, y, area: AREA, width, height, ink: view.ink });
     Object.assign(context, { strokeStyle: view.ink.quiet, lineWidth: 1 });
     for (const cells of chart.behind()) {
@@ -163,7 +163,7 @@ export function scatter(chart) {
     const { of, colours: inks } = view.shades;
     const { mask } = chart.limits;
     if (view.many) {
-      squares(context, view.across, view.up, mask, of, inks);
+      drawSquares(context, view.across, view.up, mask, of, inks);
       return;
     }
     stack.clear(FRONT);
@@ -229,7 +229,7 @@ export function scatter(chart) {
 
   /** @type {{ x: number, y: number }} */
   let from; // where the button was pressed
-  byPointer(top, chart, {
+  addPointerAccess(top, chart, {
     isDrawn: () => Boolean(view),
     under: ({ x, y }) => {
       const { across, up } = view;
@@ -275,7 +275,7 @@ export function scatter(chart) {
     return true;
   }
 
-  byKeys(place, {
+  addKeyboardAccess(place, {
     mask: () => chart.limits.mask,
     point: chart.point,
     open: chart.open,

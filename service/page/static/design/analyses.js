@@ -2,7 +2,7 @@
 
 import { whenNear } from "../lib/deferred.js";
 import { fill, h } from "../lib/dom.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 import { question } from "./question.js";
 
 /** @type {Record<string, number>} */
@@ -93,7 +93,7 @@ export function analyses(
       h(
         "p",
         { class: "quiet hint" },
-        `${capital(shows)}${lengths && isOfDesign ? "; for the changed design" : ""}. The same as `,
+        `${capitalised(shows)}${lengths && isOfDesign ? "; for the changed design" : ""}. The same as `,
         h("code", {}, `slidercrank ${command}`),
         ".",
       ),

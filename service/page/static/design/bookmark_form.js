@@ -7,7 +7,7 @@ import { askFirst } from "../lib/dialog.js";
 import { fill, h } from "../lib/dom.js";
 import { attempt, sayProblem } from "../lib/notices.js";
 import { withUnit } from "../lib/numbers.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 /** @typedef {Pick<Api.Bookmarks, "designs" | "history">} List */
 
@@ -107,7 +107,9 @@ export function askRemarks({ deciding, list, known, title, faults, send }) {
           decisionText(list),
           ".",
         ),
-      deciding && faults.length > 0 && h("p", { class: "bad" }, `${capital(faults.join("; "))}.`),
+      deciding &&
+        faults.length > 0 &&
+        h("p", { class: "bad" }, `${capitalised(faults.join("; "))}.`),
       field("name", "Name of the design", { value: name, maxlength: 200 }),
       field(deciding ? "reason" : "note", deciding ? "Reason" : "Note", {
         value: (deciding && known?.reason) || "",

@@ -1,7 +1,7 @@
 /** Head of the view: location, links to the previous and the next design, and the designs beside it. */
 
 import { neighbours } from "../front/listed_order.js";
-import { left, link, read } from "../lib/address.js";
+import { lastAddress, link, read } from "../lib/address.js";
 import { first, h } from "../lib/dom.js";
 
 let stepped = ""; // label of the last step
@@ -46,7 +46,7 @@ export function designHead({ job, number, named, undo, front, others }) {
   return h(
     "header",
     { class: "design-head" },
-    h("p", { class: "back" }, h("a", { href: left(["jobs", job]) }, `← ${front.name}`)),
+    h("p", { class: "back" }, h("a", { href: lastAddress(["jobs", job]) }, `← ${front.name}`)),
     h(
       "div",
       { class: "row" },

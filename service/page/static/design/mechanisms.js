@@ -1,12 +1,12 @@
 /** Mechanisms that move together, with their controls: play, speed, crank angle, forces. */
 
-import { between, crankAt, placeOf } from "../charts/cycle.js";
+import { interpolatedValue, crankAt, positionOfAngle } from "../charts/cycle.js";
 import { fill, h } from "../lib/dom.js";
 import { withUnit } from "../lib/numbers.js";
 import { ARROWS, forceAt, largestForce, scaleOf } from "../mechanism/arrows.js";
 import { drawing } from "../mechanism/drawing.js";
 import { lengthsOf } from "./loading.js";
-import { around, frameOf } from "../mechanism/frame.js";
+import { frameAround, frameOf } from "../mechanism/frame.js";
 
 /**
  * @import { Grips } from "../mechanism/grips.js"
@@ -143,7 +143,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
       fill(drawn, places);
       drawings = places.map((each, n) =>
         draggable(drawing(each, { label: "", grips }), (at) =>
-          hold(placeOf(machines[n], at, turning.angle)),
+          hold(positionOfAngle(machines[n], at, turning.angle)),
         ),
       );
     }
@@ -153,7 +153,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
         !ARROWS[n].along.some((key) => key && machines[0].curves[key]),
       ),
     );
-    const frame = around(
+    const frame = frameAround(
       machines.map(({ row, curves, outlines }) => frameOf(lengthsOf(row), curves, outlines)),
     );
     const greatest = Math.max(...machines.map(({ curves }) => largestForce(curves)));
@@ -197,7 +197,7 @@ export function mechanismsPanel(place, strip, turning, turns, grips = null) {
       "−",
     );
     if (angleText.textContent !== words) angleText.textContent = words;
-    const position = between(machines[0].curves.slider_position_mm, at);
+    const position = interpolatedValue(machines[0].curves.slider_position_mm, at);
     const slider = `${machines[0].outlines?.lever ? "cylinder" : "slider at"} ${withUnit(position, "mm", 4)}`;
     where.textContent = slider;
     const now = performance.now();

@@ -1,6 +1,6 @@
 /** Displayed curves of the API, and curves derived from them. */
 
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 const RESULTANTS = [
   ["pivot_N", "Pivot force", "pivot_x_N", "pivot_y_N"],
@@ -76,7 +76,7 @@ export function panelsOf(columns, designs) {
   ).filter(some);
   return listedColumns.map(({ key, title, unit }) => ({
     key,
-    title: capital(title),
+    title: capitalised(title),
     unit,
   }));
 }

@@ -5,7 +5,7 @@ import { fill, formOf, h, markInvalid, numberField } from "../lib/dom.js";
 import { inDisplayUnits, plainUnitOf, system, text, unitOf, withUnit } from "../lib/numbers.js";
 import { parseNumber } from "../lib/number_text.js";
 import { kindOf, measureOf } from "../lib/units.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 import { rankOf } from "./rank.js";
 import { difference } from "./numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
@@ -40,7 +40,7 @@ export function rounding(
     return field({
       id: `step-${key}`,
       name: key,
-      label: `${capital(title)}, step`,
+      label: `${capitalised(title)}, step`,
       unit,
       value: usual,
       rule: `The step of the ${title} must be a ${kind} above 0${usual && `, such as ${usual}`}; leave the field empty to keep the ${kind}.`,
@@ -53,7 +53,7 @@ export function rounding(
         field({
           id: `miss-${column}`,
           name: quantity,
-          label: `${capital(title)}, allowed deviation`,
+          label: `${capitalised(title)}, allowed deviation`,
           unit,
           value: "",
           rule: `The allowed deviation of the ${title} must be above 0; leave the field empty to allow none.`,
@@ -117,7 +117,7 @@ export function rounding(
     const told = ({ stage, step, steps: count }) => {
       bar.max = Math.max(1, Number(count));
       bar.value = Number(step);
-      progress.textContent = `${capital(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
+      progress.textContent = `${capitalised(String(stage))}: ${text(Number(step), "", 7)} of ${text(Number(count), "", 7)}`;
     };
     try {
       const event = await postWithProgress(
@@ -139,7 +139,7 @@ export function rounding(
   function showRounded(found) {
     const heads = [
       h("span", { class: "hidden" }, "Apply"),
-      ...numbers.map(({ title }) => capital(title)),
+      ...numbers.map(({ title }) => capitalised(title)),
       ...objectives.map(({ title }) => title),
       "Requirements",
     ];
@@ -167,14 +167,14 @@ export function rounding(
     );
     fill(
       answer,
-      h("p", { class: found.met ? null : "bad" }, `${inDisplayUnits(capital(found.message))}.`),
+      h("p", { class: found.met ? null : "bad" }, `${inDisplayUnits(capitalised(found.message))}.`),
       found.designs.length > 0 &&
         scrolledTable(
           "Round numbers and their cost",
           headsOf(heads, (n) => n && n < heads.length - 1),
           lines,
         ),
-      found.notes.map((note) => h("p", { class: "quiet hint" }, `${capital(note)}.`)),
+      found.notes.map((note) => h("p", { class: "quiet hint" }, `${capitalised(note)}.`)),
     );
   }
 

@@ -4,7 +4,7 @@ import { h, numberField } from "../lib/dom.js";
 import { field } from "./field.js";
 import { idOf } from "./path.js";
 import { describe, words } from "./schema.js";
-import { drawnFrom, entered, ordered, taken } from "./typed_field.js";
+import { drawnFrom, typedValueOrRange, replaceTyped, typedJobValue } from "./typed_number.js";
 import { convert, split, unitsOf, usual } from "../lib/units.js";
 
 /** @type {Partial<Record<Form.Described["control"], (form: Form.Whole, path: Form.Path, looks: Form.Looks) => HTMLElement>>} */
@@ -69,7 +69,7 @@ export function entries(ones, { label, kind, percent = false, range = false, uni
   });
   /** @param {number} n @returns {{ value?: string | number, ends?: string[] }} */
   const read = (n) => {
-    const entry = entered(inputs[n], { kind, percent, select: units, range });
+    const entry = typedValueOrRange(inputs[n], { kind, percent, select: units, range });
     return kind || entry.ends ? entry : { value: number(inputs[n]) };
   };
   return { inputs, units, controls: units ? [...inputs, units] : inputs, read };
@@ -141,7 +141,7 @@ export function plain(form, path, { control, label, why, wide = false, long = fa
     );
   input.addEventListener("input", write);
   if (input instanceof HTMLInputElement && control !== "text")
-    input.addEventListener("change", () => ordered(input));
+    input.addEventListener("change", () => replaceTyped(input));
   return field(form, path, label, [input], why, { wide });
 }
 
@@ -185,7 +185,7 @@ export function numberInput(id, value, label = null) {
     id,
     value,
     "aria-label": label,
-    onchange: (event) => ordered(event.currentTarget),
+    onchange: (event) => replaceTyped(event.currentTarget),
   });
 }
 
@@ -225,7 +225,7 @@ export function changeUnit(select, inputs, kind) {
  * @param {HTMLInputElement} input
  */
 export function number(input) {
-  const typed = taken(input);
+  const typed = typedJobValue(input);
   if (typed === undefined || !Number.isFinite(Number(typed))) return typed;
   if (!/^\d+$/.test(String(typed)) || Number.isSafeInteger(Number(typed))) return Number(typed);
   input.dataset.wrong = `A whole number must be at most ${Number.MAX_SAFE_INTEGER}; got ${typed}; write a smaller one.`;

@@ -3,7 +3,7 @@
 const KEY = "new-run";
 
 /** Return the draft {job, submission, source, key}; null if there is none. @returns {Form.Draft | null} */
-export function kept() {
+export function storedDraft() {
   try {
     const draft = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
     return draft && typeof draft.job === "object" ? draft : null;

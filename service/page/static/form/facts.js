@@ -2,7 +2,7 @@
 
 import { isConstant } from "../lib/constant.js";
 import { fill, h } from "../lib/dom.js";
-import { capital, inWords } from "../lib/words.js";
+import { capitalised, inWords } from "../lib/words.js";
 import { inDisplayUnits, limitText, unitOf, withUnit } from "../lib/numbers.js";
 
 /**
@@ -18,7 +18,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
     return h(
       "div",
       { class: "warning" },
-      h("p", {}, `${capital(inWords(sentence))}.`),
+      h("p", {}, `${capitalised(inWords(sentence))}.`),
       change &&
         h("button", { type: "button", onclick: () => apply(change) }, inDisplayUnits(change.label)),
     );
@@ -93,7 +93,7 @@ function notesOf(unchecked, understood, { said = [], open }) {
         )
       : null,
     (understood?.notes ?? []).map((sentence) =>
-      h("p", { class: "note" }, `${capital(inWords(sentence))}.`),
+      h("p", { class: "note" }, `${capitalised(inWords(sentence))}.`),
     ),
     said,
     understood

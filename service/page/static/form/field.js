@@ -1,8 +1,8 @@
 /** A field of the form: label, control, explanation and mistakes, linked for assistive technology. */
 
 import { byId, focused, h } from "../lib/dom.js";
-import { idOf, written } from "./path.js";
-import { capital, inWords, WORDS } from "../lib/words.js";
+import { idOf, pathText } from "./path.js";
+import { capitalised, inWords, WORDS } from "../lib/words.js";
 
 const CONTROLS = "input, select, textarea";
 
@@ -51,7 +51,7 @@ export function field(
   if (register)
     form.register({
       path,
-      key: written(path),
+      key: pathText(path),
       node,
       controls: inputs.filter((one) => !one.classList.contains("unit")),
       error,
@@ -90,7 +90,7 @@ export function explanation(id, label, why) {
         button.focus();
       },
     },
-    capital(sentence),
+    capitalised(sentence),
     name ? [" ", h("a", { href: `#/help/${name}` }, `More about ${label}`)] : null,
   );
   const button = h(
@@ -130,7 +130,7 @@ export function showWrong(fields, wrong, { missing = false } = {}) {
     else
       sentencesOf.set(nearestField, [
         ...(sentencesOf.get(nearestField) ?? []),
-        before + below(nearestField, path) + text,
+        before + partOfField(nearestField, path) + text,
       ]);
   }
   for (const [one, sentences] of sentencesOf) {
@@ -156,7 +156,7 @@ function say(one, found) {
   const bad = sentences.length > 0 && !isUntouched;
   one.error.hidden = !sentences.length;
   one.error.classList.toggle("needed", isUntouched);
-  one.error.textContent = sentences.map(capital).join(" ");
+  one.error.textContent = sentences.map(capitalised).join(" ");
   for (const control of one.controls) {
     if (bad) {
       control.setAttribute("aria-invalid", "true");
@@ -190,7 +190,7 @@ function nearest(fields, path) {
  * Return, in words, the part of a field to which a sentence refers; "" for a single number, or for the whole field.
  * @param {Form.Field} one @param {string} path
  */
-function below(one, path) {
+function partOfField(one, path) {
   if (one.key === path) return "";
   if (!path.startsWith(one.key)) return `${path}: `;
   const key = path.slice(one.key.length).replace(/^[. ]/, "");

@@ -6,8 +6,8 @@ import { completing } from "./completion.js";
 import { plain } from "./controls.js";
 import { field } from "./field.js";
 import { objectiveField } from "./objective.js";
-import { at, idOf, isTable, put, renamed, written } from "./path.js";
-import { say } from "./typed_field.js";
+import { at, idOf, isTable, put, withRenamedKey, pathText } from "./path.js";
+import { say } from "./typed_number.js";
 import { join, kinds, usual } from "../lib/units.js";
 
 const WHY =
@@ -134,7 +134,7 @@ function row(form, table, key, place, asked, what) {
       parts.map(({ key: part, input: of }) => {
         const error = h("p", { class: "error", id: `${of.id}-error`, hidden: true });
         const path = [...spot.path, part];
-        form.register({ path, key: written(path), node: of, controls: [of], error });
+        form.register({ path, key: pathText(path), node: of, controls: [of], error });
         if (kind === null) of.addEventListener("input", changed);
         return error;
       }),
@@ -179,7 +179,7 @@ function row(form, table, key, place, asked, what) {
  */
 function watch(form, made, input, path, changed) {
   const tell = () => {
-    const checkedFormula = form.said?.formulas.find((one) => one.path === written(path()));
+    const checkedFormula = form.said?.formulas.find((one) => one.path === pathText(path()));
     if (checkedFormula?.kind)
       input.dataset.said = !checkedFormula.unit
         ? "a number without a unit"
@@ -200,7 +200,7 @@ function watch(form, made, input, path, changed) {
  * @param {Form.Whole} form @param {Form.Path} path
  */
 function kindAt(form, path) {
-  const checkedFormula = form.said?.formulas.find((one) => one.path === written(path));
+  const checkedFormula = form.said?.formulas.find((one) => one.path === pathText(path));
   return checkedFormula?.kind && kinds().includes(checkedFormula.kind) ? checkedFormula.kind : null;
 }
 
@@ -258,7 +258,7 @@ function named(form, name, place) {
       if (typed === name) return;
       setTimeout(() => {
         // after the focus has moved, so that a clicked control is not redrawn before its click
-        callIt(form, name, typed);
+        renameFormula(form, name, typed);
         form.redraw();
       });
     },
@@ -333,7 +333,7 @@ function named(form, name, place) {
 }
 
 /** Rename a formula wherever the job uses it. @param {Form.Whole} form @param {string} before @param {string} after */
-function callIt(form, before, after) {
+function renameFormula(form, before, after) {
   const word = new RegExp(`(?<![\\w.])${before}(?![\\w.(])`, "g");
   /** @param {unknown} part @returns {unknown} */
   const inside = (part) =>
@@ -362,7 +362,7 @@ function callIt(form, before, after) {
   put(
     form.job,
     ["quantity"],
-    renamed(/** @type {Record<string, unknown>} */ (form.at(["quantity"])), before, after),
+    withRenamedKey(/** @type {Record<string, unknown>} */ (form.at(["quantity"])), before, after),
   );
   form.put(["quantity", after], form.at(["quantity", after]));
 }

@@ -1,6 +1,6 @@
 /** The job as a file: its text beside the form, synchronised with it; loaded from a file and saved as one. */
 
-import { address, answered, get, post, Problem } from "../lib/api.js";
+import { address, fetchResponse, get, post, Problem } from "../lib/api.js";
 import { h, markInvalid } from "../lib/dom.js";
 import { download } from "../lib/download.js";
 import { attempt, say } from "../lib/notices.js";
@@ -131,7 +131,7 @@ async function jobOf(file) {
 
 /** @param {Form.Job} job */
 async function toml(job) {
-  const response = await answered("POST", address("toml"), {
+  const response = await fetchResponse("POST", address("toml"), {
     headers: { "Content-Type": "application/json" },
     body: JSON.stringify({ job }),
   });

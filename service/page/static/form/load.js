@@ -3,12 +3,12 @@
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
-import { fits } from "./motion.js";
+import { appliesToMotion } from "./motion.js";
 import { idOf, isTable } from "./path.js";
 import { points } from "./points.js";
 import { describe, words } from "./schema.js";
 import { inDisplayUnits } from "../lib/numbers.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 /**
  * Return the fields of all loads, with buttons to add and to remove one.
@@ -25,7 +25,10 @@ export function loads(form) {
       onclick: () => {
         form.put(
           ["load"],
-          [...all, structuredClone(kinds(form).filter((kind) => fits(form, kind))[0].first)],
+          [
+            ...all,
+            structuredClone(kinds(form).filter((kind) => appliesToMotion(form, kind))[0].first),
+          ],
         );
         form.redraw(idOf(["load", all.length, "kind"]));
       },
@@ -40,7 +43,7 @@ function one(form, load, place, all) {
   const path = ["load", place];
   const every = kinds(form);
   const kind = every.find(({ key }) => isTable(load) && key in load) ?? every[0];
-  const fitting = every.filter((one) => one === kind || fits(form, one));
+  const fitting = every.filter((one) => one === kind || appliesToMotion(form, one));
   const select = h(
     "select",
     {
@@ -96,7 +99,7 @@ function one(form, load, place, all) {
     const line = chosen.querySelector(".understood");
     if (!(line instanceof HTMLElement)) return;
     line.hidden = loads.length !== all.length;
-    line.textContent = line.hidden ? "" : capital(inDisplayUnits(loads[place]));
+    line.textContent = line.hidden ? "" : capitalised(inDisplayUnits(loads[place]));
   }
   say();
   const fields = [

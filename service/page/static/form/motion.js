@@ -55,7 +55,7 @@ export function isLever(form) {
 }
 
 /** Return whether a quantity, or a kind of load, applies to the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
-export function fits(form, { motion }) {
+export function appliesToMotion(form, { motion }) {
   return motion === "" || motion === (isLever(form) ? "lever" : swings(form) ? "swing" : "turn");
 }
 
@@ -193,7 +193,9 @@ function change(form, kind) {
   for (const table of ["constraints", "objectives"]) {
     for (const name of Object.keys(form.at([table]) ?? {})) {
       const quantity = form.quantities.get(name);
-      if (!(quantity ? fits(form, quantity) : name !== "slow_stroke" || kind === undefined)) {
+      if (
+        !(quantity ? appliesToMotion(form, quantity) : name !== "slow_stroke" || kind === undefined)
+      ) {
         form.put([table, name], undefined);
         gone.push(quantity?.title ?? "slow stroke");
       }
@@ -204,8 +206,10 @@ function change(form, kind) {
       form
         .judging()
         .find(
-          (one) => swings(form) && one.motion !== "" && fits(form, one) && one.kind === "force",
-        ) ?? form.judging().find((one) => fits(form, one) && one.offered.includes("objective"));
+          (one) =>
+            swings(form) && one.motion !== "" && appliesToMotion(form, one) && one.kind === "force",
+        ) ??
+      form.judging().find((one) => appliesToMotion(form, one) && one.offered.includes("objective"));
     if (first)
       form.put(["objectives", first.name], first.better === "high" ? "maximise" : "minimise");
   }

@@ -41,7 +41,7 @@ export function put(job, path, value) {
 const LONGEST = 60;
 
 /** Return a path in the notation of the service: "load #1.force"; keys that are formulas are in quotes. @param {Form.Path} path @returns {string} */
-export function written(path) {
+export function pathText(path) {
   return path
     .map((key, place) =>
       typeof key === "number" ? ` #${key + 1}` : (place ? "." : "") + quoted(key),
@@ -50,7 +50,7 @@ export function written(path) {
 }
 
 /** Return the path for a text in the notation of the service. @param {string} text @returns {Form.Path} */
-export function parted(text) {
+export function parsedPath(text) {
   return [...text.matchAll(/ #(\d+)|"(?:[^"\\]|\\.)*"|[A-Za-z_]\w*/g)].map(([part, number]) =>
     number ? Number(number) - 1 : part.startsWith('"') ? JSON.parse(part) : part,
   );
@@ -66,7 +66,7 @@ function quoted(key) {
  * Return a table with one key renamed in place.
  * @param {Record<string, unknown>} table @param {string} before @param {string} after
  */
-export function renamed(table, before, after) {
+export function withRenamedKey(table, before, after) {
   return Object.fromEntries(
     Object.entries(table).map(([key, value]) => [key === before ? after : key, value]),
   );

@@ -6,7 +6,7 @@ import { attempt } from "../lib/notices.js";
 import { unitSelect } from "./controls.js";
 import { centresOf, curve } from "./curve.js";
 import { field } from "./field.js";
-import { at, idOf, put, written } from "./path.js";
+import { at, idOf, put, pathText } from "./path.js";
 import { convert, join, measureOf, split } from "../lib/units.js";
 
 /** @typedef {{ key: string, label: string, kind: string | null }} Column */
@@ -145,7 +145,7 @@ export function points(
   picture.draw();
   form.register({
     path: [...path, columns[1].key],
-    key: written([...path, columns[1].key]),
+    key: pathText([...path, columns[1].key]),
     node,
     controls: [units[1] ?? text],
     error,

@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { changeUnit, numberInput, unitSelect } from "./controls.js";
 import { field, replace } from "./field.js";
 import { at, idOf, isTable } from "./path.js";
-import { drawnFrom, entered } from "./typed_field.js";
+import { drawnFrom, typedValueOrRange } from "./typed_number.js";
 import { convert, join, split, spread } from "../lib/units.js";
 
 /** @typedef {"range" | "fixed" | "step" | "series" | "values" | "choices"} Mode */
@@ -72,7 +72,7 @@ export function range(
   if (!list) inputs.forEach((input, place) => drawnFrom(input, begun[place], units));
   const typed = () => (list ? inputs[0].value.split(/[,;\n]/) : inputs.map((one) => one.value));
   /** Return the typed value of an input; only an end of the range can become a range. @param {HTMLInputElement} one @param {number} place */
-  const read = (one, place) => entered(one, { kind, select: units, range: place < 2 });
+  const read = (one, place) => typedValueOrRange(one, { kind, select: units, range: place < 2 });
   const ends = () =>
     list ? undefined : inputs.map((one, place) => read(one, place).ends).find(Boolean);
   /** @returns {unknown[]} */

@@ -4,19 +4,19 @@ import { h } from "../lib/dom.js";
 import { choices, choicesGiven } from "./catalogue.js";
 import { byschema, choice, quantity } from "./controls.js";
 import { formulaObjectives, formulaRequirements, namedFormulas, namesGiven } from "./formula.js";
-import { link } from "./link.js";
+import { link } from "./link_mass.js";
 import { loads } from "./load.js";
-import { fits, isLever, motion, swings } from "./motion.js";
+import { appliesToMotion, isLever, motion, swings } from "./motion.js";
 import { objective } from "./objective.js";
 import { isTable } from "./path.js";
 import { range } from "./range.js";
 import { requirement } from "./bounds.js";
 import { words } from "./schema.js";
 import { speedProfile } from "./speed.js";
-import { solving } from "./solving.js";
+import { solving } from "./search_settings.js";
 import { strength, strengthGiven } from "./strength.js";
 import { targetMotion, targetMotionText } from "./target_motion.js";
-import { varying, varyingNames } from "./varying.js";
+import { varying, varyingNames } from "./extra_variables.js";
 
 const LINE = 90; // maximum length of a group's summary
 const FORM_TABLES = new Set([
@@ -233,7 +233,7 @@ function offered(form, part) {
     .filter(
       (one) =>
         one.offered.includes(part) &&
-        (fits(form, one) || form.at(["constraints", one.name]) !== undefined),
+        (appliesToMotion(form, one) || form.at(["constraints", one.name]) !== undefined),
     )
     .map(({ name }) => name);
 }
@@ -265,7 +265,7 @@ function adding(form) {
     ...requirementOptions(form),
     ...Object.keys(form.at(["constraints"]) ?? {}),
   ]);
-  const left = form.judging().filter((one) => !taken.has(one.name) && fits(form, one));
+  const left = form.judging().filter((one) => !taken.has(one.name) && appliesToMotion(form, one));
   const select = h(
     "select",
     {
@@ -321,7 +321,9 @@ function pins(form) {
 function wishes(form) {
   const objectives = Object.keys(form.at(["objectives"]) ?? {});
   const main = new Set([...offered(form, "objective"), ...objectives]);
-  const all = form.judging().filter((one) => fits(form, one) || objectives.includes(one.name));
+  const all = form
+    .judging()
+    .filter((one) => appliesToMotion(form, one) || objectives.includes(one.name));
   return [
     h(
       "div",

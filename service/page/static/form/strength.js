@@ -5,7 +5,7 @@ import { convert, join, split } from "../lib/units.js";
 import { byschema, choice } from "./controls.js";
 import { at, isTable } from "./path.js";
 import { range } from "./range.js";
-import { around, titleOf } from "./varying.js";
+import { rangeAround, titleOf } from "./extra_variables.js";
 
 const PATH = ["sections"];
 const RANGES = ["width", "depth"];
@@ -86,7 +86,7 @@ export function strength(form) {
         "div",
         { class: "fields" },
         keysOf(form, [...PATH, "pins"]).map((key) =>
-          held(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`),
+          fixedOrVarying(form, [...PATH, "pins", key], `diameter of the ${titleOf(key)}`),
         ),
       ),
     ),
@@ -152,7 +152,7 @@ function keysOf(form, path) {
  * Return the field of a fixed number with a button that makes it vary; if it varies, also its permitted values.
  * @param {Form.Whole} form @param {Form.Path} path @param {string} label
  */
-export function held(form, path, label) {
+export function fixedOrVarying(form, path, label) {
   const varies = ["variables", ...path];
   const fixedField = byschema(form, path, { label, required: true });
   if (form.at(varies) === undefined) {
@@ -163,7 +163,7 @@ export function held(form, path, label) {
         "aria-label": `Let ${label} vary`,
         onclick: () => {
           const value = form.at(path);
-          form.put(varies, around(typeof value === "number" ? value : String(value ?? "")));
+          form.put(varies, rangeAround(typeof value === "number" ? value : String(value ?? "")));
           form.redraw();
         },
       },

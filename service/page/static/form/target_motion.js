@@ -1,6 +1,6 @@
 /** Desired slider motion: points over the crank angle, pasted or drawn, and permitted shifts. */
 
-import { between } from "../charts/cycle.js";
+import { interpolatedValue } from "../charts/cycle.js";
 import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { points } from "./points.js";
@@ -81,7 +81,7 @@ function first(form) {
   const motion = form.said?.example?.motion;
   const angles = motion ? Array.from({ length: 360 / EVERY }, (_, n) => n * EVERY) : [0, 90, 180];
   const positions = motion
-    ? angles.map((angle) => Math.round(between(motion.slider_position_mm, angle) ?? 0))
+    ? angles.map((angle) => Math.round(interpolatedValue(motion.slider_position_mm, angle) ?? 0))
     : [240, 200, 160];
   return {
     crank_angles: angles.map((angle) => `${angle} deg`),

@@ -5,7 +5,7 @@ import { menu } from "../lib/menu.js";
 import { ends, text } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { headed, helpLink } from "./columns.js";
-import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
+import { setLogarithmic, isLogarithmic, mayBeLogarithmic } from "./logarithmic.js";
 
 /** @import { Explorer } from "./explorer.js" */
 /** @import { Axis } from "./choices.js" */
@@ -73,8 +73,13 @@ export function axisFields(explorer) {
         act("Move left", () => explorer.moveAxis(index, -1), index === 0),
         act("Move right", () => explorer.moveAxis(index, 1), index === count - 1),
         act("Flip", () => explorer.flipAxis(index)),
-        mayBeLogged(explorer, key) &&
-          act("Logarithmic", () => logAxis(explorer, key), false, logged(explorer, key)),
+        mayBeLogarithmic(explorer, key) &&
+          act(
+            "Logarithmic",
+            () => setLogarithmic(explorer, key),
+            false,
+            isLogarithmic(explorer, key),
+          ),
         act(
           "Leave out",
           () => explorer.setAxes(explorer.chosen.axes.filter((_, other) => other !== index)),

@@ -1,7 +1,7 @@
 /** Rank correlation of two quantities, in words and for every pair of objectives. */
 
 import { fill, h } from "../lib/dom.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 import { headedRow, headsOf, table } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -58,7 +58,7 @@ export function inWords(x, y, value, count) {
   const numbers = `(rank correlation ${value.toFixed(2).replace("-", "−")}, ${count} designs)`;
   return often
     ? `Designs with a higher ${x} ${often} have a ${value > 0 ? "higher" : "lower"} ${y} ${numbers}.`
-    : `${capital(x)} and ${y} are hardly related ${numbers}.`;
+    : `${capitalised(x)} and ${y} are hardly related ${numbers}.`;
 }
 
 /** Return {place, draw()}: the correlation of the plotted pair in words, and all pairs of objectives as choices. @param {Explorer} explorer */

@@ -3,13 +3,13 @@
 import { parallel } from "../charts/parallel.js";
 import { scatter } from "../charts/scatter.js";
 import { colours } from "../charts/scale.js";
-import { keep, link } from "../lib/address.js";
+import { keepChoices, link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
 import { counted, grouped, withUnit } from "../lib/numbers.js";
 import { attempt } from "../lib/notices.js";
 import { axisFields } from "./axes.js";
 import { previousFront } from "./previous_front.js";
-import { bindingPanel } from "./binding.js";
+import { bindingPanel } from "./active_limits.js";
 import { chooser } from "./chooser.js";
 import { choicesFrom, queryOf, toggled, neededColumns } from "./choices.js";
 import { FrontData } from "./data.js";
@@ -18,14 +18,14 @@ import { Limits } from "./limits.js";
 import { storeOrder } from "./listed_order.js";
 import { linkagePanel } from "./linkage_panel.js";
 import { linkages } from "./linkages.js";
-import { logged } from "./logarithmic.js";
+import { isLogarithmic } from "./logarithmic.js";
 import { marksOf, othersOf } from "./chart_marks.js";
 import { marksPanel } from "./marks.js";
-import { saving } from "./saving.js";
+import { saving } from "./save_button.js";
 import { scatterPanel } from "./scatter_panel.js";
-import { selectedBar } from "./selected.js";
+import { selectedBar } from "./selected_bar.js";
 import { designTable } from "./table.js";
-import { wishingPanel } from "./wishing.js";
+import { wishingPanel } from "./wishing_panel.js";
 
 const OFTEN = 120; // ms between tables while limits are dragged: rows are the slowest to draw
 const PAUSE = 300; // ms from the last change until the address is written: browsers limit the rate
@@ -97,7 +97,7 @@ export class Explorer {
       colour: () => chosen.colour,
       marks: () => marksOf(this, "lines"),
       limit: (key, limit) => this.limit(key, limit),
-      log: (key) => logged(this, key),
+      log: (key) => isLogarithmic(this, key),
       say: (row) => this.said(row),
       point: (row) => this.point(row),
       open: (row) => this.open(row),
@@ -111,7 +111,7 @@ export class Explorer {
       colour: () => chosen.colour,
       marks: () => marksOf(this, "dots"),
       others: () => othersOf(this).map(({ cells }) => cells),
-      log: (key) => logged(this, key),
+      log: (key) => isLogarithmic(this, key),
       say: (row) => this.said(row),
       behind: () => (chosen.behind && this.before ? this.before.rows(chosen.x, chosen.y) : []),
       point: (row) => this.point(row),
@@ -271,7 +271,7 @@ export class Explorer {
   /** Write the choices into the address, so that the browser's Back button returns here. */
   keepAddress() {
     clearTimeout(this.settling);
-    keep(queryOf(this.chosen, this.limits.lasso));
+    keepChoices(queryOf(this.chosen, this.limits.lasso));
   }
 
   /** @param {What} what */

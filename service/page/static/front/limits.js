@@ -1,6 +1,6 @@
 /** Limits on quantities, and which designs are within all of them. */
 
-import { inside } from "../charts/lasso.js";
+import { isInside } from "../charts/lasso.js";
 
 /** @import { FrontData } from "./data.js" */
 
@@ -51,7 +51,7 @@ export class Limits {
     if (this.lasso && data.has(this.lasso.x) && data.has(this.lasso.y)) {
       const [across, up] = [data.numbers(this.lasso.x), data.numbers(this.lasso.y)];
       for (let row = 0; row < mask.length; row += 1)
-        if (mask[row] && !inside(this.lasso.line, across[row], up[row])) mask[row] = 0;
+        if (mask[row] && !isInside(this.lasso.line, across[row], up[row])) mask[row] = 0;
     }
     let chosen = 0;
     for (let row = 0; row < mask.length; row += 1) chosen += mask[row];

@@ -2,7 +2,7 @@
 
 import { get } from "../lib/api.js";
 import { deadCentresOf } from "../mechanism/motion.js";
-import { around, frameOfExtent, frameWithin } from "../mechanism/frame.js";
+import { frameAround, frameOfExtent, frameWithin } from "../mechanism/frame.js";
 
 /**
  * @import { FrontData } from "./data.js"
@@ -50,7 +50,7 @@ export function linkages(data, signal) {
         ),
       ); // of one that need not turn
     }
-    frame = around(frames);
+    frame = frameAround(frames);
     return frame;
   }
   return {

@@ -19,7 +19,7 @@ export function storeOrder(job, numbers) {
  * @param {string | number} job @param {number} number @param {number} all
  */
 export function neighbours(job, number, all) {
-  const numbers = kept(job);
+  const numbers = storedOrder(job);
   const place = numbers.indexOf(number);
   if (place >= 0)
     return {
@@ -39,7 +39,7 @@ export function neighbours(job, number, all) {
 }
 
 /** @param {string | number} job @returns {number[]} */
-function kept(job) {
+function storedOrder(job) {
   try {
     const numbers = JSON.parse(sessionStorage.getItem(key(job)) ?? "[]");
     return Array.isArray(numbers) ? numbers : [];

@@ -5,7 +5,7 @@ import { fill, h } from "../lib/dom.js";
 import { ends } from "../lib/numbers.js";
 import { headed } from "./columns.js";
 import { correlations } from "./correlation.js";
-import { logAxis, logged, mayBeLogged } from "./logarithmic.js";
+import { setLogarithmic, isLogarithmic, mayBeLogarithmic } from "./logarithmic.js";
 
 /**
  * @import { Explorer } from "./explorer.js"
@@ -32,7 +32,7 @@ export function scatterPanel(explorer, dots) {
     const log = h("input", {
       type: "checkbox",
       "aria-label": `Logarithmic, ${label.toLowerCase()}`,
-      onchange: () => logAxis(explorer, chosen[name]),
+      onchange: () => setLogarithmic(explorer, chosen[name]),
     });
     const logs = h("label", { class: "log", title: "Logarithmic axis" }, log, " log");
     return {
@@ -87,8 +87,8 @@ export function scatterPanel(explorer, dots) {
   function draw() {
     for (const picker of picks) {
       picker.select.value = chosen[picker.name];
-      picker.logs.hidden = !mayBeLogged(explorer, chosen[picker.name]);
-      picker.log.checked = logged(explorer, chosen[picker.name]);
+      picker.logs.hidden = !mayBeLogarithmic(explorer, chosen[picker.name]);
+      picker.log.checked = isLogarithmic(explorer, chosen[picker.name]);
     }
   }
 

@@ -1,6 +1,6 @@
 /** Wishes for the objectives of a front: in the address, and in requests and responses of the service. */
 
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 /**
  * @typedef {"free" | "value" | "improve" | "keep" | "limit"} Kind
@@ -55,11 +55,11 @@ export function wishRequest({ of, design }, objectives) {
       kind === "value" ? number : kind === "limit" ? `may worsen to ${number}` : kind,
     ];
   });
-  return { at: Object.fromEntries(texts), design: relative({ of, design }) ? design : null };
+  return { at: Object.fromEntries(texts), design: refersToDesign({ of, design }) ? design : null };
 }
 
 /** Whether any wish refers to a design. @param {Wishes} wishes */
-export function relative({ of }) {
+export function refersToDesign({ of }) {
   return [...of.values()].some(({ kind }) => CLASSES.includes(kind));
 }
 
@@ -67,7 +67,7 @@ export function relative({ of }) {
  * Return mistakes in wishes that can be found without the service, each with its location.
  * @param {Wishes} wishes @param {readonly { quantity: string }[]} objectives @param {number} count of designs @returns {Problem[]}
  */
-export function wrongIn(wishes, objectives, count) {
+export function mistakesIn(wishes, objectives, count) {
   const { of, design } = wishes;
   /** @type {Problem[]} */
   const problems = [];
@@ -80,7 +80,7 @@ export function wrongIn(wishes, objectives, count) {
   }
   const kinds = objectives.map(({ quantity }) => of.get(quantity)?.kind ?? "free");
   if (
-    relative(wishes) &&
+    refersToDesign(wishes) &&
     (design === null || !Number.isInteger(design) || design < 1 || design > count)
   )
     problems.push({
@@ -104,12 +104,12 @@ export function wrongIn(wishes, objectives, count) {
  * Return the location of a refusal by the service: the objective that it names first.
  * @param {string} detail @param {readonly { quantity: string }[]} objectives @returns {Problem}
  */
-export function placed(detail, objectives) {
+export function locationOfRefusal(detail, objectives) {
   const named = objectives
     .map(({ quantity }) => ({ quantity, at: detail.indexOf(quantity) }))
     .filter(({ at }) => at >= 0);
   named.sort((one, other) => one.at - other.at || other.quantity.length - one.quantity.length);
-  const text = `${capital(detail)}.`;
+  const text = `${capitalised(detail)}.`;
   return { id: named.length === 1 ? named[0].quantity : "", text };
 }
 

@@ -8,7 +8,7 @@ import { get, isAbort, statusOf } from "../lib/api.js";
 import { listenToJob } from "../lib/events.js";
 import { fill, h } from "../lib/dom.js";
 import { counted, grouped, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
-import { capital, inWords } from "../lib/words.js";
+import { capitalised, inWords } from "../lib/words.js";
 import { growth } from "./growth.js";
 import { stages } from "./stages.js";
 import { stateWord } from "./states.js";
@@ -27,7 +27,7 @@ const AT_LEAST = 5000; // minimum of that time, ms
  * deleted.
  * @param {HTMLElement} place @param {Api.Job} job @param {{ signal: AbortSignal, changed: (job: Api.Job | null) => unknown }} options
  */
-export function watch(place, job, { signal, changed }) {
+export function showProgress(place, job, { signal, changed }) {
   const bar = h("progress", { "aria-label": "Rounds", max: 1, value: 0 });
   const figures = h("dl", { class: "figures" });
   const course = stages();
@@ -317,7 +317,7 @@ export function watch(place, job, { signal, changed }) {
         "p",
         { class: "quiet" },
         waits
-          ? `Waiting for a worker. ${now.reason && `${capital(inWords(now.reason))}.`}`
+          ? `Waiting for a worker. ${now.reason && `${capitalised(inWords(now.reason))}.`}`
           : now.progress?.round
             ? "No finished design yet."
             : "The front appears after the first round.",

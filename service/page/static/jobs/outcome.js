@@ -2,7 +2,7 @@
 
 import { link } from "../lib/address.js";
 import { h } from "../lib/dom.js";
-import { capital, inWords } from "../lib/words.js";
+import { capitalised, inWords } from "../lib/words.js";
 
 /** Return the message for a job that ended without success; null for one that is done. @param {Api.Job} job */
 export function outcome(job) {
@@ -13,26 +13,26 @@ export function outcome(job) {
   );
   const designs = job.summary?.designs ?? 0;
   if (job.state === "infeasible") {
-    return said("No design meets all requirements", job.reason, [
+    return outcomeMessage("No design meets all requirements", job.reason, [
       "Relax one of them, or widen a range, and search again. ",
       again,
     ]);
   }
   if (job.state === "failed") {
-    return said("The run stopped with an error", job.reason, [
+    return outcomeMessage("The run stopped with an error", job.reason, [
       "Resume it above to continue from its last round. If it stops there again, download its file error.txt and tell whoever runs the service, or change the job. ",
       again,
     ]);
   }
   if (job.state === "cancelled" && designs) {
-    return said(
+    return outcomeMessage(
       "Stopped early",
-      `The designs found so far are below; a longer search finds better designs. ${capital(inWords(job.reason))}.`,
+      `The designs found so far are below; a longer search finds better designs. ${capitalised(inWords(job.reason))}.`,
       ["Resume it above to continue."],
     );
   }
   if (job.state === "cancelled") {
-    return said(
+    return outcomeMessage(
       job.progress?.feasible
         ? "Stopped before its designs were collected"
         : "Stopped before it found a design",
@@ -44,12 +44,12 @@ export function outcome(job) {
 }
 
 /** @param {string} heading @param {string} reason @param {Dom.Child[]} remedy */
-function said(heading, reason, remedy) {
+function outcomeMessage(heading, reason, remedy) {
   return h(
     "section",
     { class: "panel outcome", "aria-labelledby": "outcome-title" },
     h("h2", { id: "outcome-title" }, heading),
-    reason && h("p", {}, capital(inWords(reason)).replace(/[^.!?]$/, "$&.")),
+    reason && h("p", {}, capitalised(inWords(reason)).replace(/[^.!?]$/, "$&.")),
     h("p", {}, remedy),
   );
 }

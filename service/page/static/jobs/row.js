@@ -38,13 +38,13 @@ export function runRow(job, { picture, chosen, compare, changed }) {
       h("div", { class: "quiet" }, badge(job), ` · run ${job.id} · `, moment(job)),
     ),
     picture,
-    h("div", { class: "found" }, standing(job)),
+    h("div", { class: "found" }, progressOrResult(job)),
     h("div", { class: "row acts" }, actions(job, changed)),
   );
 }
 
 /** Return the progress or the result of a job. @param {Api.JobRow} job */
-function standing(job) {
+function progressOrResult(job) {
   if (job.state === "running" && job.progress) {
     const { stage, steps, feasible } = job.progress;
     const [part, done, of] = steps

@@ -17,7 +17,7 @@ export function stages() {
     node,
     /** @param {Api.Progress} data */
     add(data) {
-      stageList = taken(stageList, data, seconds);
+      stageList = stagesAfter(stageList, data, seconds);
       seconds = data.seconds ?? 0;
       draw();
     },
@@ -39,13 +39,13 @@ export function stages() {
  * Return the stages after an event: the last one continues or another one begins; a restarted search starts again.
  * @param {readonly Stage[]} before @param {Api.Progress} data @param {number} seconds of the event before @returns {Stage[]}
  */
-export function taken(before, data, seconds) {
+export function stagesAfter(before, data, seconds) {
   const { stage: name, round, step = 0, steps = 0 } = data;
   const now = data.seconds ?? 0;
   const stageList = before.slice();
   const last = stageList.at(-1);
   if (last && (now < last.from || round < last.rounds[0]))
-    return taken([], data, Math.min(seconds, now));
+    return stagesAfter([], data, Math.min(seconds, now));
   if (last?.name === name)
     stageList[stageList.length - 1] = {
       ...last,

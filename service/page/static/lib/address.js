@@ -27,7 +27,7 @@ export function link(parts, query = {}) {
  * Store choices in the address of this view, without a history entry and without redrawing.
  * @param {Record<string, Dom.Value>} query
  */
-export function keep(query) {
+export function keepChoices(query) {
   history.replaceState(history.state, "", link(read().parts, query));
 }
 
@@ -35,7 +35,7 @@ export function keep(query) {
  * Return the last address of a view with its choices, or the plain one.
  * @param {readonly (string | number)[]} parts
  */
-export function left(parts) {
+export function lastAddress(parts) {
   return sessionStorage.getItem(`left ${link(parts)}`) ?? link(parts);
 }
 

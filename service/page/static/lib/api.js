@@ -1,6 +1,6 @@
 /** API of the service that delivered this page. */
 
-import { letIn } from "./token.js";
+import { askForToken } from "./token.js";
 
 const PREFIX = "api/v1";
 const LONGEST = 30; // default wait before a request is repeated, s
@@ -59,9 +59,10 @@ export function get(path, query = {}, signal = undefined) {
 
 /** Return the text at a path. Throws as `get` does. @param {string} path @param {Api.Query} query @param {AbortSignal} [signal] */
 export async function getText(path, query = {}, signal = undefined) {
-  const response = await answered("GET", address(path, query), { signal });
+  const response = await fetchResponse("GET", address(path, query), { signal });
   const text = await response.text();
-  if (!response.ok) throw new Problem(response.status, `The service answered ${response.status}.`);
+  if (!response.ok)
+    throw new Problem(response.status, `The service fetchResponse ${response.status}.`);
   return text;
 }
 
@@ -88,7 +89,7 @@ export function post(path, body = undefined, { query, signal, headers } = {}) {
  */
 export async function postWithProgress(path, body, { query, signal, told: onProgress }) {
   const headers = { Accept: "text/event-stream", "Content-Type": "application/json" };
-  const response = await answered("POST", address(path, query), {
+  const response = await fetchResponse("POST", address(path, query), {
     headers,
     signal,
     body: JSON.stringify(body),
@@ -139,7 +140,7 @@ async function ask(method, url, body, signal, more = {}) {
   const headers = { Accept: "application/json", ...more };
   if (body !== undefined) headers["Content-Type"] ??= "application/json";
   const sent = body === undefined || typeof body === "string" ? body : JSON.stringify(body);
-  return jsonOf(await answered(method, url, { signal, headers, body: sent }));
+  return jsonOf(await fetchResponse(method, url, { signal, headers, body: sent }));
 }
 
 /** Return the JSON of a response. Throws a Problem for a refusal. @param {Response} response */
@@ -155,7 +156,7 @@ async function jsonOf(response) {
   if (!response.ok)
     throw new Problem(
       response.status,
-      answer?.detail ?? `The service answered ${response.status}.`,
+      answer?.detail ?? `The service fetchResponse ${response.status}.`,
       answer?.type,
     );
   return answer;
@@ -183,7 +184,7 @@ function infinite(key, value) {
  * service postpones is repeated at the stated time, at most three times.
  * @param {string} method @param {string} url @param {RequestInit} options @param {number} left times that it may be sent again @returns {Promise<Response>}
  */
-export async function answered(method, url, options = {}, left = 3) {
+export async function fetchResponse(method, url, options = {}, left = 3) {
   let response;
   try {
     response = await fetch(url, { method, ...options });
@@ -193,14 +194,16 @@ export async function answered(method, url, options = {}, left = 3) {
   }
   const seconds = Number(response.headers.get("Retry-After"));
   if (response.status === 503 && method === "GET" && left > 0 && seconds > 0) {
-    await passed(1000 * Math.min(seconds, LONGEST), options.signal);
-    return answered(method, url, options, left - 1);
+    await waitFor(1000 * Math.min(seconds, LONGEST), options.signal);
+    return fetchResponse(method, url, options, left - 1);
   }
-  return response.status === 401 && (await letIn()) ? answered(method, url, options) : response;
+  return response.status === 401 && (await askForToken())
+    ? fetchResponse(method, url, options)
+    : response;
 }
 
 /** Wait for a number of ms. Throws an AbortError once `signal` is aborted. @param {number} ms @param {AbortSignal | null} [signal] */
-async function passed(ms, signal) {
+async function waitFor(ms, signal) {
   signal?.throwIfAborted();
   await new Promise((resolve, reject) => {
     setTimeout(resolve, ms);

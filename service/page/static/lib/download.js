@@ -1,6 +1,6 @@
 /** Files made by the page, and files of the service, with a message while they are being made. */
 
-import { answered, Problem, statusOf } from "./api.js";
+import { fetchResponse, Problem, statusOf } from "./api.js";
 import { h } from "./dom.js";
 import { say, sayProblem } from "./notices.js";
 
@@ -42,12 +42,12 @@ async function fetched(link) {
   const title = link.getAttribute("aria-label") ?? link.textContent ?? "";
   const notice = setTimeout(() => say(`${title} is being made.`), SOON);
   try {
-    const response = await answered("GET", link.href);
+    const response = await fetchResponse("GET", link.href);
     if (!response.ok) {
       const problem = await response.json().catch(() => ({}));
       throw new Problem(
         response.status,
-        problem.detail ?? `The service answered ${response.status}.`,
+        problem.detail ?? `The service fetchResponse ${response.status}.`,
       );
     }
     const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");

@@ -2,7 +2,7 @@
 
 import { Problem } from "./api.js";
 import { keyOf, withUnit } from "./numbers.js";
-import { capital, inWords } from "./words.js";
+import { capitalised, inWords } from "./words.js";
 
 const OF_A_FIELD = /^(?:body|query|path) ([\w.]+): (.+)$/s;
 const VALUE = /\b(at least|at most|above|below|got) "?(-?\d[\d.]*(?:e[+-]?\d+)?)"?(?=;|$)/g;
@@ -20,7 +20,7 @@ export function sentenceOf(error) {
 export function refusalInWords(detail) {
   return detail
     .split("\n")
-    .map((line) => capital(inWords(ofField(line.trim()))))
+    .map((line) => capitalised(inWords(ofField(line.trim()))))
     .join(". ");
 }
 

@@ -6,7 +6,7 @@ import { formOf, h } from "./dom.js";
 let asking = null;
 
 /** Ask for the token, once for all requests that lack it; true once it is valid, false if the user cancels. */
-export function letIn() {
+export function askForToken() {
   asking ??= ask().finally(() => (asking = null));
   return asking;
 }

@@ -139,6 +139,6 @@ export function inWords(sentence) {
 }
 
 /** Return a sentence with an initial capital. @param {string} sentence */
-export function capital(sentence) {
+export function capitalised(sentence) {
   return sentence.charAt(0).toUpperCase() + sentence.slice(1);
 }

@@ -1,6 +1,6 @@
 /** Forces as arrows: frame on crank, crank on rod, rod on slider, guide on slider, and the load; or those on a lever. */
 
-import { between } from "../charts/cycle.js";
+import { interpolatedValue } from "../charts/cycle.js";
 import { h, svg } from "../lib/dom.js";
 import { fromDisplayUnit, inDisplayUnit, withUnit } from "../lib/numbers.js";
 
@@ -49,7 +49,9 @@ export function largestForce(curves) {
  * @param {(typeof ARROWS)[0]} arrow @param {Api.Curves} curves @param {number} angle
  */
 export function forceAt({ along }, curves, angle) {
-  const parts = along.flatMap((key) => (key && curves[key] ? [between(curves[key], angle)] : []));
+  const parts = along.flatMap((key) =>
+    key && curves[key] ? [interpolatedValue(curves[key], angle)] : [],
+  );
   return parts.some((part) => part === null) ? null : Math.hypot(...parts.map(Number));
 }
 
@@ -85,7 +87,7 @@ export function arrows() {
       const places = [pivot, pin, slider];
       ARROWS.forEach(({ at, along }, n) => {
         const [x, y] = along.map((key) =>
-          key && curves[key] ? (between(curves[key], angle) ?? 0) : 0,
+          key && curves[key] ? (interpolatedValue(curves[key], angle) ?? 0) : 0,
         );
         lines[n].setAttribute("d", arrow(places[at], unit * x, -unit * y));
       });

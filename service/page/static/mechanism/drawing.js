@@ -1,11 +1,11 @@
 /** Moving mechanism: drawn once, then only moved. */
 
-import { between, crankAt } from "../charts/cycle.js";
+import { interpolatedValue, crankAt } from "../charts/cycle.js";
 import { fill, h, svg } from "../lib/dom.js";
 import { text, withUnit } from "../lib/numbers.js";
 import { arrows } from "./arrows.js";
-import { attached } from "./attached.js";
-import { around, fitted, frameOf, placeIn, sliderRange } from "./frame.js";
+import { attached } from "./attached_parts.js";
+import { frameAround, fitFrame, frameOf, placeIn, sliderRange } from "./frame.js";
 import { cylinder, leverAt, leverScenery } from "./lever.js";
 import { bar, placed, scenery } from "./scenery.js";
 
@@ -52,7 +52,7 @@ export function drawing(place, { label, grips = null }) {
   /** @type {View | null} */
   let view = null;
   /** @type {Frame | null} */
-  let shownFrame = null;
+  let displayedFrame = null;
   let angle = 0;
   let arrowed = false;
 
@@ -64,8 +64,11 @@ export function drawing(place, { label, grips = null }) {
     const machineFrame = frameOf(linkage, motion, outlines);
     const { block, tall } = machineFrame;
     // While a grip is held, the scale changes only where the mechanism would leave the picture.
-    shownFrame = shownFrame && grips?.isHeld() ? around([shownFrame, machineFrame]) : machineFrame;
-    view = fitted(options.frame ?? shownFrame, width, options.small);
+    displayedFrame =
+      displayedFrame && grips?.isHeld()
+        ? frameAround([displayedFrame, machineFrame])
+        : machineFrame;
+    view = fitFrame(options.frame ?? displayedFrame, width, options.small);
     for (const one of [still, moving])
       one.setAttribute("viewBox", `0 0 ${view.width} ${view.height}`);
     const link = Math.min(Math.max(0.05 * (linkage.crank_mm + linkage.rod_mm) * view.unit, 7), 20);
@@ -125,7 +128,7 @@ export function drawing(place, { label, grips = null }) {
       if (arrowed) parts.forces.move(at.pivot, at.pin, at.base, angle);
       return;
     }
-    const position = between(motion.slider_position_mm, angle);
+    const position = interpolatedValue(motion.slider_position_mm, angle);
     if (position === null) return; // the crank locks before
     const radians = (crankAt({ curves: motion, turns: options.turns ?? 1 }, angle) * Math.PI) / 180;
     const pin = /** @type {Page.Point} */ ([
@@ -138,7 +141,7 @@ export function drawing(place, { label, grips = null }) {
       pivot,
       pin,
       slider,
-      motion.transmission_angle_deg && between(motion.transmission_angle_deg, angle),
+      motion.transmission_angle_deg && interpolatedValue(motion.transmission_angle_deg, angle),
       settled,
     );
     if (arrowed) parts.forces.move(pivot, pin, slider, angle);
@@ -184,7 +187,7 @@ function deadCentres(motion, angles, turns) {
   const places = angles ?? [low.angle, high.angle];
   return places.map((angle) => ({
     angle: crankAt({ curves: motion, turns }, angle),
-    position: between(motion.slider_position_mm, angle) ?? NaN,
+    position: interpolatedValue(motion.slider_position_mm, angle) ?? NaN,
   }));
 }
 
@@ -192,7 +195,7 @@ function deadCentres(motion, angles, turns) {
 function crossed({ crank_mm: r }, motion, turns) {
   const place = turns === 2 ? 45 : 90;
   return (
-    (between(motion.slider_position_mm, place) ?? 0) <
+    (interpolatedValue(motion.slider_position_mm, place) ?? 0) <
     r * Math.cos((crankAt({ curves: motion, turns }, place) * Math.PI) / 180) - 1e-9 * r
   );
 }

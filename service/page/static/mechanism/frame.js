@@ -4,7 +4,7 @@ import { extremes } from "../charts/cycle.js";
 
 /**
  * @typedef {{ left: number, right: number, low: number, high: number, block: number, tall: number }} Frame
- * @typedef {ReturnType<typeof fitted>} View
+ * @typedef {ReturnType<typeof fitFrame>} View
  */
 
 const MARGIN = 26; // pixels for parts beside the mechanism
@@ -34,7 +34,7 @@ export function frameOf(linkage, motion, outlines) {
   if (!outlines) return linkageFrame;
   const [left, bottom, right, top] = outlines.extent_mm;
   const [block, tall] = [outlines.slider_length_mm / 1.5, outlines.slider_height_mm];
-  return around([
+  return frameAround([
     linkageFrame,
     { left, low: bottom - 0.1 * block, right, high: top + 0.1 * block, block, tall },
   ]);
@@ -63,7 +63,7 @@ export function frameWithin({ crank_mm: r, offset_mm: e }, inner, outer) {
 }
 
 /** Return a frame that contains several others; mechanisms drawn in one frame have one scale. @param {Frame[]} frames @returns {Frame} */
-export function around(frames) {
+export function frameAround(frames) {
   // Math.min(...) fails with 100,000 arguments and more.
   return frames.reduce((all, one) => ({
     left: Math.min(all.left, one.left),
@@ -80,7 +80,7 @@ export function around(frames) {
  * is permitted.
  * @param {Frame} frame @param {number} width @param {boolean} small
  */
-export function fitted(frame, width, small = false) {
+export function fitFrame(frame, width, small = false) {
   const [wide, tall] = [frame.right - frame.left, frame.high - frame.low];
   const across = (width - 2 * MARGIN) / wide;
   const height = Math.round(

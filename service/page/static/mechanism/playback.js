@@ -1,6 +1,6 @@
 /** Position in the cycle (for a revolution, the crank angle) shared by all parts of the view, and its playback. */
 
-import { turned } from "../charts/cycle.js";
+import { wrappedAngle } from "../charts/cycle.js";
 
 /** @typedef {{ seconds: number, title: string, chosen: boolean }} Pace */
 
@@ -80,14 +80,14 @@ export function playback(rpm, signal, cycle = "one turn") {
 
 /** Return an angle in [-180, 180). @param {number} angle */
 function signed(angle) {
-  return turned(angle + 180) - 180;
+  return wrappedAngle(angle + 180) - 180;
 }
 
 /** Return an angle, or the end of an arc that is nearer to it, in [0, 360). @param {number} angle @param {Page.Point | null} arc */
 function within(angle, arc) {
-  if (!arc) return turned(angle);
+  if (!arc) return wrappedAngle(angle);
   const [middle, half] = [(arc[0] + arc[1]) / 2, (arc[1] - arc[0]) / 2];
-  return turned(middle + Math.min(Math.max(signed(angle - middle), -half), half));
+  return wrappedAngle(middle + Math.min(Math.max(signed(angle - middle), -half), half));
 }
 
 /**

@@ -1,9 +1,9 @@
 /** Fixed parts of a mechanism: bearing, guide, centre lines, paths of the pins, dead centres, offset. */
 
 import { svg } from "../lib/dom.js";
-import { turned } from "../charts/cycle.js";
+import { wrappedAngle } from "../charts/cycle.js";
 import { text, withUnit } from "../lib/numbers.js";
-import { barrel, walls } from "./attached.js";
+import { barrel, walls } from "./attached_parts.js";
 
 /** @typedef {{ angle: number, position: number }} Centre A dead centre, deg and mm. */
 
@@ -217,7 +217,7 @@ function strokeAngles(view, r, e, [inner, outer], direction) {
   const radius = 0.5 * view.unit * r;
   const share = e < 0 ? 0.6 : 0.4; // values beside the dimension of the crank
   if (radius < 24) return null;
-  const span = turned(outer.angle - inner.angle); // counter-clockwise from the inner to the outer dead centre
+  const span = wrappedAngle(outer.angle - inner.angle); // counter-clockwise from the inner to the outer dead centre
   /** @param {number} degrees @param {number} size */
   const at = (degrees, size) => [
     view.x(0) + size * Math.cos((degrees * Math.PI) / 180),

@@ -1,7 +1,7 @@
-import { points, sign } from "../charts/points.js";
+import { points, legendSymbol } from "../charts/points.js";
 import { FrontData } from "../front/data.js";
 import { badge } from "../jobs/states.js";
-import { go, keep, link } from "../lib/address.js";
+import { go, keepChoices, link } from "../lib/address.js";
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, h } from "../lib/dom.js";
@@ -171,7 +171,7 @@ export async function show(place, { query, signal }) {
             h(
               "th",
               { scope: "col", class: "number" },
-              sign(index),
+              legendSymbol(index),
               " ",
               h("a", { href: link(["jobs", job.id]) }, job.name),
               h("div", { class: "quiet" }, `run ${job.id}`),
@@ -231,7 +231,7 @@ export async function show(place, { query, signal }) {
           name,
           onchange: (event) => {
             axes[name] = event.currentTarget.value;
-            keep({ jobs: numbers.join(","), ...axes });
+            keepChoices({ jobs: numbers.join(","), ...axes });
             drawPicture();
           },
         },
@@ -267,7 +267,7 @@ export async function show(place, { query, signal }) {
                     "div",
                     { class: "legend" },
                     runs.map(({ job }, index) =>
-                      h("span", {}, sign(index), ` ${job.name} (run ${job.id})`),
+                      h("span", {}, legendSymbol(index), ` ${job.name} (run ${job.id})`),
                     ),
                   ),
                 ]

@@ -16,12 +16,12 @@ import { inverseForm } from "../design/inverse.js";
 import { whatIf } from "../design/what_if.js";
 import { contents } from "../design/contents.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
-import { placeOf } from "../charts/cycle.js";
-import { keep } from "../lib/address.js";
+import { positionOfAngle } from "../charts/cycle.js";
+import { keepChoices } from "../lib/address.js";
 import { get, Problem } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { inDisplayUnits } from "../lib/numbers.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 export const title = "Design";
 
@@ -114,7 +114,7 @@ export async function show(place, { parts, query, signal }) {
   /** Show the name of the displayed design, and the decision on it. */
   const rename = () => {
     const { name, bookmark } = changed ?? requirements;
-    const title = capital(name);
+    const title = capitalised(name);
     named.textContent = title === `Design ${number}` ? title : `${title} · ${number}`;
     undo.hidden = changed === null;
     remarks.show({ number: bookmark, title, faults: changed?.faults ?? [] });
@@ -195,7 +195,7 @@ export async function show(place, { parts, query, signal }) {
   /** @type {Page.Numbers | null} */
   let changedNumbers = linked.lengths ?? null; // of the changed design
   const keepAll = () =>
-    keep({
+    keepChoices({
       beside: others.map((one) => one.number).join(","),
       over,
       tab,
@@ -323,7 +323,7 @@ export async function show(place, { parts, query, signal }) {
       path,
       job,
       positions: main.curves.slider_position_mm,
-      turnTo: (at) => hold(placeOf(main, at, angle.angle), true),
+      turnTo: (at) => hold(positionOfAngle(main, at, angle.angle), true),
       signal,
     });
   if (turns)

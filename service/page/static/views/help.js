@@ -2,7 +2,7 @@
 
 import { formula, symbolsOf } from "../help/formula.js";
 import { picture } from "../help/picture.js";
-import { keep } from "../lib/address.js";
+import { keepChoices } from "../lib/address.js";
 import { get } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { unitOf } from "../lib/numbers.js";
@@ -109,7 +109,7 @@ function overview(place, quantities, sought) {
     placeholder: "torque, error, stroke …",
     oninput: () => {
       draw();
-      keep({ search: search.value });
+      keepChoices({ search: search.value });
     },
   });
   const draw = () => {

@@ -2,25 +2,25 @@
 
 import { abscissaOf } from "../charts/abscissa.js";
 import { curveCharts } from "../charts/curves.js";
-import { extremes, turned } from "../charts/cycle.js";
+import { extremes, wrappedAngle } from "../charts/cycle.js";
 import { copyLink } from "../design/export_menu.js";
 import { lengthRow, LENGTHS } from "../design/length_row.js";
 import { mechanismsPanel } from "../design/mechanisms.js";
-import { keep, link } from "../lib/address.js";
+import { keepChoices, link } from "../lib/address.js";
 import { isAbort, post } from "../lib/api.js";
 import { fill, h, markInvalid, numberField, typeInto } from "../lib/dom.js";
 import { inDisplayUnits, readySystem, text, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { readyKinds } from "../lib/units.js";
-import { capital, inWords } from "../lib/words.js";
+import { capitalised, inWords } from "../lib/words.js";
 import { factsOf, reasonNotAssembled } from "../mechanism/facts.js";
 import { grips } from "../mechanism/grips.js";
 import { deadCentresOf, motionOf } from "../mechanism/motion.js";
 import { playback } from "../mechanism/playback.js";
-import { jobOf, statedIn } from "../mechanism/stated.js";
+import { jobOf, statedIn } from "../mechanism/stated_mechanism.js";
 
-/** @import { Stated } from "../mechanism/stated.js" */
+/** @import { Stated } from "../mechanism/stated_mechanism.js" */
 
 export const title = "One mechanism";
 
@@ -111,7 +111,11 @@ export async function show(place, { query, signal }) {
   /** Store the stated values in the address, invalid text as typed. */
   function keepStated() {
     const typed = rows.filter((row) => row.wrong()).map((row) => [row.key, row.text()]);
-    keep({ ...stated, ...Object.fromEntries(typed), ...(typedSpeed && { rpm: speed.value }) });
+    keepChoices({
+      ...stated,
+      ...Object.fromEntries(typed),
+      ...(typedSpeed && { rpm: speed.value }),
+    });
   }
 
   /** Hide the mechanism while a field is invalid. */
@@ -194,7 +198,7 @@ export async function show(place, { query, signal }) {
             ...found
               .filter(({ path }) => /^(variables|mechanism)/.test(path))
               .map(({ sentence }) => sentence),
-          ].map((one) => `${capital(inWords(one))}.`),
+          ].map((one) => `${capitalised(inWords(one))}.`),
           allowed?.changes.find(({ path }) => path === "variables.rod"),
         );
     } catch (error) {
@@ -293,8 +297,8 @@ function ends(positions) {
 /** Return the ends of the arc around a crank angle that a mechanism reaches, whole deg. @param {(number | null)[]} positions @param {number} angle @returns {Page.Point} */
 function arcAround(positions, angle) {
   let [low, high] = [angle, angle];
-  while (positions[turned(low - 1)] !== null) low -= 1;
-  while (positions[turned(high + 1)] !== null) high += 1;
+  while (positions[wrappedAngle(low - 1)] !== null) low -= 1;
+  while (positions[wrappedAngle(high + 1)] !== null) high += 1;
   return [low, high];
 }
 
@@ -302,7 +306,7 @@ function arcAround(positions, angle) {
 function nearest(positions, angle) {
   let [best, least] = [0, Infinity];
   positions.forEach((position, n) => {
-    const off = Math.abs(turned(n - angle + 180) - 180);
+    const off = Math.abs(wrappedAngle(n - angle + 180) - 180);
     if (position !== null && off < least) [best, least] = [n, off];
   });
   return best;

@@ -1,17 +1,17 @@
 /** View of a new run: the job form, checked during typing, with a sketch. */
 
 import { checker } from "../form/check.js";
-import { keepDraft, kept, newKey } from "../form/draft.js";
+import { keepDraft, storedDraft, newKey } from "../form/draft.js";
 import { showFacts } from "../form/facts.js";
 import { showWrong } from "../form/field.js";
 import { jobFile, presets } from "../form/job_file.js";
-import { at, parted, put, renamed, valueOf, written } from "../form/path.js";
+import { at, parsedPath, put, withRenamedKey, valueOf, pathText } from "../form/path.js";
 import { reader } from "../form/schema.js";
 import { sections } from "../form/sections.js";
 import { readyKinds } from "../lib/units.js";
 import { sketch } from "../form/sketch.js";
 import { firstJob, jobAround } from "../form/start.js";
-import { go, keep, link } from "../lib/address.js";
+import { go, keepChoices, link } from "../lib/address.js";
 import { get, isInfeasible, post, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { system } from "../lib/numbers.js";
@@ -36,7 +36,7 @@ export async function show(place, { query, signal }) {
   ]);
   const draft = await first(query, shipped, signal);
   if (signal.aborted) return;
-  const before = kept();
+  const before = storedDraft();
   build(place, {
     draft,
     before: before?.key === draft.key ? null : before,
@@ -61,7 +61,7 @@ async function first(query, shipped, signal) {
       : around
         ? `around ${around}`
         : null;
-  const before = kept();
+  const before = storedDraft();
   if (before && (source === null || before.source === source)) return before;
   if (from)
     return {
@@ -129,11 +129,11 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     },
     rename: (path, from, to, within) => {
       const table = /** @type {Record<string, unknown>} */ (at(form.job, path));
-      put(form.job, path, renamed(table, from, to));
+      put(form.job, path, withRenamedKey(table, from, to));
       for (const field of form.fields) {
         if (!within.contains(field.node)) continue;
         field.path = [...path, to, ...field.path.slice(path.length + 1)];
-        field.key = written(field.path);
+        field.key = pathText(field.path);
       }
       changed();
     },
@@ -204,7 +204,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     form.submission = draft.submission;
     undo.hidden = undone === null;
     keepDraft(draft);
-    keep(addressOf(draft.source));
+    keepChoices(addressOf(draft.source));
     redraw();
     file.refresh();
     showChecking();
@@ -245,7 +245,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
     else say(answer.wrong.length ? IMPOSSIBLE : "Ready to start.");
     start.ariaDisabled = answer.wrong.length && !count ? "true" : null; // not disabled, so that Enter still reports what to change
     showFacts(facts, answer, ({ path, value }) => {
-      form.put(parted(path), value ?? undefined);
+      form.put(parsedPath(path), value ?? undefined);
       redraw();
       status.focus();
     });
@@ -281,7 +281,7 @@ function build(place, { draft, before, schema, quantities, functions, shipped, s
       keepDraft(null);
       if (signal.aborted) return;
       history.replaceState({ ...history.state, submission: form.submission }, ""); // the Back button leads to the form as submitted
-      keep({ from: job.id });
+      keepChoices({ from: job.id });
       go(["jobs", String(job.id)]);
     } catch (error) {
       start.disabled = false;

@@ -56,8 +56,8 @@ export async function show(place, { parts, signal }) {
     if (hadFocus) first(head, "button:not(.skip), summary, a")?.focus();
     if (watched) return;
     if (live) {
-      const [{ watch }] = await Promise.all([import("../jobs/live.js"), readySystem()]);
-      if (!bodySignal.aborted) watch(body, job, { signal: bodySignal, changed: showJob });
+      const [{ showProgress }] = await Promise.all([import("../jobs/live.js"), readySystem()]);
+      if (!bodySignal.aborted) showProgress(body, job, { signal: bodySignal, changed: showJob });
     } else await ended(job, pendingFront, bodySignal);
   }
 

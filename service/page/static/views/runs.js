@@ -1,5 +1,5 @@
 import { get, isAbort } from "../lib/api.js";
-import { keep, link } from "../lib/address.js";
+import { keepChoices, link } from "../lib/address.js";
 import { fill, first, focused, h } from "../lib/dom.js";
 import { gallery } from "../jobs/gallery.js";
 import { STATES, stateWord } from "../jobs/states.js";
@@ -37,7 +37,7 @@ export async function show(place, { query, signal }) {
 
   const changed = () => {
     const sort = filters.sort === SORTS[0] ? null : filters.sort;
-    keep({ ...filters, sort, jobs: [...compared].join(",") });
+    keepChoices({ ...filters, sort, jobs: [...compared].join(",") });
   };
   const search = h(
     "form",

@@ -1,7 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { between, extremes, turned } from "../../../../../service/page/static/charts/cycle.js";
+import {
+  interpolatedValue,
+  extremes,
+  wrappedAngle,
+} from "../../../../../service/page/static/charts/cycle.js";
 import { draws } from "../draws.mjs";
 
 /** Return a drawn curve, with gaps. */
@@ -13,10 +17,10 @@ test("an angle is turned into the first turn", () => {
   const { number, whole } = draws(20);
   for (let n = 0; n < 500; n += 1) {
     const [angle, turns] = [number(0, 360), whole(-20, 20)];
-    assert.ok(Math.abs(turned(angle + 360 * turns) - angle) < 1e-9);
+    assert.ok(Math.abs(wrappedAngle(angle + 360 * turns) - angle) < 1e-9);
   }
-  assert.equal(turned(360), 0);
-  assert.equal(turned(-0), 0);
+  assert.equal(wrappedAngle(360), 0);
+  assert.equal(wrappedAngle(-0), 0);
 });
 
 test("a curve goes through its points and straight between them, also over the end of the turn", () => {
@@ -26,10 +30,10 @@ test("a curve goes through its points and straight between them, also over the e
     const step = 360 / values.length;
     const [place, share] = [draw.whole(0, values.length - 1), draw.number(0.01, 0.99)];
     const [from, to] = [values[place], values[(place + 1) % values.length]];
-    const found = between(values, (place + share) * step + 360 * draw.whole(-2, 2));
+    const found = interpolatedValue(values, (place + share) * step + 360 * draw.whole(-2, 2));
     if (from === null || to === null) assert.equal(found, null);
     else assert.ok(Math.abs(found - (from * (1 - share) + to * share)) < 1e-9);
-    if (360 % values.length === 0) assert.equal(between(values, place * step), from);
+    if (360 % values.length === 0) assert.equal(interpolatedValue(values, place * step), from);
   }
 });
 

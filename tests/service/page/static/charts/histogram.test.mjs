@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { binned } from "../../../../../service/page/static/charts/histogram.js";
+import { countsInBins } from "../../../../../service/page/static/charts/histogram.js";
 import { draws } from "../draws.mjs";
 
 test("every chosen design that has a value is counted once on each axis, where it is", () => {
@@ -12,7 +12,7 @@ test("every chosen design that has a value is counted once on each axis, where i
       number(0, 1) < 0.1 ? -1 : whole(top, bottom),
     );
     const mask = Uint8Array.from({ length: count }, () => whole(0, 1));
-    const counts = binned(heights, axes, mask, top, bottom);
+    const counts = countsInBins(heights, axes, mask, top, bottom);
     const bins = counts.length / axes;
     for (let axis = 0; axis < axes; axis += 1) {
       for (let bin = 0; bin < bins; bin += 1) {

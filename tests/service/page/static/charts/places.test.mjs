@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import "../browser.mjs";
 import { abscissaOf } from "../../../../../service/page/static/charts/abscissa.js";
-import { crankAt, placeOf } from "../../../../../service/page/static/charts/cycle.js";
+import { crankAt, positionOfAngle } from "../../../../../service/page/static/charts/cycle.js";
 
 const COUNT = 360;
 
@@ -32,21 +32,26 @@ test("a place of a swing is where the crank stands, in the way that it is on", (
     for (let share = 0.05; share < 1; share += 0.1) {
       const angle = from + (to - from) * share;
       for (const now of [10, 200]) {
-        const place = placeOf(one, angle - 360, now);
+        const place = positionOfAngle(one, angle - 360, now);
         assert.ok(now < 180 ? place <= 180 : place >= 180);
         assert.ok(Math.abs(crankAt(one, place) - angle) < (0.3 * Math.abs(to - from)) / 90);
       }
     }
-    assert.ok(Math.abs(crankAt(one, placeOf(one, to + Math.sign(to - from) * 20, 10)) - to) < 1);
+    assert.ok(
+      Math.abs(crankAt(one, positionOfAngle(one, to + Math.sign(to - from) * 20, 10)) - to) < 1,
+    );
   }
 });
 
 test("a place of turns is the crank angle over their number", () => {
   const curves = { slider_position_mm: [1, 2, 3, 4] };
   for (const angle of [0, 33.5, 180, 359]) {
-    assert.equal(crankAt({ turns: 1, curves }, placeOf({ turns: 1, curves }, angle, 50)), angle);
+    assert.equal(
+      crankAt({ turns: 1, curves }, positionOfAngle({ turns: 1, curves }, angle, 50)),
+      angle,
+    );
     for (const now of [10, 190]) {
-      const at = crankAt({ turns: 2, curves }, placeOf({ turns: 2, curves }, angle, now));
+      const at = crankAt({ turns: 2, curves }, positionOfAngle({ turns: 2, curves }, angle, now));
       assert.equal(at % 360, angle);
       assert.equal(at >= 360, now >= 180);
     }

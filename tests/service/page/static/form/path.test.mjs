@@ -5,11 +5,11 @@ import {
   at,
   idOf,
   isTable,
-  parted,
+  parsedPath,
   put,
-  renamed,
+  withRenamedKey,
   valueOf,
-  written,
+  pathText,
 } from "../../../../../service/page/static/form/path.js";
 import { draws } from "../draws.mjs";
 
@@ -27,15 +27,15 @@ test("a path is written as the service writes it, places counted from 1", () => 
   const draw = draws(5);
   for (let n = 0; n < 1000; n += 1) {
     const one = path(draw).map((key) => (key === 0 ? draw.whole(0, 30) : key));
-    const read = written(one)
+    const read = pathText(one)
       .split(".")
       .flatMap((part) => part.split(" #").map((key, place) => (place ? Number(key) - 1 : key)));
     assert.deepEqual(read, one);
   }
-  assert.equal(written(["load", 0, "force"]), "load #1.force");
+  assert.equal(pathText(["load", 0, "force"]), "load #1.force");
   for (const one of [["load", 2, "force"], ["constraints", 'rod "a" + 2'], ["name"]])
-    assert.deepEqual(parted(written(one)), one);
-  assert.equal(written([]), "");
+    assert.deepEqual(parsedPath(pathText(one)), one);
+  assert.equal(pathText([]), "");
 });
 
 test("tables and lists are tables, and nothing else is", () => {
@@ -84,15 +84,15 @@ test("ids of different paths of a form differ, and are names in a document", () 
 
 test("keys that are formulas are written in quotes, long ones as far as the service writes them", () => {
   assert.equal(
-    written(["constraints", "2 * crank + rod", "max"]),
+    pathText(["constraints", "2 * crank + rod", "max"]),
     'constraints."2 * crank + rod".max',
   );
-  assert.equal(written(["quantity", "room", "formula"]), "quantity.room.formula");
-  assert.equal(written(["constraints", "x+".repeat(40)]), `constraints."${"x+".repeat(30)}..."`);
+  assert.equal(pathText(["quantity", "room", "formula"]), "quantity.room.formula");
+  assert.equal(pathText(["constraints", "x+".repeat(40)]), `constraints."${"x+".repeat(30)}..."`);
 });
 
 test("a key that is called otherwise stays in its place", () => {
-  assert.deepEqual(Object.keys(renamed({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), [
+  assert.deepEqual(Object.keys(withRenamedKey({ a: 1, "b c": 2, d: 3 }, "b c", "b c + 1")), [
     "a",
     "b c + 1",
     "d",

@@ -3,11 +3,11 @@ import { test } from "node:test";
 
 import {
   nearest,
-  placed,
+  locationOfRefusal,
   wishesFrom,
   wishQuery,
   wishRequest,
-  wrongIn,
+  mistakesIn,
 } from "../../../../../service/page/static/front/wishes.js";
 import { draws } from "../draws.mjs";
 
@@ -67,7 +67,7 @@ test("the service is asked in its words, with a design only where one is spoken 
 });
 
 test("what is wrong is said at its field", () => {
-  const places = (of, design) => wrongIn(wishes(of, design), OBJECTIVES, 9).map(({ id }) => id);
+  const places = (of, design) => mistakesIn(wishes(of, design), OBJECTIVES, 9).map(({ id }) => id);
   assert.deepEqual(places({}), [""]);
   assert.deepEqual(places({ time_ratio: { kind: "value", value: NaN } }), ["time_ratio"]);
   for (const design of [null, 0, 10, 1.5, NaN])
@@ -77,8 +77,8 @@ test("what is wrong is said at its field", () => {
     places(Object.fromEntries(OBJECTIVES.map(({ quantity }) => [quantity, { kind: "keep" }])), 1),
     [""],
   );
-  assert.equal(placed("time_ratio may worsen", OBJECTIVES).id, "time_ratio");
-  assert.equal(placed("the service is busy", OBJECTIVES).id, "");
+  assert.equal(locationOfRefusal("time_ratio may worsen", OBJECTIVES).id, "time_ratio");
+  assert.equal(locationOfRefusal("the service is busy", OBJECTIVES).id, "");
 });
 
 test("the nearest design is so by shares of the ranges", () => {

@@ -1,13 +1,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { taken } from "../../../../../service/page/static/jobs/stages.js";
+import { stagesAfter } from "../../../../../service/page/static/jobs/stages.js";
 
 /** Return the stages after events [stage, round, seconds, step, steps]. */
 function after(events) {
   let [stages, seconds] = [[], 0];
   for (const [stage, round, now, step = 0, steps = 0] of events) {
-    stages = taken(stages, { stage, round, seconds: now, step, steps }, seconds);
+    stages = stagesAfter(stages, { stage, round, seconds: now, step, steps }, seconds);
     seconds = now;
   }
   return stages;

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { following } from "../../../../../service/page/static/charts/by_keys.js";
+import { nextDesign } from "../../../../../service/page/static/charts/keyboard_access.js";
 import { draws } from "../draws.mjs";
 
 test("keys go through all designs that are let through, once each, in the order of the number, and back", () => {
@@ -21,7 +21,7 @@ test("keys go through all designs that are let through, once each, in the order 
     ]) {
       let here = list[0];
       for (const expected of [...list.slice(1), list.at(-1)]) {
-        here = following(here, mask, { of: (row) => values[row], by });
+        here = nextDesign(here, mask, { of: (row) => values[row], by });
         assert.equal(here, expected);
       }
     }

@@ -9,9 +9,16 @@ import { ends, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
 import { bookmarkForm } from "../design/bookmark_form.js";
 import { lengthsOf } from "../design/loading.js";
 import { LENGTHS } from "./linkages.js";
-import { wishRequest, nearest, placed, relative, wishesOf, wrongIn } from "./wishes.js";
+import {
+  wishRequest,
+  nearest,
+  locationOfRefusal,
+  refersToDesign,
+  wishesOf,
+  mistakesIn,
+} from "./wishes.js";
 import { sentenceOf } from "../lib/refusals.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 import { headedRow, headsOf, numberCell, scrolledTable } from "../lib/table.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -169,7 +176,7 @@ export function wishingPanel(explorer) {
 
   function clean() {
     showProblems([]);
-    from.classList.toggle("wanted", relative(said()));
+    from.classList.toggle("wanted", refersToDesign(said()));
   }
 
   /** Show mistakes at their fields. @param {Problem[]} problems */
@@ -190,7 +197,7 @@ export function wishingPanel(explorer) {
 
   function submit() {
     const wishes = said();
-    const problems = wrongIn(wishes, objectives, data.count);
+    const problems = mistakesIn(wishes, objectives, data.count);
     if (problems.length) showProblems(problems);
     else take(wishes);
   }
@@ -198,7 +205,7 @@ export function wishingPanel(explorer) {
   /** Adopt wishes, null for none, and request the design. @param {Wishes | null} wishes */
   function take(wishes) {
     explorer.change(
-      { wish: wishes && { ...wishes, design: relative(wishes) ? wishes.design : null } },
+      { wish: wishes && { ...wishes, design: refersToDesign(wishes) ? wishes.design : null } },
       "marks",
     );
     showFields();
@@ -228,7 +235,7 @@ export function wishingPanel(explorer) {
       show();
       showProblems([
         {
-          ...placed(problem instanceof Error ? problem.message : "", objectives),
+          ...locationOfRefusal(problem instanceof Error ? problem.message : "", objectives),
           text: `${sentenceOf(problem)}.`,
         },
       ]);
@@ -279,7 +286,7 @@ export function wishingPanel(explorer) {
     none.hidden = !chosen.wish;
     if (!answered) return fill(answer);
     const [head] = answered.sentences;
-    const sentence = h("p", { class: answered.possible ? "good" : null }, `${capital(head)}.`);
+    const sentence = h("p", { class: answered.possible ? "good" : null }, `${capitalised(head)}.`);
     const { design: wished } = answered;
     if (!wished) return fill(answer, h("p", { class: "bad" }, `${sentence.textContent}`));
     const nearby = h("a", { href: explorer.hrefOf(near - 1) }, `design ${near}`);

@@ -7,7 +7,7 @@ import { attempt } from "../lib/notices.js";
 import { counted, inDisplayUnit, unitOf, withUnit } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
-import { capital } from "../lib/words.js";
+import { capitalised } from "../lib/words.js";
 
 /** @import { Explorer } from "./explorer.js" */
 
@@ -42,7 +42,7 @@ export function bindingPanel(explorer) {
   function refuse(sentence) {
     place.hidden = false;
     wrong.hidden = sentence === "";
-    wrong.textContent = sentence && `${capital(sentence)}.`;
+    wrong.textContent = sentence && `${capitalised(sentence)}.`;
   }
 
   /** @param {Api.Limit[]} limits */

@@ -13,7 +13,7 @@ const ARROWS = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown"];
  *   say: (row: number) => string, point: (row: number | null) => void, open: (row: number) => void, select: (row: number) => void,
  * }} chart
  */
-export function byKeys(place, { mask, next, say, point, open, select }) {
+export function addKeyboardAccess(place, { mask, next, say, point, open, select }) {
   const status = h("p", { class: "hidden", role: "status" });
   /** @type {number | null} */
   let here = null;
@@ -29,7 +29,7 @@ export function byKeys(place, { mask, next, say, point, open, select }) {
       const from = here ?? firstOf(selectable);
       if (from === null) return;
       const way = here === null ? from : next(from, key);
-      here = typeof way === "number" ? way : following(from, selectable, way);
+      here = typeof way === "number" ? way : nextDesign(from, selectable, way);
       point(here);
       status.textContent = say(here);
     } else if (here !== null && (key === "Enter" || key === " ")) {
@@ -51,7 +51,7 @@ function firstOf(mask) {
  * Return the next design of a mask in the order of a value, ties by position; the same design at the end.
  * @param {number} from @param {ArrayLike<number>} mask @param {{ of: (row: number) => number, by: 1 | -1 }} way
  */
-export function following(from, mask, { of, by }) {
+export function nextDesign(from, mask, { of, by }) {
   const start = of(from);
   let [best, least] = [from, Infinity];
   for (let row = 0; row < mask.length; row += 1) {

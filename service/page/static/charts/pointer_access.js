@@ -13,7 +13,7 @@
  *   begin: (here: Place, event: PointerEvent) => boolean, drag: (here: Place) => boolean, end: (here: Place) => boolean,
  * }} handlers drag: whether it has moved far enough to be one
  */
-export function byPointer(top, chart, { isDrawn, under, cursor, begin, drag, end }) {
+export function addPointerAccess(top, chart, { isDrawn, under, cursor, begin, drag, end }) {
   let [pressed, drags, moved] = [false, false, false];
   /** @param {MouseEvent} event @returns {Place} */
   const at = (event) => {

@@ -11,8 +11,8 @@ const VALUES = ["choices", "min", "max", "step", "series", "values"]; // keys of
 
 /** Return the fields of the extra variables and a select to add one. @param {Form.Whole} form */
 export function varying(form) {
-  const taken = new Set(leaves(form).map(({ name }) => name));
-  const all = leaves(form).filter(({ name }) => !hasSizeField(form, name));
+  const taken = new Set(extraVariables(form).map(({ name }) => name));
+  const all = extraVariables(form).filter(({ name }) => !hasSizeField(form, name));
   const left = numbers(form).filter(({ name }) => !taken.has(name) && !hasSizeField(form, name));
   const select = h(
     "select",
@@ -22,7 +22,7 @@ export function varying(form) {
         const chosen = left.find(({ name }) => name === select.value);
         if (!chosen) return;
         const path = ["variables", ...chosen.name.split(".")];
-        form.put(path, around(chosen.value));
+        form.put(path, rangeAround(chosen.value));
         form.redraw(idOf(path, 0));
       },
     },
@@ -63,19 +63,19 @@ function hasSizeField(form, name) {
 
 /** Return the names of the extra variables in words. @param {Form.Whole} form */
 export function varyingNames(form) {
-  return leaves(form).map(({ name }) => titleOf(name));
+  return extraVariables(form).map(({ name }) => titleOf(name));
 }
 
 /** Return the tables whose numbers may vary. @param {Form.Whole} form */
-function roots(form) {
+function tablesWithVariables(form) {
   return Object.entries(form.schema.property(["variables"])?.properties ?? {})
     .filter(([, node]) => form.schema.resolve(node).type === "object")
     .map(([key]) => key);
 }
 
 /** Return the extra variables: path in the job and name. @param {Form.Whole} form */
-function leaves(form) {
-  const tables = roots(form);
+function extraVariables(form) {
+  const tables = tablesWithVariables(form);
   /** @type {{ path: Form.Path, name: string }[]} */
   const places = [];
   /** @param {unknown} part @param {Form.Path} path */
@@ -115,7 +115,7 @@ function numbers(form) {
         candidates.push({ name: nameOf(path), value: part });
     }
   };
-  for (const root of roots(form)) walk(form.at([root]), [root]);
+  for (const root of tablesWithVariables(form)) walk(form.at([root]), [root]);
   return candidates;
 }
 
@@ -151,7 +151,7 @@ function looksOf(form, name) {
 }
 
 /** Return a range around a value. @param {string | number} value */
-export function around(value) {
+export function rangeAround(value) {
   const [, number, unit] = /^\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*(.*)$/is.exec(String(value)) ?? [];
   if (number === undefined || Number(number) === 0) return ["", ""];
   const ends = [0.5, 2]

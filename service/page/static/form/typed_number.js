@@ -24,19 +24,19 @@ export function drawnFrom(input, jobValue, select) {
  * interpret it; undefined for empty text. Unreadable text is reported at the field.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {string | number | undefined}
  */
-export function taken(input, measure = {}) {
-  return entered(input, measure).value;
+export function typedJobValue(input, measure = {}) {
+  return typedValueOrRange(input, measure).value;
 }
 
 /**
  * Return the same as {value}; or {ends}, in the unit of the field, for a range typed as its middle and half its width.
  * @param {HTMLInputElement} input @param {Measure} measure @returns {{ value?: string | number, ends?: string[] }}
  */
-export function entered(
+export function typedValueOrRange(
   input,
   { kind = null, percent = false, select = null, range = false } = {},
 ) {
-  const parsed = parseNumber(valued(input), {
+  const parsed = parseNumber(withJobValues(input), {
     unit: select?.value ?? "",
     ...measureOf(kind),
     percent,
@@ -72,7 +72,7 @@ export function entered(
  * with the value of a name; other names stay, as a formula for the service.
  * @param {HTMLInputElement} input
  */
-function valued(input) {
+function withJobValues(input) {
   const typed = input.value.trim();
   if (!typed.startsWith("=")) return input.value;
   return typed.replace(NAME, (name) => {
@@ -83,7 +83,7 @@ function valued(input) {
 }
 
 /** Replace the typed text with the parsed number. @param {HTMLInputElement} input */
-export function ordered(input) {
+export function replaceTyped(input) {
   if (input.dataset.number !== undefined) input.value = input.dataset.number;
 }
 

@@ -4,7 +4,7 @@ import { h } from "../lib/dom.js";
 import { byschema } from "./controls.js";
 import { field } from "./field.js";
 import { idOf, isTable } from "./path.js";
-import { held } from "./strength.js";
+import { fixedOrVarying } from "./strength.js";
 
 /** @type {Record<string, { title: string, first: Form.Job | undefined, keys: string[], more: string[] }>} */
 const WAYS = {
@@ -67,7 +67,9 @@ export function link(form, path, label) {
     ),
     way === "section"
       ? keys.map((key) =>
-          VARY.includes(key) ? held(form, [...path, key], `${label}, ${key}`) : fields([key]),
+          VARY.includes(key)
+            ? fixedOrVarying(form, [...path, key], `${label}, ${key}`)
+            : fields([key]),
         )
       : fields(keys),
     more.length
