@@ -86,11 +86,13 @@ def _add_archive(
     # Designs that need no move come first.
     first, *rest = (group[_evenly_spread_rows(group.values, problem.settings.designs)] for group in groups)
     chosen = first.join(*rest)
-    end = time.perf_counter() + seconds
+    end = np.inf
     # Each batch is spread over the whole front.
     batches = -(-len(chosen) // _BATCH)
     for begin in range(batches):
         add_projected(candidates, chosen[begin::batches], evaluators)
+        if begin == 0:  # which may have loaded kernels
+            end = time.perf_counter() + seconds
         if len(candidates) and time.perf_counter() > end:
             break
 

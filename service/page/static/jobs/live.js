@@ -304,7 +304,7 @@ export function showProgress(place, job, { signal, changed }) {
 
   /** Return the size of a picture that fills its place in width and the screen in height. @param {number} width @returns {Page.Point} */
   function sizeIn(width) {
-    const wide = Math.max(width, 560);
+    const wide = Math.max(width, 340);
     return [wide, Math.round(Math.max(340, Math.min(0.61 * wide, 0.52 * innerHeight)))];
   }
 
