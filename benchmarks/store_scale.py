@@ -29,7 +29,7 @@ from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, json_text, result_of
 from slidercrank.service.store import Store
 from slidercrank.service.store.schema import jobs
-from slidercrank.service.store.serialisation import cells_json, compact_json, summary_of
+from slidercrank.service.store.serialisation import cells_json, compact_json, result_summary
 
 from .report import Row, machine, show
 
@@ -153,7 +153,7 @@ def _fill(connection: Connection, tables: dict[str, Any], found: Result, runs: i
     record = found.record()
     del record["designs"]
     record["columns"] = list(found.designs[0])
-    stated, result, summary = compact_json(tables), compact_json(record), compact_json(summary_of(found))
+    stated, result, summary = compact_json(tables), compact_json(record), compact_json(result_summary(found))
     told = asdict(Progress("polishing", 10, 10, 50_000, 900, 0.5, 9.0))
     columns = [wanted.column for wanted in found.objectives]
     points = [[row[column] for column in columns] for row in found.designs[:64]]

@@ -24,7 +24,7 @@ from ..runs.result import Result, csv_text, infeasible_result, json_text
 from ..runs.run_folder import write_file
 from ..text.design_options import Pick, Selection, SettingOptions
 from ..text.options import Run, Units
-from ..text.tables import show_design, show_front, show_result, spread_rows, usual_keys
+from ..text.tables import marked_and_evenly_spread_rows, show_design, show_front, show_result, usual_keys
 from .call import Call, ToolResult, printed_text, tables_with_files
 from .inputs import Files, FrontPart, Number, OptionalJob
 
@@ -106,7 +106,9 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     remedy = {"done": "", "infeasible": ""}.get(result.status, f"; continue it with optimise, resume = {run.path.name}")
     text = printed_text(lambda screen: show_result(screen, result_in_units))
     record = _front_record(
-        result_in_units, spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows), part
+        result_in_units,
+        marked_and_evenly_spread_rows(result_in_units, range(len(result_in_units.designs)), part.rows),
+        part,
     )
     return ToolResult(record, f"{text}\nRun: {run.path.name}{remedy}", is_error=result.status != "done")
 
@@ -125,7 +127,7 @@ def front(call: Call, *, run: Run, selection: Selection, pick: Pick, part: Front
         result, part.units, None if part.units == "metric" else call.problem_of_run(folder, result)
     )
     if picked is None:
-        rows = spread_rows(result_in_units, chosen, part.rows)
+        rows = marked_and_evenly_spread_rows(result_in_units, chosen, part.rows)
         return ToolResult(
             _front_record(result_in_units, rows, part),
             printed_text(lambda screen: show_front(screen, result_in_units, rows, limit=0)),

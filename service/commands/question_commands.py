@@ -23,8 +23,8 @@ from ..text.options import (
     Json,
     Runs,
     Units,
-    require_drawable,
     require_ending,
+    require_matplotlib,
 )
 from ..text.screen import print_message, print_record, show_activity, write_figure
 from .design_of_job_or_run import machine_of, rotating_problem
@@ -46,7 +46,7 @@ def build_design_command(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        curves, figure = files.get("curves"), require_drawable(files.get("figure"))
+        curves, figure = files.get("curves"), require_matplotlib(files.get("figure"))
         require_ending("--curves", curves, ".csv")
         require_ending("--figure", figure, ".png")
         mechanism, linkage, problem = machine_of(name, job, size, design, runs)
@@ -87,7 +87,7 @@ def build_sizing_command(name: str) -> Callable[..., None]:
         units: Units = "metric",
         json: Json = False,
     ) -> None:
-        curves, folder = files.get("curves"), require_drawable(files.get("figures"))
+        curves, folder = files.get("curves"), require_matplotlib(files.get("figures"))
         require_ending("--curves", curves, ".csv")
         problem = rotating_problem(job, says.called or name)
         words = {item.name: item.flag for item in question.inputs}

@@ -21,7 +21,7 @@ from ..render.numerals import title_with_unit
 from ..runs.result import StoredObjective, stored_objectives
 from .design_marks import BETTER, with_better_arrow
 from .scatter_matrix import MOST, triangle_of_panels
-from .style import INK, SMALL, legend_at, new_figure, padded_limits, style_axes, write_heading, write_text
+from .style import INK, SMALL, add_legend, new_figure, padded_limits, style_axes, write_heading, write_text
 
 # Fill, edge and marker: neighbours differ clearly in greyscale, with the colours of Okabe and Ito (see `style`).
 _STYLES = (
@@ -72,7 +72,7 @@ def comparison_matrix(
         write_text(figure, 0.2, notes_height - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     handles = [Line2D([], [], **_line_style(index)) for index in range(len(runs))]
     labels = [f"{run.label}, {counted(len(run.values), 'design')}" for run in runs]
-    legend_at(figure, 0.2, height - _TOP, handles, labels)
+    add_legend(figure, 0.2, height - _TOP, handles, labels)
     return figure
 
 

@@ -32,7 +32,7 @@ def draw_mechanism(axes: Axes, mechanism: Mechanism, linkage: Linkage, system: S
     _draw_transmission_angle(axes, pin, slider, math.degrees(float(linkage.least_transmission_angle)))
     _draw_stroke_dimension(axes, look, size, system)
     _draw_offset_dimension(axes, left, look.offset, size, system)
-    scale_bar(axes, left, low - 0.13 * size, size, system)
+    draw_scale_bar(axes, left, low - 0.13 * size, size, system)
     show_rectangle(axes, left - 0.1 * size, low - 0.17 * size, right + 0.03 * size, high + 0.14 * size)
 
 
@@ -115,7 +115,7 @@ def _draw_arrow(axes: Axes, start: Point, end: Point) -> None:
     axes.annotate("", xy=end, xytext=start, arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, zorder=6)
 
 
-def scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
+def draw_scale_bar(axes: Axes, x: float, y: float, size: float, system: System) -> None:
     """Draw a scale bar with a round length, about a sixth of the picture."""
     unit, factor = metric_unit_in("mm", system)
     longest = size / 6.0 * factor

@@ -19,8 +19,8 @@ from .style import (
     SMALL,
     TEXT,
     add_axes,
+    add_legend,
     colour_map,
-    legend_at,
     new_figure,
     padded_limits,
     style_axes,
@@ -55,7 +55,7 @@ def scatter_matrix(front: ParetoFront, system: System = "metric") -> Figure:
     # free.
     x = _LEFT + (2 if count > 3 else 1) * (side + _GAP) + 2.0 * _GAP
     y = _BOTTOM + (count - 1) * (side + _GAP) + side
-    _colour_bar(figure, points, axes[0].title, x, y - 0.45)
+    _draw_colour_bar(figure, points, axes[0].title, x, y - 0.45)
     _draw_legend(figure, marked, x, y - 0.75)
     _draw_heading(figure, front, len(front.objectives))
     return figure
@@ -91,7 +91,7 @@ def _single_panel(front: ParetoFront, axes: list[Axis], colour: Axis, marked: li
     panel.set_xlabel(with_better_arrow(axes[0].title, axes[0].better), fontsize=TEXT)
     panel.set_ylabel(with_better_arrow(axes[1].title, axes[1].better), fontsize=TEXT)
     x, y = _LEFT + 5.2, 5.2 - _TOP
-    _colour_bar(figure, points, colour.title, x, y - 0.45)
+    _draw_colour_bar(figure, points, colour.title, x, y - 0.45)
     _draw_legend(figure, marked, x, y - 0.75)
     _draw_heading(figure, front, 2)
     return figure
@@ -116,7 +116,7 @@ def _draw_panel(panel: Axes, x_axis: Axis, y_axis: Axis, colour: np.ndarray, mar
     return points
 
 
-def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y: float) -> None:
+def _draw_colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y: float) -> None:
     bar = add_axes(figure, x, y, 2.2, 0.13)
     figure.colorbar(points, cax=bar, orientation="horizontal")
     style_axes(bar, most_x_ticks=4)
@@ -128,7 +128,7 @@ def _colour_bar(figure: Figure, points: PathCollection, title: str, x: float, y:
 
 def _draw_legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None:
     handles = [Line2D([], [], **mark.style) for mark in marked]
-    legend_at(figure, x, y, handles, ["\n".join(mark.labels) for mark in marked], spacing=0.6)
+    add_legend(figure, x, y, handles, ["\n".join(mark.labels) for mark in marked], spacing=0.6)
 
 
 def _draw_heading(figure: Figure, front: ParetoFront, objectives: int) -> None:

@@ -117,7 +117,7 @@ def draw_stack(axes: Axes, x: Array, parts: Array, names: Sequence[str]) -> None
         part.set_hatch(hatch)
 
 
-def legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
+def add_legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
     """Add the legend at the right of axes. stacked: number of initial entries to list in reverse, the last on top."""
     handles, labels = axes.get_legend_handles_labels()
     order = [*reversed(range(stacked)), *range(stacked, len(handles))]
@@ -126,7 +126,7 @@ def legend_at_right(axes: Axes, *, stacked: int = 0) -> None:
     axes.legend([handles[i] for i in order], [labels[i] for i in order], **place, **looks)
 
 
-def legend_at(
+def add_legend(
     figure: Figure, x: float, y: float, handles: Sequence[Artist], labels: Sequence[str], *, spacing: float = 0.5
 ) -> None:
     """Add a legend to a figure, with its upper left corner at (x, y), inches from the lower left."""

@@ -21,7 +21,7 @@ from ...objectives.tables.swing_curves import (
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
 from ..render.blocks import dimensions_text, joined
-from .mechanism_drawing import scale_bar
+from .mechanism_drawing import draw_scale_bar
 from .panel_drawing import draw_panel_figure
 from .panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure
 from .shape_painting import paint_shapes, show_rectangle
@@ -67,7 +67,7 @@ def figure_below_machine(
     foot = -(-len(panel_figure.panels) // panel_figure.columns) * panel_figure.height + _BELOW
     axes = add_axes(figure, _ASIDE, foot, wide, tall)
     paint_shapes(axes, shapes)
-    scale_bar(axes, left, low + 0.03 * size, size, system)
+    draw_scale_bar(axes, left, low + 0.03 * size, size, system)
     show_rectangle(axes, left, low, right, high)
     return figure
 

@@ -51,7 +51,7 @@ def design_section(subject: Subject) -> Section:
 
 def numbers_section(subject: Subject) -> Section:
     """Return every column that applies to the design's machine, rounded and as stored."""
-    columns, absent = _columns_of_machine(subject)
+    columns, absent = _applicable_columns(subject)
     lengths = _dimensions_with_tolerance(subject)
     at_bound = {column.key for column in columns if column.key.startswith("slack_") and _is_active(subject, column)}
     row = row_without_noise(subject.row)
@@ -88,7 +88,7 @@ def numbers_section(subject: Subject) -> Section:
     )
 
 
-def _columns_of_machine(subject: Subject) -> tuple[list[Column], list[str]]:
+def _applicable_columns(subject: Subject) -> tuple[list[Column], list[str]]:
     """Return the columns that apply to a design's machine, and titles of the others, such as a loss without friction.
 
     Quantities that the job uses are never omitted.

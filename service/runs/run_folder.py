@@ -146,9 +146,9 @@ class RunFolder:
                     flush_to_disk(file)
             (self.path / MARK).unlink(missing_ok=True)
             flush_to_disk(self.path)
-        self._release()
+        self._release_lock()
 
-    def _release(self) -> None:
+    def _release_lock(self) -> None:
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
@@ -169,7 +169,7 @@ class RunFolder:
         elif error is not None and not self._is_as_before:
             with contextlib.suppress(RunError, OSError):  # the pending error matters more
                 self._record_failure(error)
-        self._release()
+        self._release_lock()
 
     def _record_failure(self, error: BaseException) -> None:
         """Log an error. The run is unfinished, unless it was cancelled before and still has that result."""

@@ -19,7 +19,15 @@ from .job_rows import NewEvent, add_events, evaluation_records, state_event
 from .queue import MOST_DELAY, write_files
 from .records import NOT_DONE, Artefact, Job
 from .schema import designs, exact, jobs, records, workers
-from .serialisation import cells_json, checksum, compact_json, database_text, packed_exact, packed_record, summary_of
+from .serialisation import (
+    cells_json,
+    checksum,
+    compact_json,
+    database_text,
+    packed_exact,
+    packed_record,
+    result_summary,
+)
 
 if TYPE_CHECKING:
     from ...optimise.front.progress import Progress
@@ -149,7 +157,7 @@ class Claim:
         content = None if result.exact is None else packed_exact(result.exact)
 
         left: dict[str, Any] = {} if result.status == "cancelled" else {"records": 0}
-        texts = {"result": compact_json(record), "summary": compact_json(summary_of(result))}
+        texts = {"result": compact_json(record), "summary": compact_json(result_summary(result))}
 
         def write_result(connection: Connection) -> None:
             of_job = jobs.c.id == self.job.id

@@ -82,7 +82,7 @@ class Job:
     state, in a sentence, or empty. attempts: attempts since its last new record. due: earliest time of a claim. worker,
     lease_until: worker and end of lease of a running job. records: number of records to continue from. events: number
     of events. progress: fields of the latest `Progress`, or None; includes `front` if the search reported one, see
-    `Claim.report`. summary: summary of its result, see `serialisation.summary_of`, or None. origin: number of the job
+    `Claim.report`. summary: summary of its result, see `result_summary`, or None. origin: number of the job
     from which it was copied, or None. decision: name of the chosen design, or None.
     """
 

@@ -156,7 +156,7 @@ def rows_from_cells(columns: Sequence[str], texts: Sequence[str]) -> list[Row]:
     return [dict(zip(columns, row, strict=True)) for row in rows]
 
 
-def summary_of(result: Result) -> dict[str, Any]:
+def result_summary(result: Result) -> dict[str, Any]:
     """Return the summary of a result for lists: counts, the best value of each objective, points of the front.
 
     axes: columns of the first two objectives, or of the only one; points: their values for at most 64 designs.

@@ -40,8 +40,8 @@ _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 def problem_in_words(problem: Problem) -> dict[str, Any]:
     """Return a job in words: name, given, loads, tolerances, costs, variables, rules, objectives, warnings, search.
 
-    Each is a list of lines except name, search, the degrees of freedom, the minimum values, see `_default_floors`, and
-    the changes that resolve warnings, see `changes_of`.
+    Each is a list of lines except name, search, the degrees of freedom, the minimum values, see
+    `_allowed_minimum_values`, and the changes that resolve warnings, see `changes_of`.
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
@@ -71,7 +71,7 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
             *(_constraint_text(constraint, problem) for constraint in constraints_of(problem)),
             *_limit_lines(problem),
         ],
-        "floors": _default_floors(problem),
+        "floors": _allowed_minimum_values(problem),
         "objectives": [_objective_text(objective, problem) for objective in problem.objectives],
         "unknowns": 3 + len(problem.mechanism.varying),
         "degrees_of_freedom": _degrees_of_freedom(branch),
@@ -382,7 +382,7 @@ def _constraint_text(constraint: Constraint, problem: Problem, *, is_stated: boo
     return f"{quantity.title} {bounds} (default, as the job sets none)"
 
 
-def _default_floors(problem: Problem) -> list[dict[str, Any]]:
+def _allowed_minimum_values(problem: Problem) -> list[dict[str, Any]]:
     """Return the least allowed values of quantities with a default: quantity, value, unit, and is default or not."""
     floors = []
     for constraint in constraints_of(problem):

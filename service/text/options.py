@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ...optimise.problem.problem import Problem
 
 
-def require_drawable(folder: Path | None) -> Path | None:
+def require_matplotlib(folder: Path | None) -> Path | None:
     """Raise an error before any computation if figures cannot be drawn."""
     if folder is not None:
         import_extra("matplotlib", "figures need")
@@ -32,7 +32,7 @@ def require_drawable(folder: Path | None) -> Path | None:
 
 JobFile = Annotated[Path, typer.Argument(metavar="JOB")]
 File = Annotated[Path | None, typer.Option(metavar="FILE")]
-Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=require_drawable)]
+Figures = Annotated[Path | None, typer.Option(metavar="DIR", callback=require_matplotlib)]
 Output = Annotated[str | None, typer.Option(metavar="FILE")]
 """File name, or - for standard output."""
 Angle = Annotated[str | None, typer.Option(metavar="ANGLE")]

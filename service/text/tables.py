@@ -58,9 +58,9 @@ def show_front(
 
     columns: dimensions, stroke and objectives if None; values shared by all designs then appear once above the table.
     """
-    chosen = spread_rows(result, rows, limit)
+    chosen = marked_and_evenly_spread_rows(result, rows, limit)
     if columns is None:
-        columns, constant = _usual_columns(result)
+        columns, constant = _varying_usual_columns(result)
         if constant:
             screen.print(f"In every design: {', '.join(constant)}.", soft_wrap=True)
     screen.print()
@@ -128,7 +128,7 @@ def usual_keys(result: Result) -> list[str]:
     return keys + [objective.column for objective in result.objectives if objective.column not in keys]
 
 
-def _usual_columns(result: Result) -> tuple[list[Column], list[str]]:
+def _varying_usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return the columns of `usual_keys` that differ between designs, and the others in words."""
     from ...optimise.front.constant_numbers import is_constant
 
@@ -201,7 +201,7 @@ def _align_decimals(values: Sequence[Cell]) -> list[str]:
     return [text(value) for value in values]
 
 
-def spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
+def marked_and_evenly_spread_rows(result: Result, rows: Sequence[int], limit: int) -> list[int]:
     """Return up to `limit` positions, in order: the marked ones, and others evenly spread; all for 0."""
     if limit <= 0 or len(rows) <= limit:
         return list(rows)

@@ -115,7 +115,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     error.set_ylim(0.0, 1.06 * unit.factor * max(tops))
     error.set_ylabel(title_with_unit("position error", unit.symbol), fontsize=style.TEXT)
     error.set_xlabel("crank angle, deg", fontsize=style.TEXT)
-    style.legend_at_right(error, stacked=len(data.sources))
+    style.add_legend_at_right(error, stacked=len(data.sources))
 
     cost = style.add_axes(figure, 1.3, 0.5, 5.4, foot - 0.35)
     style.style_axes(cost, most_x_ticks=8)
@@ -136,7 +136,7 @@ def allocation_figure(data: AllocationCurves, system: System = "metric") -> Figu
     cost.margins(x=0.12)
     cost.set_xlim(left=0.0)
     cost.set_xlabel("cost", fontsize=style.TEXT)
-    style.legend_at_right(cost)
+    style.add_legend_at_right(cost)
     return figure
 
 

@@ -94,7 +94,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
         kind = next((kind for kind in DISPLAYED_KINDS if kind.metric.symbol == row["unit"]), RATIO)
         cells: list[Text] = []
         for name in DIMENSIONS:
-            slope = _derivative_text(row, f"{name}_per_mm", _per_length(kind), 4)
+            slope = _derivative_text(row, f"{name}_per_mm", _kind_per_length(kind), 4)
             percent = words("({percent} %)", percent=_derivative_text(row, f"{name}_percent", RATIO, 3))
             cells += [slope, "" if row[f"{name}_percent"] is None else percent]
             kinks = kinks or isinstance(slope, tuple)
@@ -120,7 +120,7 @@ def blocks(numbers: Sensitivity) -> list[Block]:
     )
 
 
-def _per_length(kind: Kind) -> Kind:
+def _kind_per_length(kind: Kind) -> Kind:
     """Return the kind of a derivative with respect to a dimension, without a unit: the heading states the step."""
     inch = kind.display_unit("inch").factor / LENGTH.display_unit("inch").factor
     return replace(

@@ -102,6 +102,6 @@ def tolerances_figure(bands: Bands, system: System = "metric") -> Figure:
     counts.hist(unit.factor * bands.machines, bins=40, color="#bdbdbd")
     counts.set_yticks([])
     counts.set_xlabel(title_with_unit("greatest error of a machine", unit.symbol), fontsize=style.SMALL)
-    style.legend_at_right(upper)
-    style.legend_at_right(lower, stacked=len(bands.sources))
+    style.add_legend_at_right(upper)
+    style.add_legend_at_right(lower, stacked=len(bands.sources))
     return figure
