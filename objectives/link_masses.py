@@ -70,7 +70,7 @@ MOVING_MASS = _mass(
         _crank_mass(number) + _rod_mass(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
     ),
     place=434,
-    sentence="The mass of all moving links: crank, counterweight, rod and slider.",
+    sentence="The mass of all moving links: crank, counterweight, rod and slider; for a lever, without its cylinder.",
     advice="With variable sections it trades off against their safety; it also affects forces and torque.",
     formula="m_crank + m_counterweight + m_rod + m_slider",
     picture="inertia",

@@ -19,6 +19,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.single_linkage import require_slider, single_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
+from .angle_remedy import smaller_swing
 from .angles_from_position import crank_angles_at
 from .law import NO_TABLE, law_spline_pieces, travel_speed_acceleration
 from .swing_types import Law, Side, Stated, SwingDriver
@@ -100,7 +101,8 @@ class Swing:
         if self.actuator_tolerance and self.driver == "crank":
             raise InputError(
                 f"an actuator tolerance needs a slider that drives; got {1e3 * self.actuator_tolerance:g} mm with "
-                "the crank driven; let the slider drive, or leave the tolerance out"
+                "the crank driven; let the slider drive, or leave the tolerance out; a cylinder that turns has "
+                "length_tolerance in [cylinder]"
             )
 
     def _require_lever_swing(self, angle: float) -> None:
@@ -119,7 +121,8 @@ class Swing:
         if angle >= math.pi:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
-                f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; reduce the swing"
+                f"{math.degrees(self.start):.6g} to {math.degrees(self.end):.6g} deg; "
+                f"{smaller_swing(self.start, self.end)}"
             )
 
     @property

@@ -28,6 +28,7 @@ from ..arrays import Array
 from ..checks import require_numbers
 from ..errors import AssemblyError, InputError
 from ..kernel.arithmetic import analytic, arctangent, inverse, magnitude, root
+from ..swing.angle_remedy import smaller_swing
 
 _TURN = 2.0 * math.pi
 Vectors = NDArray[np.complex128]
@@ -103,7 +104,7 @@ class TurningCylinder:
         if abs(end - start) >= math.pi:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
-                f"{_degrees(start)} to {_degrees(end)}; {_smaller_swing(start, end)}"
+                f"{_degrees(start)} to {_degrees(end)}; {smaller_swing(start, end)}"
             )
         dead = self.dead_points(start, end)
         if dead:
@@ -286,16 +287,6 @@ def sizes_for_stroke(
         return None
     total, difference = math.sqrt(squares + 2.0 * product), math.sqrt(squares - 2.0 * product)
     return 0.5 * (total - difference), 0.5 * (total + difference)
-
-
-def _smaller_swing(start: float, end: float) -> str:
-    """Return the remedy for a swing of half a turn or more, rad: nearer angles of the same ends."""
-    near = [math.remainder(angle, _TURN) for angle in (start, end)]
-    pairs = zip((start, end), near, strict=True)
-    wrapped = [f"{_degrees(other)} for {_degrees(angle)}" for angle, other in pairs if abs(other - angle) > 1.0]
-    if wrapped and 0.0 < abs(near[1] - near[0]) < math.pi:
-        return f"angles must be written without wrapping at a full turn: write {' and '.join(wrapped)}"
-    return "reduce the swing"
 
 
 def _degrees(angle: float) -> str:

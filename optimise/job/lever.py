@@ -119,6 +119,16 @@ def lever_of(
     return Lever(**angles, cylinder=known, arm=driven, spring=pushing)
 
 
+def require_parts_of_lever(mechanism: MechanismPart, **parts: object) -> None:
+    """Raise `JobError` if a lever has tables of a job that only a slider-crank has. parts: these tables by name."""
+    for name, part in parts.items():
+        if mechanism.inversion is not None and part is not None:
+            raise JobError(
+                f"{name}: is for a crank with rod and slider; got it for a lever moved by a cylinder that turns; leave "
+                "it out"
+            )
+
+
 def swing_of(mechanism: MechanismPart, motion: MotionPart) -> Swing | None:
     """Return the swing of a crank or lever; None for a slider-crank whose crank rotates fully. Raises `JobError`."""
     swing = motion.build()

@@ -169,7 +169,7 @@ def where_key_belongs(key: str, schema: Schema) -> str:
     """Say where a key belongs that its table lacks; "" if no table has it either."""
     if key in schema["properties"] and not headings([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
-    owners = _tables_with_all_keys([key], schema)
+    owners = sorted(_tables_with_all_keys([key], schema), key="[cylinder]".__eq__)  # which few jobs have
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
 

@@ -24,6 +24,7 @@ from ..problem.requirements import Constraint, merged
 from .constraints_and_objectives import constraints_of, objectives_of, slow_stroke_of
 from .contradictions import require_consistent
 from .custom_quantities import formulas_of, functions_of
+from .lever import require_parts_of_lever
 from .mistake_messages import key_of
 from .model import Job
 from .motion import (
@@ -56,6 +57,7 @@ def problem_of(
     require_feasible: whether to raise `InfeasibleError` if no design can meet the job; a search needs that, a given
     design does not.
     """
+    require_parts_of_lever(job.mechanism, costs=job.costs, target_motion=job.target_motion)
     variables, motion = job.variables, job.swing()
     machine = _machine_of(job, motion)
     amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)

@@ -197,6 +197,17 @@ def test_a_certificate_says_that_a_lever_has_none() -> None:
             "peak_cylinder_force: it needs a lever that its cylinder swings; got a crank that",
         ),
         (lever(motion={"to": "175 deg"}), "must swing its lever less than 180 deg"),
+        (lever(motion={"from": "340 deg"}), "without wrapping at a full turn: write -20 deg for 340 deg"),
+        (lever(motion={"actuator_tolerance": "1 mm"}), r"a cylinder that turns has length_tolerance in \[cylinder\]"),
+        (lever(objectives={"peak_actuator_force": "minimise"}), "use peak_cylinder_force"),
+        (
+            lever(costs={"crank": {"at": "0.05 mm", "cost": 8.0, "min": "0.005 mm"}}),
+            "costs: is for a crank with rod and slider; got it for a lever",
+        ),
+        (
+            lever(target_motion={"crank_angles": ["0 deg", "10 deg", "20 deg"], "positions": ["1 mm", "2 mm", "3 mm"]}),
+            "target_motion: is for a crank with rod and slider; got it for a lever",
+        ),
         (lever(mechanism={"speed": "300 rpm"}), "mechanism.speed: is for a crank that rotates fully; got it with a"),
         (lever(arm={"torque": "2 N m"}), "arm: is for a crank that rotates fully; got it with a lever that its"),
         (lever(mechanism={"slider": {"mass": "2 kg"}, "rod": {"mass": "1 kg"}}), "got mechanism.rod, mechanism.slider"),
