@@ -82,15 +82,34 @@ def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
         )
     if mechanism.lever is None or swing is None:
         return
-    if not swing.of_full_turn and mechanism.with_largest_variables.speed:
+    if swing.of_full_turn:
+        _require_nothing_of_a_driving_cylinder(mechanism)
+        return
+    if mechanism.with_largest_variables.speed:
         raise InputError(
             "mechanism.speed: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave "
             "it out, and give [motion] a law and a duration"
         )
-    if not swing.of_full_turn and mechanism.lever.arm != Arm():
+    if mechanism.lever.arm != Arm():
         raise InputError(
             "arm: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave it out"
         )
+
+
+def _require_nothing_of_a_driving_cylinder(mechanism: Mechanism) -> None:
+    """Raise `InputError` for what only a cylinder that drives its lever has. mechanism: one with a crank that turns."""
+    machine = mechanism.with_largest_variables
+    assert machine.lever is not None
+    stated = {
+        "tolerances": machine.tolerances.are_stated,
+        "cylinder.length_tolerance": machine.lever.cylinder.length_tolerance,
+        "cylinder.supply_pressure": machine.lever.cylinder.supply_pressure,
+    }
+    for name, value in stated.items():
+        if value:
+            raise InputError(
+                f"{name}: is for a lever that its cylinder swings; got it with a crank that rotates fully; leave it out"
+            )
 
 
 def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Linkage:

@@ -94,6 +94,7 @@ def _arm(tables: dict[str, Any]) -> None:
     _lever(tables)
     for key in ("motion", "tolerances"):
         tables.pop(key)
+    tables["cylinder"].pop("supply_pressure")
     tables["mechanism"]["speed"] = "300 rpm"
     tables["arm"] = {"inertia": "0.01 kg m^2", "torque": "2 N m", "ram": "200 mm"}
     tables["objectives"] = dict.fromkeys(("arm_swing", "peak_crank_torque"), "minimise")
