@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import slidercrank as sc
-from slidercrank.optimise.job import parse_job, with_files
+from slidercrank.optimise.job import parse_job, with_file_contents
 from slidercrank.service.figures.style import BLUE, INK, SMALL, VERMILION, add_axes, new_figure, save_png, style_axes
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -73,7 +73,7 @@ def _draw(example: Example, file: Path) -> None:
     with tempfile.TemporaryDirectory() as beside:
         for name, text in example.file.items():
             (Path(beside) / name).write_text(text, encoding="utf-8")
-        problem = parse_job(with_files({**whole_job(), **example.tables}, Path(beside)))
+        problem = parse_job(with_file_contents({**whole_job(), **example.tables}, Path(beside)))
     crank = float(sc.crank_from_stroke(_STROKE, rod=_ROD, offset=_OFFSET))
     cycle = problem.analyse([crank, _ROD, _OFFSET]).cycle(_ANGLES)
     position, force = 1e3 * cycle["slider_position_m"].to_numpy(), cycle["load_N"].to_numpy()

@@ -10,10 +10,10 @@ from time import perf_counter
 import numpy as np
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import choose_designs, hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import choose_designs, hypervolume, ideal_and_range
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.methods.registry import methods as known
+from slidercrank.optimise.methods.registry import methods_by_name as known
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 
@@ -49,7 +49,7 @@ def compare(
     for job in jobs:
         given = load_job(FOLDERS.get(job, "runs") + f"/{job}.toml")
         best = solve(given)
-        ideal, span = scaling(best.values)
+        ideal, span = ideal_and_range(best.values)
         whole = best.hypervolume
         courses[given.name] = [
             Course(

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range
 
 Table = dict[str, Any]
 
@@ -159,11 +159,11 @@ def worse(ours: Table, theirs: Table) -> str:
     if not all(map(len, fronts)):
         return "" if len(fronts[0]) == len(fronts[1]) else "no designs on one side"
     our, their = fronts
-    apart = (our[:, None] - their) / scaling(their)[1]
+    apart = (our[:, None] - their) / ideal_and_range(their)[1]
     beaten = ((apart >= 0.0).all(axis=2) & (apart.max(axis=2) > DOMINATED)).any(axis=1)
     if beaten.any():
         return f"{beaten.sum()} of {len(our)} designs dominated"
-    box = scaling(np.concatenate(fronts))
+    box = ideal_and_range(np.concatenate(fronts))
     ends = our[our.argmin(axis=0)]
     for column in np.flatnonzero(ends.min(axis=0) < their.min(axis=0)).tolist():
         their[their[:, column].argmin()] = ends[column]

@@ -13,7 +13,7 @@ from time import process_time
 import numpy as np
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -75,12 +75,12 @@ def compare(job: str, seeds: tuple[int, ...] = (1, 2, 3, 4, 5)) -> list[Row]:
     for seed in seeds:
         problem = replace(given, settings=replace(given.settings, seed=seed, designs=_DESIGNS))
         front = solve(problem)
-        _, span = scaling(front.values)
+        _, span = ideal_and_range(front.values)
         ours = _explored(problem)
         for name in _SOONER:
             seconds, archive, population = _archive(name, problem, span, seed)
             together = np.concatenate([archive, *(values for _, values in ours)])
-            ideal, range_ = scaling(together[nondominated(together)])
+            ideal, range_ = ideal_and_range(together[nondominated(together)])
             wanted = hypervolume(archive, ideal, range_)
             sooner[name].append(seconds / _least(ours, wanted, ideal, range_))
             if name == NSGA2_:

@@ -20,7 +20,7 @@ from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD
 from ..model.strength.stress_cycle import CLASSES, LABEL_STEP, stress_peaks
 from ..model.strength.stress_locations import Eye, StressLocation
-from .quantity import Array, Formula, Group, Pieces, Quantity, Values, fact, undefined
+from .quantity import Array, Formula, Group, Pieces, Quantity, Values, display_fact, undefined_values
 
 
 class Link(NamedTuple):
@@ -94,12 +94,12 @@ class BarPieces(NamedTuple):
 class BarQuantity(Quantity):
     """A quantity that is the maximum or minimum over several parts of the crank and the rod."""
 
-    group: Group = fact(Group.STRENGTH)
-    section: str = fact("22. Strength of crank and rod")
+    group: Group = display_fact(Group.STRENGTH)
+    section: str = display_fact("22. Strength of crank and rod")
     links: tuple[str, ...] = ("rod", "crank")
     least: bool = False
 
-    def allowable(self, mechanism: Mechanism) -> float:
+    def allowable_value(self, mechanism: Mechanism) -> float:
         """Return 1, the limit below which a safety factor fails; other quantities override this; see `Quantity`."""
         return 1.0
 
@@ -113,8 +113,8 @@ class BarQuantity(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); NaN if no link is a bar; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         all_parts = self.join_parts(mechanism, dimensions, 1, gradients)
         first = (np.argmin if self.least else np.argmax)(all_parts.values, axis=1)
         rows = np.arange(len(first))
@@ -124,7 +124,7 @@ class BarQuantity(Quantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the local peaks of every part; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
+        if self.unmet_need(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         all_parts = self.join_parts(mechanism, dimensions, STORED_PEAKS, True)
         assert all_parts.gradients is not None
@@ -167,29 +167,33 @@ class BarPeak(BarQuantity):
         """Return p and q for each criterion max(p sigma - q sigma): by default maximum tension and compression."""
         return STATIC
 
-    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+    def stress_locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return the stress locations that one search covers."""
         return tuple(demand.peak for demand in self.section_loads(mechanism) if not isinstance(demand.peak, str))
 
     def parts(self, mechanism: Mechanism, designs: Array, piece_count: int, gradients: bool) -> Sequence[BarPieces]:
         """Return a part for each demand; see `BarQuantity`."""
-        locations = self.locations(mechanism)
+        locations = self.stress_locations(mechanism)
         found: dict[StressLocation | str, BarPieces] = {}
         if locations:
-            searched = stresses(mechanism, designs, locations, self.criteria(mechanism), piece_count, gradients)
+            searched = stress_pieces(mechanism, designs, locations, self.criteria(mechanism), piece_count, gradients)
             found.update(zip(locations, searched, strict=True))
         parts = []
         for peak, section, scale, _ in self.section_loads(mechanism):
-            part = pin_force(mechanism, designs, peak, piece_count, gradients) if isinstance(peak, str) else found[peak]
+            part = (
+                pin_force_pieces(mechanism, designs, peak, piece_count, gradients)
+                if isinstance(peak, str)
+                else found[peak]
+            )
             size = (
                 (np.ones(len(designs)), np.zeros(designs.shape) if gradients else None)
                 if section is None
                 else evaluate_formula_of_raw_numbers(mechanism, designs, section, gradients=gradients)
             )
             parts.append(
-                part.closed_form_divided_by_pieces(_scaled(size, scale))
+                part.closed_form_divided_by_pieces(_scale_closed_form(size, scale))
                 if self.least
-                else force_over_area(part, size, scale)
+                else pieces_of_force_over_area(part, size, scale)
             )
         return parts
 
@@ -201,7 +205,7 @@ def material_and_pins(mechanism: Mechanism) -> Strength:
 
 
 @memoise_by_batch
-def stresses(
+def stress_pieces(
     mechanism: Mechanism,
     designs: Array,
     places: tuple[StressLocation, ...],
@@ -215,13 +219,13 @@ def stresses(
 
 
 @memoise_by_batch
-def pin_force(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> BarPieces:
+def pin_force_pieces(mechanism: Mechanism, designs: Array, pin: str, piece_count: int, gradients: bool) -> BarPieces:
     """Return the maximum force on a pin over the cycle, N."""
     peaks = find_peaks(mechanism, FORCE[pin], designs, gradients=gradients, limit=piece_count)
     return BarPieces(peaks.values, peaks.gradients, np.nan_to_num(peaks.angles))
 
 
-def eyes_of(link: str, pin: str) -> list[Eye]:
+def critical_eye_edges(link: str, pin: str) -> list[Eye]:
     """Return the critical edges of a link's eye: the bore, and both edges if the torque bends it.
 
     The torque bends the eye at the crank pivot. Bending of an eye by the friction of its pin is neglected.
@@ -232,23 +236,23 @@ def eyes_of(link: str, pin: str) -> list[Eye]:
     return [Eye(sizes.part, pin != NEAR, sizes.width, PINS[pin], bent, outer) for outer in edges]
 
 
-def net_width(eye: Eye) -> Formula:
+def net_width_formula(eye: Eye) -> Formula:
     """Return the formula for the net width of an eye, w - D, m."""
     return lambda number: number(eye.width) - number(eye.pin)
 
 
-def net_section(link: str, pin: str) -> Formula:
+def net_section_formula(link: str, pin: str) -> Formula:
     """Return the formula for the net section of a link's eye, (w - D) t, m^2."""
     sizes = LINKS[link]
     return lambda number: (number(sizes.width) - number(PINS[pin])) * number(sizes.depth)
 
 
-def _scaled(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Array | None]:
+def _scale_closed_form(factor: tuple[Array, Array | None], scale: float) -> tuple[Array, Array | None]:
     values, slopes = factor
     return scale * values, None if slopes is None else scale * slopes
 
 
-def force_over_area(force: BarPieces, area: tuple[Array, Array | None], factor: float = 1.0) -> BarPieces:
+def pieces_of_force_over_area(force: BarPieces, area: tuple[Array, Array | None], factor: float = 1.0) -> BarPieces:
     """Return a scaled force divided by an area; infinite if the area is zero."""
     values, slopes = area
     has_area = values > 0.0

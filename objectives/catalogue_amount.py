@@ -31,7 +31,7 @@ class Amount(Quantity):
         return True
 
     @property
-    def blank(self) -> str:
+    def no_value_reason(self) -> str:
         """Message for an option without this amount."""
         return "the catalogue has none for the chosen options"
 
@@ -44,8 +44,8 @@ def substitute_amounts(quantity: Quantity, values: dict[str, float]) -> Quantity
     """Return a quantity with its amounts replaced by those of a chosen option. values: SI."""
     if isinstance(quantity, Amount):
         return replace(quantity, value=values.get(quantity.name, _NONE))
-    parts = tuple(substitute_amounts(part, values) for part in quantity.made_of)
-    return quantity if parts == quantity.made_of else quantity.with_parts(parts)
+    parts = tuple(substitute_amounts(part, values) for part in quantity.component_quantities)
+    return quantity if parts == quantity.component_quantities else quantity.with_parts(parts)
 
 
 def kind_of_amount(unit: str) -> Kind:
@@ -56,7 +56,7 @@ def kind_of_amount(unit: str) -> Kind:
         return amount_kind(unit)
 
 
-def amount_of(text: str | float) -> tuple[float, str] | None:
+def number_and_unit_of_amount(text: str | float) -> tuple[float, str] | None:
     """Return number and unit of an amount such as "280 EUR"; None for other text."""
     parts = number_and_unit(text) if isinstance(text, str) else (str(text), "")
     return None if parts is None else (float(parts[0]), parts[1])

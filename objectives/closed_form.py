@@ -14,7 +14,7 @@ from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import require_design_columns
 from .bounds_over_ranges import QuantityBounds
-from .quantity import Array, Formula, Number, Pieces, Quantity, Values, fact
+from .quantity import Array, Formula, Number, Pieces, Quantity, Values, display_fact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,13 +25,13 @@ class ClosedFormQuantity(Quantity):
     designs.
     """
 
-    section: str = fact("2. Closed forms")
-    on_datasheet: bool = fact(True)
+    section: str = display_fact("2. Closed forms")
+    on_datasheet: bool = display_fact(True)
     forms: tuple[ClosedForm, ...]
     rises: tuple[bool, bool, bool] | None = field(default=None, compare=False)
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """True."""
         return True
 
@@ -49,9 +49,9 @@ class ClosedFormQuantity(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        values, slopes = _evaluate(self.forms[0], mechanism, dimensions, gradients)
+        values, slopes = _evaluate_closed_form(self.forms[0], mechanism, dimensions, gradients)
         for form in self.forms[1:]:
-            other_values, other_slopes = _evaluate(form, mechanism, dimensions, gradients)
+            other_values, other_slopes = _evaluate_closed_form(form, mechanism, dimensions, gradients)
             if slopes is not None and other_slopes is not None:
                 slopes = np.where((other_values > values)[:, None], other_slopes, slopes)
             values = np.maximum(values, other_values)
@@ -59,7 +59,7 @@ class ClosedFormQuantity(Quantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the quantity as the maximum of its closed forms; see `Quantity`."""
-        parts = [_evaluate(form, mechanism, dimensions, True) for form in self.forms]
+        parts = [_evaluate_closed_form(form, mechanism, dimensions, True) for form in self.forms]
         values, slopes = parts[0]
         if slopes is not None and len(parts) == 1:
             return Pieces(values[:, None], slopes[:, None], np.zeros((len(values), 1)))
@@ -72,7 +72,9 @@ def _closed_form_value(form: ClosedForm, number: Number) -> Any:
     return closed_form_value(int(form), number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET))
 
 
-def _evaluate(form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool) -> tuple[Array, Array | None]:
+def _evaluate_closed_form(
+    form: ClosedForm, mechanism: Mechanism, designs: Array, gradients: bool
+) -> tuple[Array, Array | None]:
     """Return values (n,) and gradients (n, 3 + k); a closed form depends on the three dimensions alone."""
     designs = np.asarray(designs, dtype=np.float64)
     require_design_columns(mechanism, designs)

@@ -5,7 +5,18 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from .kinds import DISPLAYED_KINDS, INERTIA, LENGTH, PRESSURE, RATIO, DisplayUnit, Kind, System, display_unit, kind_in
+from .kinds import (
+    DISPLAYED_KINDS,
+    INERTIA,
+    LENGTH,
+    PRESSURE,
+    RATIO,
+    DisplayUnit,
+    Kind,
+    System,
+    display_unit,
+    kind_in,
+)
 
 # Suffixes of column names, longest first because "_lbf_in" also ends with "_in".
 _DISPLAY_UNITS = sorted(
@@ -33,7 +44,7 @@ for _unit, _kind in _EXTRA_UNITS.items():
     _TO_INCH[_unit.suffix] = _kind.display_unit("inch").suffix, _kind.display_unit("inch").factor / _unit.factor
 
 
-def split_unit(key: str) -> tuple[str, str, float]:
+def name_unit_and_factor_of_key(key: str) -> tuple[str, str, float]:
     """Return the name, the unit and the factor from SI for a key such as "peak_torque_Nm"."""
     unit = _display_unit_of(key)
     return (key, "", 1.0) if unit is None else (key.removesuffix(unit.suffix), unit.symbol, unit.factor)

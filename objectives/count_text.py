@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 
-def counted(count: int, noun: str) -> str:
+def count_with_noun(count: int, noun: str) -> str:
     """Return a count with its noun: "1 design", "20 designs". The plural ends in s."""
     return f"{count} {noun}{'' if count == 1 else 's'}"

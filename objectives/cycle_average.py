@@ -12,7 +12,7 @@ from ..model.machine.raw_numbers_of_designs import raw_number_at_slot
 from ..model.signals.averages import signal_averages
 from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
-from .quantity import Array, Quantity, Values, fact
+from .quantity import Array, Quantity, Values, display_fact
 
 Statistic = Literal["mean", "rms"]
 
@@ -26,7 +26,7 @@ class CycleAverage(Quantity):
     gives the mean power over time.
     """
 
-    section: str = fact("10. Motor and balance")
+    section: str = display_fact("10. Motor and balance")
     signal: Signal
     statistic: Statistic
     times_speed: bool = False

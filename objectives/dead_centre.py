@@ -32,10 +32,10 @@ class NearDeadCentre(GreatestOfFormulas):
 
     def formulas(self, mechanism: Mechanism) -> Sequence[Formula]:
         """Return the formula if the machine defines the quantity; see `Quantity`."""
-        return () if self.lacks(mechanism, "undefined") else (partial(self.closed_form, mechanism),)
+        return () if self.unmet_need(mechanism, "undefined") else (partial(self.closed_form, mechanism),)
 
     @property
-    def blank(self) -> str:
+    def no_value_reason(self) -> str:
         """Reason why a design has no value."""
         return "its stroke is not longer than the distance from the dead centre"
 
@@ -57,7 +57,7 @@ def _distances_near_dead_centre(number: Number, distance: float, outer: bool) ->
     return x, x * x + lengths[2] * lengths[2], outer_product, inner_product
 
 
-def _travel_rate(machine: Mechanism, number: Number, distance: Any) -> Any:
+def _travel_per_crank_angle(machine: Mechanism, number: Number, distance: Any) -> Any:
     """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod divided by l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
@@ -94,11 +94,11 @@ def angle_and_travel_rate_before_dead_centre(
         e * distances, (dead - way * distances) * dead + e * e
     )  # angle of the line, measured from there
     angles = _crank_angle_from_pin_line(machine, number, distances) - machine.sign * machine.direction * turned
-    return angles, _travel_rate(machine, number, distances)
+    return angles, _travel_per_crank_angle(machine, number, distances)
 
 
 def _touch_speed(machine: Mechanism, number: Number) -> Any:
-    return _travel_rate(machine, number, machine.slider.touch or 0.0) * magnitude(number(Raw.SPEED))
+    return _travel_per_crank_angle(machine, number, machine.slider.touch or 0.0) * magnitude(number(Raw.SPEED))
 
 
 def _dwell_angle(machine: Mechanism, number: Number) -> Any:

@@ -17,8 +17,8 @@ from ..model.signals.peaks import STORED_PEAKS
 from ..model.signals.shaft_statistics import greatest_speed_ratio
 from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import ANGULAR_SPEED, ENERGY, POWER, RATIO, TORQUE
-from .machine_needs import DRIVE_TRAIN, MOTOR_LOADED, SPEED, motor_limit
-from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, fact, undefined
+from .machine_needs import DRIVE_TRAIN, MOTOR_LOADED, SPEED, need_of_motor_limit
+from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, display_fact, undefined_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,12 +28,12 @@ class MotorQuantity(Quantity):
     limit: key of its limit in [drive]. share: whether the quantity is the load divided by the limit.
     """
 
-    group: Group = fact(Group.DRIVE)
-    section: str = fact("10. Motor and balance")
+    group: Group = display_fact(Group.DRIVE)
+    section: str = display_fact("10. Motor and balance")
     limit: str = ""
     share: bool = False
 
-    def allowable(self, mechanism: Mechanism) -> float:
+    def allowable_value(self, mechanism: Mechanism) -> float:
         """Return the limit stated for the drive, SI; infinite if there is none."""
         limit = None if mechanism.drive is None else getattr(mechanism.drive, self.limit)
         return math.inf if limit is None else float(limit)
@@ -56,14 +56,14 @@ class MotorPeak(MotorQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         values, slopes, _ = self._highest_peaks(mechanism, dimensions, 1, gradients)
         return Values(values[:, 0], None if slopes is None else slopes[:, 0])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the highest local peaks; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
+        if self.unmet_need(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         values, slopes, angles = self._highest_peaks(mechanism, dimensions, STORED_PEAKS, True)
         assert slopes is not None
@@ -88,8 +88,8 @@ class MotorRms(MotorQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         averages = motor_averages(mechanism, dimensions, MotorCurve.TORQUE, gradients)
         scale, by_scale = self.scale(mechanism, dimensions, gradients=gradients)
         slopes = None
@@ -117,8 +117,8 @@ class EnergyDrawn(MotorQuantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         averages = motor_averages(mechanism, dimensions, MotorCurve.DRAWN, gradients)
         return Values(averages.integral, averages.integral_gradients)
 
@@ -205,7 +205,7 @@ THERMAL_USE = _rms(
     advice="Up to 1 the motor does not overheat; 0.8 leaves a margin.",
     formula="sqrt(mean of T_m^2 over time) / T_r",
     example=0.8,
-    needs=(motor_limit("rated_torque", "5 N m"), MOTOR_LOADED),
+    needs=(need_of_motor_limit("rated_torque", "5 N m"), MOTOR_LOADED),
 )
 MOTOR_TORQUE_USE = _peak(
     name="motor_torque_use",
@@ -215,7 +215,7 @@ MOTOR_TORQUE_USE = _peak(
     sentence="The peak motor torque, as a fraction of the greatest torque that the motor can deliver.",
     formula="max |T_m| over the greatest torque of the motor",
     example=0.8,
-    needs=(motor_limit("greatest_torque", "15 N m"), MOTOR_LOADED),
+    needs=(need_of_motor_limit("greatest_torque", "15 N m"), MOTOR_LOADED),
 )
 MOTOR_SPEED_USE = _speed(
     name="motor_speed_use",
@@ -225,5 +225,5 @@ MOTOR_SPEED_USE = _speed(
     sentence="The greatest motor speed within a turn, as a fraction of the speed that the motor can reach.",
     formula="i max |omega| over the greatest speed of the motor",
     example=0.8,
-    needs=(motor_limit("greatest_speed", "4000 rpm"), SPEED),
+    needs=(need_of_motor_limit("greatest_speed", "4000 rpm"), SPEED),
 )

@@ -16,7 +16,7 @@ from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDE
 from .average_torque import MEAN_TORQUE
 from .kinds import ENERGY, RATIO
 from .machine_needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
-from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined
+from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined_values
 
 _TURN = 2.0 * math.pi
 _ROUNDING = 1e-12  # fraction of the friction heat; useful work below it is rounding error
@@ -117,8 +117,8 @@ class Efficiency(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         work = turn_work(mechanism, dimensions, gradients=gradients)
         heat, by_heat = _friction_heat(mechanism, dimensions, work)
         locks = np.isinf(heat)

@@ -29,7 +29,7 @@ from ..model.signals.shaft_statistics import mean_speed_ratio
 from ..model.signals.signals import Signal
 from .kinds import RATIO, VOLUME_FLOW
 from .machine_needs import COMPRESSOR, EVEN_SPEED, SPEED, Need
-from .quantity import Array, Group, Pieces, Quantity, Values, undefined
+from .quantity import Array, Group, Pieces, Quantity, Values, undefined_values
 
 _MOST_PIECES = 3
 """Local peaks, and local troughs, of the flow from which pieces are built."""
@@ -42,8 +42,8 @@ class Flow(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         factor = mechanism.direction * mean_speed_ratio(mechanism) / (2.0 * math.pi)
         rate = evaluate_formula_of_raw_numbers(
             mechanism, dimensions, lambda number: factor * number(Raw.SPEED), gradients=gradients
@@ -62,19 +62,19 @@ class FlowRipple(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         differences = self._peak_to_trough_pieces(mechanism, np.asarray(dimensions, dtype=np.float64), 1)
         return Values(differences.values[:, 0], differences.gradients[:, 0] if gradients else None)
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the differences between local peaks and troughs; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
+        if self.unmet_need(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         return self._peak_to_trough_pieces(mechanism, np.asarray(dimensions, dtype=np.float64), _MOST_PIECES)
 
     def _peak_to_trough_pieces(self, mechanism: Mechanism, designs: Array, peak_count: int) -> Pieces:
-        n, pumps = len(designs), list(pumps_of(mechanism))
+        n, pumps = len(designs), list(liquid_pumps(mechanism))
         areas = [
             evaluate_formula_of_raw_numbers(mechanism, designs, partial(_piston_area, k), gradients=True) for k in pumps
         ]
@@ -101,7 +101,7 @@ class FlowRipple(Quantity):
         return Pieces(values, np.where(finite[:, :, None], slopes, 0.0), labels.reshape(shape))
 
 
-def pumps_of(mechanism: Mechanism) -> dict[int, Cylinder]:
+def liquid_pumps(mechanism: Mechanism) -> dict[int, Cylinder]:
     """Return the liquid pumps among a machine's loads, by index."""
     return {
         k: load
@@ -130,7 +130,7 @@ def _machine_with_flow_as_torque(mechanism: Mechanism) -> Mechanism:
     """
     loads: list[Load] = []
     varying = []
-    for place, pump in enumerate(pumps_of(mechanism).values()):
+    for place, pump in enumerate(liquid_pumps(mechanism).values()):
         loads.append(StrokeForce(outward=0.0, inward=0.0))
         side, sign = ("outward", -1.0) if pump.head == "outer dead centre" else ("inward", 1.0)
         varying.append(Varying(name=f"area {place}", sets=((f"loads.{place}.{side}", sign),), lower=0.0, upper=1.0))
@@ -180,7 +180,7 @@ FLOW_RIPPLE = FlowRipple(
     example=0.14,
     needs=(
         Need(
-            lambda machine: bool(pumps_of(machine.with_largest_variables)),
+            lambda machine: bool(liquid_pumps(machine.with_largest_variables)),
             'it needs pumps for a liquid; got none; add for example [[load]] bore = "70 mm", suction = "1 bar", '
             'discharge = "8 bar", medium = "liquid"',
             consequence="undefined",

@@ -12,7 +12,7 @@ from ..model.machine.mechanism import Mechanism
 from .energy import EFFICIENCY
 from .kinds import ENERGY, PRESSURE, RATIO, VOLUME
 from .machine_needs import COMPRESSOR, CYLINDER
-from .quantity import Array, Domain, Group, Quantity, Values, undefined
+from .quantity import Array, Domain, Group, Quantity, Values, undefined_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,8 +23,8 @@ class GasQuantity(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); NaN if there is no suitable cylinder; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         return Values(*gas_cycle_number(mechanism, dimensions, self.closed_form, gradients=gradients))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
-from .quantity import Array, Pieces, Quantity, Values, undefined
+from .quantity import Array, Pieces, Quantity, Values, undefined_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,15 +21,15 @@ class GreatestOfFormulas(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         values, slopes = self._evaluate_formulas(mechanism, dimensions, gradients)
         first, rows = np.argmax(values, axis=1), np.arange(len(values))
         return Values(values[rows, first], None if slopes is None else slopes[rows, first])
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return all formulas; see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
+        if self.unmet_need(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         values, slopes = self._evaluate_formulas(mechanism, dimensions, True)
         assert slopes is not None

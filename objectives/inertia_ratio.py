@@ -15,7 +15,7 @@ from ..model.signals.peaks import find_peaks
 from ..model.signals.signals import Signal
 from .kinds import RATIO
 from .machine_needs import DRIVE_TRAIN, ROTOR
-from .quantity import Array, Group, Number, Pieces, Quantity, Values, undefined
+from .quantity import Array, Group, Number, Pieces, Quantity, Values, undefined_values
 
 
 def _per_rotor_inertia(number: Number) -> Any:
@@ -37,8 +37,8 @@ class InertiaRatio(Quantity):
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
-        if self.lacks(mechanism, "undefined"):
-            return undefined(dimensions, gradients)
+        if self.unmet_need(mechanism, "undefined"):
+            return undefined_values(dimensions, gradients)
         if self.mean:
             averages = signal_averages(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=gradients)
             return self._ratio(mechanism, dimensions, averages.mean, averages.mean_gradients)
@@ -48,7 +48,7 @@ class InertiaRatio(Quantity):
 
     def pieces(self, mechanism: Mechanism, dimensions: Array) -> Pieces:
         """Return the ratios for the highest local peaks of the inertia; see `Quantity`."""
-        if self.mean or self.lacks(mechanism, "undefined"):
+        if self.mean or self.unmet_need(mechanism, "undefined"):
             return super().pieces(mechanism, dimensions)
         peaks = find_peaks(mechanism, Signal.REFLECTED_INERTIA, dimensions, gradients=True)
         assert peaks.gradients is not None

@@ -90,7 +90,7 @@ _POUND = 0.45359237
 _LBF = 4.4482216152605
 
 
-def _kind(
+def _build_kind(
     name: str,
     typed: str,
     example: str,
@@ -108,10 +108,10 @@ def _kind(
 
 
 _MM = display_unit("in", _PER_INCH), display_unit("mm", 1e3)
-LENGTH = _kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, LONGEST))
-AREA = _kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, display_unit("in^2", 1.0 / _INCH**2))
+LENGTH = _build_kind("a length", "m, mm, cm, µm, in, foot", "80 mm", 1e4, *_MM, believed=(1e-4, LONGEST))
+AREA = _build_kind("an area", "m^2, cm^2, mm^2, in^2", "0.25 m^2", 1e8, display_unit("in^2", 1.0 / _INCH**2))
 _DEG = display_unit("deg", 57.29577951308232)
-ANGLE = _kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
+ANGLE = _build_kind("an angle", "rad, deg", "0.1 deg", 1e4, metric=_DEG, believed=(0.0, 12.6))  # two turns
 _RPM = display_unit("rpm", 9.549296585513721)
 _PER_MINUTE = (
     *("/min", "1/min", "min^-1", "min-1", "min**-1", "U/min", "u/min", "Upm", "UPM", "r/min", "r.p.m.", "Rpm"),
@@ -120,53 +120,61 @@ _PER_MINUTE = (
 _PLATES = (*((unit, "rpm") for unit in _PER_MINUTE), *((unit, "rev/s") for unit in ("Hz", "hz", "HZ")))
 """Units on nameplates of motors and machines, where speed is in turns."""
 _SPEEDS = "rad/s, rpm, rev/s"
-ANGULAR_SPEED = _kind("an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES)
-ANGULAR_ACCELERATION = _kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
-MASS = _kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, display_unit("lb", 1.0 / _POUND))
+ANGULAR_SPEED = _build_kind(
+    "an angular speed", _SPEEDS, "300 rpm", 1e6, metric=_RPM, believed=(0.0, 0.0), spoken=_PLATES
+)
+ANGULAR_ACCELERATION = _build_kind("an angular acceleration", "rad/s^2, deg/s^2", "20 rad/s^2", 1e9)
+MASS = _build_kind("a mass", "kg, g, t, lb", "0.8 kg", 1e8, display_unit("lb", 1.0 / _POUND))
 _INERTIA = display_unit("lb in^2", 1.0 / (_POUND * _INCH**2))
-INERTIA = _kind("a moment of inertia", "kg m^2, kg mm^2, lb in^2", "0.015 kg m^2", 1e12, _INERTIA)
-DENSITY = _kind("a density", "kg/m^3, g/cm^3, lb/in^3", "7850 kg/m^3", 1e6, display_unit("lb/in^3", _INCH**3 / _POUND))
-SPEED = _kind("a speed", "m/s, mm/s, in/s", "2.5 m/s", 1e6, display_unit("in/s", _PER_INCH))
-ACCELERATION = _kind("an acceleration", "m/s^2, mm/s^2, in/s^2", "9.81 m/s^2", 1e9, display_unit("in/s^2", _PER_INCH))
-FORCE = _kind("a force", "N, kN, lbf", "200 N", 1e12, display_unit("lbf", 1.0 / _LBF))
-TORQUE = _kind(
+INERTIA = _build_kind("a moment of inertia", "kg m^2, kg mm^2, lb in^2", "0.015 kg m^2", 1e12, _INERTIA)
+DENSITY = _build_kind(
+    "a density", "kg/m^3, g/cm^3, lb/in^3", "7850 kg/m^3", 1e6, display_unit("lb/in^3", _INCH**3 / _POUND)
+)
+SPEED = _build_kind("a speed", "m/s, mm/s, in/s", "2.5 m/s", 1e6, display_unit("in/s", _PER_INCH))
+ACCELERATION = _build_kind(
+    "an acceleration", "m/s^2, mm/s^2, in/s^2", "9.81 m/s^2", 1e9, display_unit("in/s^2", _PER_INCH)
+)
+FORCE = _build_kind("a force", "N, kN, lbf", "200 N", 1e12, display_unit("lbf", 1.0 / _LBF))
+TORQUE = _build_kind(
     "a torque", "N m, kN m, N mm, lbf in, lbf ft", "25 N m", 1e15, display_unit("lbf in", 1.0 / (_LBF * _INCH))
 )
-POWER = _kind("a power", "W, kW, hp", "250 W", 1e15, display_unit("hp", 1.0 / (6600.0 * _LBF * _INCH)))
+POWER = _build_kind("a power", "W, kW, hp", "250 W", 1e15, display_unit("hp", 1.0 / (6600.0 * _LBF * _INCH)))
 _STIFFNESS = display_unit_of_quotient("lbf/in", _INCH / _LBF), display_unit_of_quotient("N/m")
-STIFFNESS = _kind("a stiffness", "N/m, N/mm, lbf/in", "20 N/mm", 1e15, *_STIFFNESS, "N/mm")
+STIFFNESS = _build_kind("a stiffness", "N/m, N/mm, lbf/in", "20 N/mm", 1e15, *_STIFFNESS, "N/mm")
 _ANGULAR = display_unit_of_quotient("lbf in/rad", 1.0 / (_LBF * _INCH)), display_unit_of_quotient("N m/rad")
-ANGULAR_STIFFNESS = _kind("an angular stiffness", "N m/rad, N m/deg, lbf in/rad", "40 N m/rad", 1e15, *_ANGULAR)
+ANGULAR_STIFFNESS = _build_kind("an angular stiffness", "N m/rad, N m/deg, lbf in/rad", "40 N m/rad", 1e15, *_ANGULAR)
 _DAMPING = display_unit_of_quotient("lbf s/in", _INCH / _LBF), display_unit_of_quotient("N s/m")
-DAMPING = _kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 1e15, *_DAMPING)
+DAMPING = _build_kind("a viscous coefficient", "N s/m, N s/mm, lbf s/in", "50 N s/m", 1e15, *_DAMPING)
 _DRAG = display_unit_of_quotient("lbf s^2/in^2", _INCH**2 / _LBF), display_unit_of_quotient("N s^2/m^2")
-QUADRATIC_DAMPING = _kind("a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG)
+QUADRATIC_DAMPING = _build_kind(
+    "a coefficient of drag", "N s^2/m^2, N s^2/mm^2, lbf s^2/in^2", "20 N s^2/m^2", 1e15, *_DRAG
+)
 _PRESSURE = display_unit("psi", _INCH**2 / _LBF), display_unit("MPa", 1e-6)
-PRESSURE = _kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
+PRESSURE = _build_kind("a pressure", "Pa, kPa, bar, MPa, GPa, psi", "20 MPa", 1e15, *_PRESSURE)
 _HEAT = display_unit("ft lbf/in^3", _INCH**2 / (12.0 * _LBF)), display_unit("MJ/m^3", 1e-6)
 _HEATS = "J/m^3, MJ/m^3, J/cm^3, kJ/L, ft lbf/in^3"
-HEAT_PER_VOLUME = _kind("a heat per volume", _HEATS, "1.2 MJ/m^3", 1e15, *_HEAT)
+HEAT_PER_VOLUME = _build_kind("a heat per volume", _HEATS, "1.2 MJ/m^3", 1e15, *_HEAT)
 _PRESSURE_SPEEDS = display_unit("psi ft/min", 60.0 * _INCH / (12.0 * _LBF)), display_unit("MPa m/s", 1e-6)
-PRESSURE_SPEED = _kind(
+PRESSURE_SPEED = _build_kind(
     "a pressure times a speed", "Pa m/s, MPa m/s, psi ft/min", "1 MPa m/s", 1e15, *_PRESSURE_SPEEDS, "MPa m/s"
 )
 _WEAR = display_unit("in^2/lbf", _LBF / _INCH**2), display_unit("mm^2/N", 1e6)
-WEAR = _kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0, *_WEAR, "mm^2/N")
-RATIO = _kind("a ratio", "", "3.2", 1e9)
-JERK = _kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, display_unit("in/s^3", _PER_INCH))
+WEAR = _build_kind("a wear coefficient", "m^2/N, mm^2/N, in^2/lbf", "1e-9 mm^2/N", 1.0, *_WEAR, "mm^2/N")
+RATIO = _build_kind("a ratio", "", "3.2", 1e9)
+JERK = _build_kind("a jerk", "m/s^3, in/s^3", "2000 m/s^3", 1e12, display_unit("in/s^3", _PER_INCH))
 _VOLUME = display_unit("in^3", 1.0 / _INCH**3), display_unit("cm^3", 1e6)
-VOLUME = _kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME, believed=(1e-9, 1.0))
+VOLUME = _build_kind("a volume", "m^3, cm^3, mm^3, in^3", "250 cm^3", 1e12, *_VOLUME, believed=(1e-9, 1.0))
 _FLOW = display_unit("gal/min", 60.0 / (231.0 * _INCH**3)), display_unit("L/min", 6e4)
-VOLUME_FLOW = _kind("a volume flow", "m^3/s, L/min, L/s, gal/min, in^3/s", "20 L/min", 1e9, *_FLOW)
-ENERGY = _kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, display_unit("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
-TIME = _kind("a time", "s, min", "30 s", 1e9)
+VOLUME_FLOW = _build_kind("a volume flow", "m^3/s, L/min, L/s, gal/min, in^3/s", "20 L/min", 1e9, *_FLOW)
+ENERGY = _build_kind("an energy", "J, kJ, ft lbf", "60 J", 1e15, display_unit("ft lbf", 1.0 / (12.0 * _LBF * _INCH)))
+TIME = _build_kind("a time", "s, min", "30 s", 1e9)
 
 KINDS = tuple(kind for kind in list(globals().values()) if isinstance(kind, Kind))
 """The kinds above, in order: those of numbers in jobs and of quantities."""
 SMALL_LENGTH = replace(LENGTH, example="0.1 mm")
 """Kinds of steps and deviations, which are shorter than links."""
 PERCENT = Kind("a percentage", "", "50 %", 1e4, display_unit("%", 100.0))
-STROKE_RATE = _kind("a number of strokes per minute", "", "30", 9e6)
+STROKE_RATE = _build_kind("a number of strokes per minute", "", "30", 9e6)
 PER_ANGLE, PER_SQUARED_ANGLE, PER_CUBED_ANGLE = (
     Kind(
         f"a length per {name}",

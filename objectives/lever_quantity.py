@@ -55,7 +55,7 @@ class LeverQuantity(SwingQuantity):
             return "it needs a swing with a duration; got a slow one; give [motion] a law and a duration"
         return None
 
-    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
+    def unmet_need(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return why a machine does not define it; see `Quantity`."""
         lever = mechanism.with_largest_variables.lever
         if consequence == "undefined" and lever is not None:
@@ -67,7 +67,7 @@ class LeverQuantity(SwingQuantity):
             if self.tolerated:
                 stated = mechanism.with_largest_variables.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
                 return None if stated else 'it needs tolerances; got none; add for example [tolerances] crank = "1 mm"'
-        return Quantity.lacks(self, mechanism, consequence)
+        return Quantity.unmet_need(self, mechanism, consequence)
 
     def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
@@ -138,7 +138,7 @@ class LeverForm(LeverQuantity):
     least: bool = False
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """True."""
         return True
 

@@ -20,10 +20,10 @@ from .bar_pieces import (
     BarPeak,
     Criteria,
     SectionLoad,
-    eyes_of,
+    critical_eye_edges,
     material_and_pins,
-    net_section,
-    net_width,
+    net_section_formula,
+    net_width_formula,
 )
 from .kinds import PRESSURE, RATIO
 from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ONE_TURN, ROD_BAR, STRENGTH
@@ -35,7 +35,7 @@ CRANK = "crank"
 class LinkStress(BarPeak):
     """Maximum stress along the links and in the net sections of their eyes, or the yield strength divided by it."""
 
-    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+    def stress_locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return the stress maxima for both links, even if only one is asked for."""
         return tuple(location for _, location in _links_and_locations(mechanism))
 
@@ -46,14 +46,14 @@ class LinkStress(BarPeak):
         raised = strength.eye_concentration
         pivot = CRANK, LINKS[CRANK].far
         bent = [
-            SectionLoad(location, net_width(location), limit, pivot)
+            SectionLoad(location, net_width_formula(location), limit, pivot)
             if isinstance(location, Eye)
             else SectionLoad(location, None, limit)
             for name, location in _links_and_locations(mechanism)
             if name in bars
         ]
         return bent + [
-            SectionLoad(pin, net_section(name, pin), limit / raised if self.least else raised, (name, pin))
+            SectionLoad(pin, net_section_formula(name, pin), limit / raised if self.least else raised, (name, pin))
             for name in bars
             for pin in (NEAR, LINKS[name].far)
         ]
@@ -100,7 +100,7 @@ def _links_and_locations(mechanism: Mechanism) -> list[tuple[str, StressLocation
     """Return links and locations with stress over a whole section: along the bars, and in the eye at the pivot."""
     bars, pivot = STATIC_SAFETY.bars(mechanism), LINKS[CRANK].far
     bodies: list[tuple[str, StressLocation]] = [(name, LinkBody(LINKS[name].part)) for name in bars]
-    return bodies + [(CRANK, eye) for eye in (eyes_of(CRANK, pivot) if CRANK in bars else [])]
+    return bodies + [(CRANK, eye) for eye in (critical_eye_edges(CRANK, pivot) if CRANK in bars else [])]
 
 
 class FatigueSafety(BarPeak):
@@ -115,9 +115,9 @@ class FatigueSafety(BarPeak):
     def section_loads(self, mechanism: Mechanism) -> list[SectionLoad]:
         """Return the stress in each bar and in each eye; see `BarPeak`."""
         bars = self.bars(mechanism)
-        eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in eyes_of(name, pin)]
+        eyes = [eye for name in bars for pin in (NEAR, LINKS[name].far) for eye in critical_eye_edges(name, pin)]
         bodies = [SectionLoad(LinkBody(LINKS[name].part), None) for name in bars]
-        return [*bodies, *(SectionLoad(eye, net_width(eye)) for eye in eyes)]
+        return [*bodies, *(SectionLoad(eye, net_width_formula(eye)) for eye in eyes)]
 
 
 class BucklingSafety(BarPeak):
@@ -127,7 +127,7 @@ class BucklingSafety(BarPeak):
         """Return the criterion for maximum compression."""
         return ((0.0, 1.0),)
 
-    def locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
+    def stress_locations(self, mechanism: Mechanism) -> tuple[StressLocation, ...]:
         """Return each bar as a location, which both planes share."""
         return tuple(LinkBody(LINKS[name].part, bent=False) for name in self.bars(mechanism))
 

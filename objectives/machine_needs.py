@@ -46,7 +46,7 @@ class Need:
         return self.missing.partition(";")[0]
 
 
-def _friction(machine: Mechanism) -> bool:
+def _has_friction(machine: Mechanism) -> bool:
     return machine.with_largest_variables.friction.acts
 
 
@@ -64,7 +64,7 @@ TOLERANCES = _defining(
     'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(
-    _friction,
+    _has_friction,
     "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use {instead}",
     consequence="equal",
 )
@@ -112,11 +112,11 @@ _UNLOADED = (
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]] on the slider'
 )
 _HEAT = "it needs friction in loaded joints"
-HEAT = (_defining(_friction, f"{_HEAT}; {_RUBS}"), _defining(has_friction_under_load, f"{_HEAT}; {_UNLOADED}"))
+HEAT = (_defining(_has_friction, f"{_HEAT}; {_RUBS}"), _defining(has_friction_under_load, f"{_HEAT}; {_UNLOADED}"))
 """Friction, and joints that carry a force."""
 LOSSES = (
     Need(
-        _friction,
+        _has_friction,
         f"without friction nothing is lost, and the efficiency of every design is 1; {_RUBS}",
         consequence="equal",
     ),
@@ -146,7 +146,7 @@ def _rotates_unevenly(mechanism: Mechanism) -> bool:
     return turns and (machine.speed_profile is not None or machine.acceleration != 0.0)
 
 
-def motor_limit(key: str, example: str) -> Need:
+def need_of_motor_limit(key: str, example: str) -> Need:
     """Return the need for a limit on the motor. key: key in [drive]. example: its value as in a job."""
     return _defining(
         lambda machine: machine.drive is not None and getattr(machine.drive, key) is not None,

@@ -35,7 +35,7 @@ class PinPressure(BarPeak):
         """Return the force on each bar that bears on the pin; see `BarPeak`."""
         return [SectionLoad(self.pin, projected_area(self.pin, name)) for name in self.bars(mechanism)]
 
-    def allowable(self, mechanism: Mechanism) -> float:
+    def allowable_value(self, mechanism: Mechanism) -> float:
         """Return the allowable bearing pressure of the material, Pa."""
         return material_and_pins(mechanism).material.bearing_pressure
 
@@ -50,7 +50,7 @@ class PinShear(BarPeak):
         """Return the force on the pin; see `BarPeak`."""
         return [SectionLoad(self.pin, lambda number: 0.25 * math.pi * number(PINS[self.pin]) ** 2)]
 
-    def allowable(self, mechanism: Mechanism) -> float:
+    def allowable_value(self, mechanism: Mechanism) -> float:
         """Return the shear yield strength by distortion energy, S_y / sqrt(3), Pa.
 
         Pins have the same material as the bars.

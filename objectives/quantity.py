@@ -97,7 +97,7 @@ class Values:
         return Values(self.values * factor.values, slopes)
 
 
-def undefined(designs: Array, gradients: bool) -> Values:
+def undefined_values(designs: Array, gradients: bool) -> Values:
     """Return NaN for designs (n, 3 + k), in both values and gradients."""
     blank = np.full(np.shape(designs), np.nan)
     return Values(blank[:, 0], blank if gradients else None)
@@ -130,7 +130,7 @@ class Pieces:
         )
 
 
-def fact(default: Any) -> Any:
+def display_fact(default: Any) -> Any:
     """Return a display-only fact: quantities that differ only in such facts compute the same values."""
     return _field(default=default, compare=False)
 
@@ -159,35 +159,35 @@ class Quantity(ABC):
     """
 
     name: str
-    title: str = fact("")
+    title: str = display_fact("")
     kind: Kind
-    key: str = fact("")
-    short: str = fact("")
-    place: int = fact(1000)
-    group: Group = fact(Group.FURTHER)
-    sentence: str = fact("")
-    advice: str = fact("")
-    formula: str = fact("")
-    section: str = fact("")
-    source: str = fact(MECHANICS)
-    picture: str = fact("")
-    example: str | float | None = fact(None)
-    better: Better = fact("low")
-    signed: bool = fact(False)
-    instead_of_quotient: str = fact("")
-    domain: Domain | None = fact(None)
-    floor: float | None = fact(None)
-    in_line: float | None = fact(None)
-    endless: str = fact("")
-    needs: tuple[Need, ...] = fact(())
-    instead: str = fact("")
-    bounds: QuantityBounds | None = fact(None)
-    allowed_by: str = fact("")
-    about_tolerances: bool = fact(False)
-    offered: tuple[Offer, ...] = fact(())
-    on_datasheet: bool = fact(False)
-    plain: bool = fact(False)
-    turning: bool = fact(True)
+    key: str = display_fact("")
+    short: str = display_fact("")
+    place: int = display_fact(1000)
+    group: Group = display_fact(Group.FURTHER)
+    sentence: str = display_fact("")
+    advice: str = display_fact("")
+    formula: str = display_fact("")
+    section: str = display_fact("")
+    source: str = display_fact(MECHANICS)
+    picture: str = display_fact("")
+    example: str | float | None = display_fact(None)
+    better: Better = display_fact("low")
+    signed: bool = display_fact(False)
+    instead_of_quotient: str = display_fact("")
+    domain: Domain | None = display_fact(None)
+    floor: float | None = display_fact(None)
+    in_line: float | None = display_fact(None)
+    endless: str = display_fact("")
+    needs: tuple[Need, ...] = display_fact(())
+    instead: str = display_fact("")
+    bounds: QuantityBounds | None = display_fact(None)
+    allowed_by: str = display_fact("")
+    about_tolerances: bool = display_fact(False)
+    offered: tuple[Offer, ...] = display_fact(())
+    on_datasheet: bool = display_fact(False)
+    plain: bool = display_fact(False)
+    turning: bool = display_fact(True)
     table: ClassVar[str] = ""
     """Table that a job must have for the quantity to exist; empty if every problem has it."""
 
@@ -238,11 +238,11 @@ class Quantity(ABC):
         return False
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """Whether it depends on crank, rod and offset alone, without a search over the cycle."""
         return False
 
-    def follows_speed(self, mechanism: Mechanism) -> bool:
+    def depends_on_speed(self, mechanism: Mechanism) -> bool:
         """Return whether the magnitude, sign or presence of the crank speed changes the quantity for a machine."""
         numbers = [item.largest_magnitude_bound for item in mechanism.varying]
         designs = np.array([[0.05, 0.2, offset, *numbers] for offset in (0.02, -0.02)])
@@ -255,7 +255,7 @@ class Quantity(ABC):
         """Return its bounds if they hold for the machine."""
         return self.bounds
 
-    def allowable(self, mechanism: Mechanism) -> float:
+    def allowable_value(self, mechanism: Mechanism) -> float:
         """Return the maximum that a machine withstands, or the minimum if high is better, SI; see `allowed_by`."""
         raise NotImplementedError(f"{self.name} has no allowable value")
 
@@ -267,15 +267,15 @@ class Quantity(ABC):
         return ()
 
     @property
-    def made_of(self) -> tuple[Quantity, ...]:
+    def component_quantities(self) -> tuple[Quantity, ...]:
         """The quantities from which it is computed."""
         return ()
 
     def with_parts(self, parts: tuple[Quantity, ...]) -> Quantity:
-        """Return the quantity with other parts, in the order of `made_of`."""
+        """Return the quantity with other parts, in the order of `component_quantities`."""
         return self
 
-    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
+    def unmet_need(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return rule, value and remedy for the first need that a machine does not meet; None if there is none.
 
         consequence: effect on the quantity: "undefined", "equal" to another one, or "zero" for every design.
@@ -286,7 +286,7 @@ class Quantity(ABC):
         return None
 
     @property
-    def blank(self) -> str:
+    def no_value_reason(self) -> str:
         """Reason why a design may have no value even though the machine defines the quantity."""
         needs = (need for need in self.needs if need.consequence == "undefined")
         return next((need.missing for need in needs), "it has no value for this design")
@@ -296,12 +296,12 @@ class Quantity(ABC):
 
         A quantity that merely equals another one counts as undefined.
         """
-        reasons = (self.lacks(m, "undefined") or self.lacks(m, "equal") for m in machines)
+        reasons = (self.unmet_need(m, "undefined") or self.unmet_need(m, "equal") for m in machines)
         return next(filter(None, reasons), None)
 
     def zero_because(self, machines: Iterable[Mechanism]) -> str | None:
         """Return rule, value and remedy if the quantity is zero for all designs and machines; None otherwise."""
-        reasons = [self.lacks(machine, "zero") for machine in machines]
+        reasons = [self.unmet_need(machine, "zero") for machine in machines]
         return reasons[0] if all(reasons) else None
 
     @abstractmethod

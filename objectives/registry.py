@@ -32,7 +32,7 @@ QUANTITIES: dict[str, Quantity] = {name: quantity for name, quantity in FACTS.it
 """Quantities that every problem has."""
 
 
-def _of_product(name: str, changes: dict[str, Any]) -> Quantity:
+def _built_in_quantity(name: str, changes: dict[str, Any]) -> Quantity:
     return replace(FACTS[name], **changes) if changes else FACTS[name]
 
 
@@ -46,14 +46,14 @@ def _pickled_form(quantity: Quantity) -> tuple[Any, ...] | str:
         return object.__reduce_ex__(quantity, 4)
     facts = (field.name for field in fields(quantity) if field.init)
     changes = {name: getattr(quantity, name) for name in facts if getattr(quantity, name) is not getattr(fact, name)}
-    return _of_product, (quantity.name, changes)
+    return _built_in_quantity, (quantity.name, changes)
 
 
 for _kind in {type(of) for of in FACTS.values()}:
     copyreg.pickle(_kind, _pickled_form)
 
 
-def listed(names: Collection[str]) -> str:
+def first_names_text(names: Collection[str]) -> str:
     """Return the first names for a message, a job's own names first, and where to find the full list."""
     few = ", ".join(sorted(names, key=FACTS.__contains__)[:_MOST_NAMES])
     left_over = len(names) - _MOST_NAMES
@@ -74,6 +74,6 @@ def quantity(name: str, custom: Collection[Quantity] = ()) -> Quantity:
     if match is None:
         names = list(dict.fromkeys([*QUANTITIES, *(of.name for of in custom)]))
         near = difflib.get_close_matches(str(name)[:60], names, n=1)
-        hint = f"did you mean {near[0]}?" if near else f"choose from {listed(names)}"
+        hint = f"did you mean {near[0]}?" if near else f"choose from {first_names_text(names)}"
         raise InputError(f"no quantity is called {name!r}; {hint}")
     return match

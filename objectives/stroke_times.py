@@ -16,7 +16,7 @@ from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers, require_design_columns
 from .kinds import RATIO, TIME
 from .machine_needs import ONE_TIMING, REPEATS, SPEED
-from .quantity import Array, Formula, Group, Pieces, Quantity, Values, undefined
+from .quantity import Array, Formula, Group, Pieces, Quantity, Values, undefined_values
 
 _SECTION = "2. Closed forms"
 _NEEDS = (SPEED, REPEATS, ONE_TIMING)
@@ -61,7 +61,7 @@ class StrokeTime(Quantity):
         """Return the quantity for designs (n, 3 + k); see `Quantity`."""
         dimensions = np.asarray(dimensions, dtype=np.float64)
         if self.undefined_because([mechanism]):
-            return undefined(dimensions, gradients)
+            return undefined_values(dimensions, gradients)
         angles = Values(*evaluate_stroke_times(mechanism, dimensions, self._stroke_crank_angle, gradients))
         per_speed = evaluate_formula_of_raw_numbers(
             mechanism, dimensions, _over_mean_speed(mechanism), gradients=gradients
@@ -100,7 +100,7 @@ class StrokeTimeRatio(Quantity):
     outward: bool
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """True."""
         return True
 

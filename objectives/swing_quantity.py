@@ -69,7 +69,7 @@ class SwingQuantity(Quantity):
             return "a slow swing needs arbitrarily little power; got no duration; give [motion] a law and a duration"
         return None
 
-    def lacks(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
+    def unmet_need(self, mechanism: Mechanism, consequence: Consequence) -> str | None:
         """Return why a machine does not define it; see `Quantity`."""
         if consequence == "undefined" and self.swing is not None:
             reason = self.unfit(self.swing)
@@ -84,7 +84,7 @@ class SwingQuantity(Quantity):
                 f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "
                 "out"
             )
-        return super().lacks(mechanism, consequence)
+        return super().unmet_need(mechanism, consequence)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -167,7 +167,7 @@ class ClosedFormSwingQuantity(SwingQuantity):
     stated: Stated | None = field(default=None, compare=False)
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """True."""
         return True
 

@@ -24,7 +24,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
-from .count_text import counted
+from .count_text import count_with_noun
 from .kinds import KINDS, DisplayUnit, Kind, amount_kind, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
@@ -156,7 +156,7 @@ def kind_of_symbol(symbol: str) -> Kind:
 
 def kind_of_any_unit(symbol: str) -> Kind:
     """Return the kind for any unit, one of `KINDS` or a new one. Raises InputError unless it is a unit."""
-    kind = kind_with(dimension_of(symbol), symbol)
+    kind = kind_of_dimension(dimension_of(symbol), symbol)
     if kind in KINDS:
         return kind
     plain = symbol if _parse_unit(symbol)[0] == 1 else kind.unit
@@ -173,7 +173,7 @@ def dimension_of_kind(kind: Kind) -> Dimension:
     return frozenset({(f"[{kind.unit}]", 1)}) if kind.amount else dimension_of(kind.unit)
 
 
-def kind_with(dimension: Dimension, symbol: str = "") -> Kind:
+def kind_of_dimension(dimension: Dimension, symbol: str = "") -> Kind:
     """Return the kind with a dimension: one of `KINDS`, or a new kind in base units.
 
     symbol: a unit that distinguishes kinds with the same dimension, such as a torque and an energy.
@@ -283,7 +283,7 @@ def _unit_in(match: re.Match[str]) -> str:
     return plain if plain in _SPOKEN else unit
 
 
-def printable_name(name: str) -> str:
+def quoted_if_unprintable(name: str) -> str:
     """Return a name for a message: unchanged, or quoted if part of it cannot be printed."""
     return name if name.isprintable() else quote(name)
 
@@ -297,7 +297,7 @@ def quote(value: object) -> str:
         quoted = json.dumps(text, ensure_ascii=False)
         return "".join(sign if sign.isprintable() else json.dumps(sign)[1:-1] for sign in quoted)
     if isinstance(value, Mapping):
-        return f"a table of {counted(len(value), 'key')}" if value else "an empty table"
+        return f"a table of {count_with_noun(len(value), 'key')}" if value else "an empty table"
     if isinstance(value, list | tuple):
         plain = len(value) <= 4 and not any(isinstance(x, list | tuple | Mapping) for x in value)
         inner = ", ".join(map(quote, value)) if plain else ""
@@ -310,7 +310,7 @@ def quote(value: object) -> str:
     return text if text.isprintable() else ascii(text)
 
 
-def closest(word: str, words: Iterable[str]) -> str | None:
+def closest_word(word: str, words: Iterable[str]) -> str | None:
     """Return the word that a misspelt one probably means; None if none is close."""
     by_fold = {candidate.casefold(): candidate for candidate in words}
     typed = word.casefold()[:_LONGEST]
@@ -333,7 +333,7 @@ def without_word_in(text: str) -> str:
     return text if stated is None else text[stated.end() :]
 
 
-def symbol_in(text: str, kind: Kind) -> str | None:
+def unit_in_heading(text: str, kind: Kind) -> str | None:
     """Return the unit in a heading, spelled as in jobs; None if the kind does not have it."""
     display_symbols = [unit.symbol for unit in (kind.metric, kind.inch) if unit is not None]
     listed = next(
@@ -442,7 +442,7 @@ def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
             raise InputError("a unit must end with the name after its division sign")
         divided = sign == "/"
         power = int(match[3] or 1) * (-1 if divided else 1)
-        quantity = _lookup(name)
+        quantity = _factor_and_dimension_of_unit(name)
         factor *= quantity[0] ** power
         for base, exponent in quantity[1]:
             dimension[base] = dimension.get(base, 0) + exponent * power
@@ -450,7 +450,7 @@ def _parse_unit(text: str) -> tuple[Fraction, Dimension]:
     return factor, frozenset((base, power) for base, power in dimension.items() if power)
 
 
-def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
+def _factor_and_dimension_of_unit(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
     """Return the factor to SI and the dimension for a single unit name, with its prefix."""
     name = "deg" if name == "°" else name
     if name in _USUAL:
@@ -458,7 +458,7 @@ def _lookup(name: str) -> tuple[Fraction, tuple[tuple[str, int], ...]]:
     registry = _unit_registry()
     if name == "Grad" or not registry.parse_unit_name(name):  # else a gigaradian
         hint = _HINTS.get(name)
-        near = None if hint else closest(name, _COMMON)
+        near = None if hint else closest_word(name, _COMMON)
         hint_text = f", {hint}" if hint else f", did you mean {near}?" if near else ""
         raise InputError(f"{quote(name)} is not a known unit{hint_text}")
     value = registry.Quantity(Fraction(1), name).to_root_units()

@@ -15,13 +15,18 @@ from ..model.kernel.interruption import interrupted_by
 from .certificate.infeasibility_certificate import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best_value import Best, find_best_design
-from .feasibility.infeasibility import diagnose
+from .feasibility.infeasibility import diagnose_infeasibility
 from .feasibility.quantities_without_value import require_finite, valueless_quantity_text_of_variants
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
-from .methods.auto.auto import deliver, search_with
+from .methods.auto.auto import deliver_front, search_with
 from .methods.auto.partial_front import partial_front
-from .methods.registry import method_of, require_gradients, require_supported_equalities, require_supported_settings
+from .methods.registry import (
+    method_of_problem,
+    require_gradients,
+    require_supported_equalities,
+    require_supported_settings,
+)
 from .problem.always_zero_quantities import require_nonzero_quantities
 from .problem.contradictory_problems import require_possible_problem
 from .problem.problem import Problem, require_problem
@@ -158,13 +163,13 @@ def _solve_discrete(problem: Problem, solver: _ContinuousSolver) -> ParetoFront:
 
 
 def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run) -> ParetoFront:
-    method, free = method_of(problem), searched_evaluators(evaluators)
+    method, free = method_of_problem(problem), searched_evaluators(evaluators)
     front = search_with(method, problem, evaluators, run)
     if front is not None:
         return front
     if problem.without_gradient():
         return empty_front(problem, evaluators, run, "infeasible", _NOT_KNOWN.format(method.name))
-    diagnosis = diagnose(
+    diagnosis = diagnose_infeasibility(
         problem, partial(_best_value, run=run, evaluators=evaluators), run.checkpoints, evaluators[0].engine
     )
     if len(diagnosis.feasible) and not method.polishes and free:
@@ -173,7 +178,7 @@ def _search_and_deliver(problem: Problem, evaluators: list[Evaluator], run: Run)
         archive = run.archive = Archive.empty(len(problem.objectives))
         _seed_archive(archive, free, diagnosis.feasible)
         zoom(problem, free, archive, run)
-        front = deliver(problem, evaluators, archive, run)
+        front = deliver_front(problem, evaluators, archive, run)
         if front is not None:
             return front
     message = diagnosis.message or valueless_quantity_text_of_variants(problem, diagnosis.feasible) or _NARROW_RANGES

@@ -129,10 +129,10 @@ def _reword_option_error(error: Exception) -> None:
     if not (isinstance(error, typer.BadParameter) and hasattr(refused, "errors")):
         return
     from ..objectives.units import quote
-    from ..optimise.job.mistake_messages import rule_of
+    from ..optimise.job.mistake_messages import broken_rule
 
     details = refused.errors(include_url=False)[0]
-    error.message = f"{rule_of(details)}; got {quote(details['input'])}"
+    error.message = f"{broken_rule(details)}; got {quote(details['input'])}"
 
 
 def _is_resource_shortage(error: BaseException | None) -> bool:

@@ -2,8 +2,9 @@
 
 A design of a machine with k variables has 3 + k numbers: crank, rod, offset and the value of each variable. Kernels
 overwrite raw numbers (`raw.Raw`). Most are a factor times one value; the counterweight's mass centre is stated by
-radius and angle, but its raw numbers are components. Kernels differentiate by the raw numbers; `Numbers.chain` converts
-these to derivatives with respect to the design's own numbers. With k = 0 this is the identity and costs nothing.
+radius and angle, but its raw numbers are components. Kernels differentiate by the raw numbers;
+`RawNumbers.chain_to_designs` converts these to derivatives with respect to the design's own numbers. With k = 0 this is
+the identity and costs nothing.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from ...model.errors import InputError
 from ..kinds import ANGLE, Kind
-from ..units import Dimension, dimension_of, dimension_of_kind, kind_with, unit_of_base_dimension
-from .expression import ANGLES, INVERSES, Node, Number, Text, fold
+from ..units import Dimension, dimension_of, dimension_of_kind, kind_of_dimension, unit_of_base_dimension
+from .expression import ANGLES, INVERSES, Node, Number, Text, evaluate_in_algebra
 
 _LENGTH, _ANGLE = "[length]", "[angle]"
 _LARGEST = 9  # highest power for which units have a notation
@@ -39,7 +39,9 @@ class _Part:
 
 def kind_of_formula(node: Node, kinds: Mapping[str, Kind]) -> Kind:
     """Return the kind of a formula's values. kinds: kinds of the names in it. Raises InputError if dimensions clash."""
-    part = fold(node, _Dimensions({name: _powers_of(dimension_of_kind(kind)) for name, kind in kinds.items()}))
+    part = evaluate_in_algebra(
+        node, _Dimensions({name: _powers_of(dimension_of_kind(kind)) for name, kind in kinds.items()})
+    )
     if any(power.denominator != 1 or abs(power) > _LARGEST for power in part.powers.values()):
         raise InputError(
             f"the unit of a formula's value must have whole powers, at most {_LARGEST}; got {part.text} in "
@@ -151,7 +153,7 @@ def _without_angle_of_arc(powers: Powers) -> Powers:
 
 
 def _kind_of_powers(powers: Powers) -> Kind:
-    return kind_with(frozenset((base, int(power)) for base, power in _without_angle_of_arc(powers).items()))
+    return kind_of_dimension(frozenset((base, int(power)) for base, power in _without_angle_of_arc(powers).items()))
 
 
 def _unit_symbol(powers: Powers) -> str:

@@ -60,13 +60,13 @@ class Algebra(Protocol[T]):
         ...
 
 
-def fold(node: Node, algebra: Algebra[T]) -> T:
+def evaluate_in_algebra(node: Node, algebra: Algebra[T]) -> T:
     """Return the meaning of a formula in an algebra."""
     if isinstance(node, Number):
         return algebra.number(node)
     if isinstance(node, Name):
         return algebra.name(node.name)
-    return algebra.call(node.function, [fold(item, algebra) for item in node.arguments])
+    return algebra.call(node.function, [evaluate_in_algebra(item, algebra) for item in node.arguments])
 
 
 def names_in(node: Node) -> tuple[str, ...]:
@@ -111,6 +111,6 @@ def _bracketed_text(part: tuple[str, int], least: int) -> str:
     return text if strength >= least else f"({text})"
 
 
-def text_of(node: Node) -> str:
+def formula_text(node: Node) -> str:
     """Return a formula as text, identical for formulas that differ only in spaces and redundant brackets."""
-    return fold(node, Text())[0]
+    return evaluate_in_algebra(node, Text())[0]

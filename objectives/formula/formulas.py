@@ -16,9 +16,9 @@ from ..bounds_over_ranges import CLEAR, KnownBounds, QuantityBounds
 from ..bounds_over_ranges import LengthRanges as Box
 from ..kinds import LENGTH, Kind, kind_in
 from ..quantity import Quantity
-from ..registry import FACTS, QUANTITIES, listed
+from ..registry import FACTS, QUANTITIES, first_names_text
 from ..units import (
-    closest,
+    closest_word,
     dimension_of,
     is_value,
     kind_of_any_unit,
@@ -29,10 +29,10 @@ from ..units import (
     value_of_one_si_unit_in,
 )
 from .dimensional_analysis import kind_of_formula
-from .expression import ARGUMENTS, Name, Node, names_in, text_of
-from .linear import Linear, linear_of, unknown
+from .expression import ARGUMENTS, Name, Node, formula_text, names_in
+from .linear import Linear, linear_of, linear_unknown
 from .parser import parse
-from .quantity import FormulaQuantity, column_key_of_formula, leaves_of
+from .quantity import FormulaQuantity, basic_quantities, column_key_of_formula
 from .ranges import FormulaBounds, Interval
 
 ROOTS = ("mechanism", "cylinder", "arm", "spring", "load", "friction", "drive", "tolerances", "sections", "motion")
@@ -56,7 +56,7 @@ class Units:
 
     names: frozenset[str]
 
-    def has(self, name: str) -> bool:
+    def is_unit(self, name: str) -> bool:
         """Return whether a name is a unit."""
         if name in self.names:
             return False
@@ -83,7 +83,7 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
         return False
     known_names = {*FACTS, *DIMENSIONS, *ARGUMENTS, *names}
     return any(
-        word in known_names or "." in word or (len(word) > 3 and closest(word, known_names))
+        word in known_names or "." in word or (len(word) > 3 and closest_word(word, known_names))
         for word in identifiers_in(text)
     )
 
@@ -93,7 +93,7 @@ def identifiers_in(text: object) -> list[str]:
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
-def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) -> InputError:
+def unknown_name_error(name: str, names: Iterable[str], units: Units, formula: str) -> InputError:
     """Return the error for a name in a formula that is not a quantity, a dimension or a variable.
 
     names: known names, in which - is accepted for _.
@@ -101,12 +101,12 @@ def unknown_name(name: str, names: Iterable[str], units: Units, formula: str) ->
     every, written = list(names), re.sub(r"\s*-\s*", "_", formula.strip())
     same = [candidate for candidate in every if candidate.casefold() in (name.casefold(), written.casefold())]
     near = same or difflib.get_close_matches(name[:60], every, n=_NEAREST)
-    hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {listed(every)}"
+    hint = f"did you mean {' or '.join(near)}?" if near else f"the names are {first_names_text(every)}"
     if "." in name and not near:
         hint = "let the number vary in [variables], or write its value"
     elif name in ARGUMENTS:
         hint = f"write it with its arguments in brackets: {name}(...)"
-    elif units.has(name):
+    elif units.is_unit(name):
         hint = f"a unit must follow its number directly: 1 {name}"
     return InputError(f"no quantity, dimension or variable is called {quote(name)}; {hint}")
 
@@ -154,7 +154,7 @@ class Formulas:
         self._has_ranges = ranges is not None
         self._intervals = {name: Interval(ends.lower, ends.upper) for name, ends in (ranges or {}).items()}
         self._intervals |= {item.name: Interval(item.lower, item.upper) for item in machine.varying}
-        self._linears: dict[str, Linear | None] = {name: unknown(name) for name in self._places}
+        self._linears: dict[str, Linear | None] = {name: linear_unknown(name) for name in self._places}
         self._units = Units(frozenset((*self._quantities, *self._places, *named)))
         for name in named:
             self._resolve_named(name)
@@ -168,7 +168,7 @@ class Formulas:
             quantity = self._resolve_text(text)
         except InputError as error:
             raise JobError(f"{key}: {error}") from None
-        if isinstance(quantity, FormulaQuantity) and quantity.constant and not leaves_of([quantity]):
+        if isinstance(quantity, FormulaQuantity) and quantity.constant and not basic_quantities([quantity]):
             raise JobError(
                 f"{key}: a formula must name a quantity, dimension or variable; got {quantity.formula}, which is "
                 "the same for every design; leave it out"
@@ -193,9 +193,11 @@ class Formulas:
         node = parse(text, self._units)
         if isinstance(node, Name) and node.name not in self._places:
             return self._resolve_name(node.name, node.name)
-        name = text_of(node)
+        name = formula_text(node)
         if name not in self.formula_quantities:
-            self.formula_quantities[name] = self._quantity(node, name, title=name, key=column_key_of_formula(name))
+            self.formula_quantities[name] = self._formula_quantity(
+                node, name, title=name, key=column_key_of_formula(name)
+            )
         return self.formula_quantities[name]
 
     def _resolve_named(self, name: str) -> FormulaQuantity:
@@ -209,9 +211,9 @@ class Formulas:
         stated = self._stated[name]
         try:
             node = parse(stated.formula, self._units)
-            self.formula_quantities[name] = self._quantity(node, name, title=stated.title or "", key=name)
+            self.formula_quantities[name] = self._formula_quantity(node, name, title=stated.title or "", key=name)
             if stated.unit is not None:
-                self.formula_quantities[name] = self._with_unit(self.formula_quantities[name], node, stated)
+                self.formula_quantities[name] = self._with_stated_unit(self.formula_quantities[name], node, stated)
         except JobError:
             raise
         except InputError as error:
@@ -220,7 +222,7 @@ class Formulas:
         self._quantities[name] = self.formula_quantities[name]
         return self.formula_quantities[name]
 
-    def _with_unit(self, formula: FormulaQuantity, node: Node, stated: Stated) -> FormulaQuantity:
+    def _with_stated_unit(self, formula: FormulaQuantity, node: Node, stated: Stated) -> FormulaQuantity:
         unit = stated.unit or ""
         if dimension_of(unit) != dimension_of(formula.kind.unit):
             name = formula.name
@@ -229,11 +231,13 @@ class Formulas:
                 f'{formula.kind.name}; write it like "{formula.kind.metric.symbol}", or leave it out'
             )
         kind = kind_in(unit, value_of_one_si_unit_in(unit), kind_of_any_unit(unit))
-        return self._quantity(node, formula.name, title=formula.title, key=formula.key, kind=kind)
+        return self._formula_quantity(node, formula.name, title=formula.title, key=formula.key, kind=kind)
 
-    def _quantity(self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None) -> FormulaQuantity:
+    def _formula_quantity(
+        self, node: Node, name: str, *, title: str, key: str, kind: Kind | None = None
+    ) -> FormulaQuantity:
         names = names_in(node)
-        parts = tuple(self._resolve_name(item, text_of(node)) for item in names if item not in self._places)
+        parts = tuple(self._resolve_name(item, formula_text(node)) for item in names if item not in self._places)
         for part in parts:
             reason = part.undefined_because([self._machine])
             if reason:
@@ -244,7 +248,7 @@ class Formulas:
         wider = f"a wider range of {' or of '.join(DIMENSIONS)}"
         self._intervals[name] = interval
         self._linears[name] = linear_of(node, self._linears)
-        text = text_of(node)
+        text = formula_text(node)
         return FormulaQuantity(
             name=name,
             title=title,
@@ -269,7 +273,7 @@ class Formulas:
             return Interval(-float("inf"), float("inf"))
         for part in parts:
             if part.name not in self._intervals:
-                self._intervals[part.name] = self._interval(part)
+                self._intervals[part.name] = self._bounds_of_quantity(part)
                 self._linears.setdefault(part.name, None)
         linears = self._linears if self._turning else dict.fromkeys(self._linears)
         off_zero = {name: self._remedy_for_zero(name) for name in names_in(node)}
@@ -286,9 +290,9 @@ class Formulas:
             return self._quantities[name]
         if name in FACTS:
             raise InputError(f"{name} needs the table [{FACTS[name].table}]; got none; add it, or leave {name} out")
-        raise unknown_name(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
+        raise unknown_name_error(name, [*self._quantities, *self._places, *self._stated], self._units, formula)
 
-    def _interval(self, quantity: Quantity) -> Interval:
+    def _bounds_of_quantity(self, quantity: Quantity) -> Interval:
         """Return bounds of a quantity within the ranges; one that is never negative counts as nonzero."""
         if quantity.zero_because([self._machine]):
             return Interval(0.0, 0.0)

@@ -20,7 +20,7 @@ import numpy as np
 from ...model.arrays import IntArray, Mask
 from ..quantity import Array, Pieces
 from .expression import Number
-from .slopes import BINARY, UNARY, partials, sum_of
+from .slopes import BINARY, UNARY, partial_derivatives, weighted_sum_of_gradients
 
 _MOST_PIECES = 8
 """Maximum number of pieces of a part that may tie."""
@@ -119,7 +119,7 @@ class Kinks:
 
     def number(self, number: Number) -> TwoSided:
         """Return a number, the same for all designs."""
-        side = smooth(np.full(self.n, number.si), np.zeros((self.n, self.d)))
+        side = single_smooth_piece(np.full(self.n, number.si), np.zeros((self.n, self.d)))
         return TwoSided(side, side, 1 if number.si >= 0.0 else -1)
 
     def name(self, name: str) -> TwoSided:
@@ -133,7 +133,7 @@ class Kinks:
         if function in ("min", "max"):
             return _extreme_of_parts(function, arguments)
         active_values = [item.from_above.values[:, 0] for item in arguments]
-        slopes = partials(function, active_values, _function_values(function, active_values))
+        slopes = partial_derivatives(function, active_values, _apply_function(function, active_values))
         signs, sign = _signs_of_slopes_and_value(function, arguments)
         sides = []
         for from_above in (True, False):
@@ -145,12 +145,12 @@ class Kinks:
         return TwoSided(sides[0], sides[1], sign)
 
 
-def smooth(values: Array, gradients: Array) -> Side:
+def single_smooth_piece(values: Array, gradients: Array) -> Side:
     """Return a single smooth piece (n,) with its gradients (n, d)."""
     return Side(values[:, None], gradients[:, None], np.zeros((len(values), 1)), np.ones((len(values), 1), np.bool_))
 
 
-def pieces_of(formula: TwoSided) -> Pieces:
+def pieces_of_formula(formula: TwoSided) -> Pieces:
     """Return a formula as the maximum of its pieces, plus its other side if it has both kinds of kinks."""
     from_above, from_below = (
         Pieces(np.where(side.present, side.values, absent), side.gradients, side.labels, absent > 0.0)
@@ -189,7 +189,7 @@ def _signs_of_slopes_and_value(function: str, arguments: list[TwoSided]) -> tupl
     return _RISING.get(function, (0,)), values.get(function, 0)
 
 
-def _function_values(function: str, arguments: list[Array]) -> Array:
+def _apply_function(function: str, arguments: list[Array]) -> Array:
     return UNARY[function][0](arguments[0]) if function in UNARY else BINARY[function][0](arguments[0], arguments[1])
 
 
@@ -197,17 +197,20 @@ def _combine_pieces(function: str, sides: list[Side]) -> Side:
     """Return a smooth function for every combination of one argument's pieces with the other's."""
     if len(sides) == 1:
         (first,) = sides
-        values = _function_values(function, [first.values])
+        values = _apply_function(function, [first.values])
         return Side(
-            values, sum_of(partials(function, [first.values], values), [first.gradients]), first.labels, first.present
+            values,
+            weighted_sum_of_gradients(partial_derivatives(function, [first.values], values), [first.gradients]),
+            first.labels,
+            first.present,
         )
     first, second = sides
     (n, p), (_, q), d = first.values.shape, second.values.shape, first.gradients.shape[2]
     places, second_places = np.repeat(np.arange(p), q), np.tile(np.arange(q), p)
     part_values = [first.values[:, places], second.values[:, second_places]]
-    values = _function_values(function, part_values)
-    slopes = partials(function, part_values, values)
-    gradients = sum_of(slopes, [first.gradients[:, places], second.gradients[:, second_places]])
+    values = _apply_function(function, part_values)
+    slopes = partial_derivatives(function, part_values, values)
+    gradients = weighted_sum_of_gradients(slopes, [first.gradients[:, places], second.gradients[:, second_places]])
     assert gradients.shape == (n, p * q, d)
     return Side(
         values,

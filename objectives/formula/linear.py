@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from .expression import Node, Number, fold
+from .expression import Node, Number, evaluate_in_algebra
 
 SIZE = "|offset|"
 """Absolute value of the offset, as a name in linear formulas."""
@@ -70,11 +70,11 @@ class _LinearAlgebra:
 def linear_of(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
     """Return a formula as linear in the names that it contains; None if it is not linear.
 
-    definitions: linear formulas by name; `unknown` gives those for dimensions and variables.
+    definitions: linear formulas by name; `linear_unknown` gives those for dimensions and variables.
     """
-    return fold(node, _LinearAlgebra(definitions))
+    return evaluate_in_algebra(node, _LinearAlgebra(definitions))
 
 
-def unknown(name: str) -> Linear:
+def linear_unknown(name: str) -> Linear:
     """Return a dimension or a variable as a linear formula."""
     return Linear(((name, Fraction(1)),), Fraction(0))

@@ -37,7 +37,7 @@ _EXAMPLE = '"offset - 2 * crank" or "min(crank, 30 mm)"'
 class Units(Protocol):
     """Units that numbers in a formula may have."""
 
-    def has(self, name: str) -> bool:
+    def is_unit(self, name: str) -> bool:
         """Return whether a name after a number is a unit."""
         ...
 
@@ -57,7 +57,7 @@ def parse(text: str, units: Units) -> Node:
     reader = _Reader(text.translate(_SAME), units)
     node = reader.sum()
     if reader.next.text:
-        reader.refuse(f"one of + - * / ** is missing before {reader.next.text}")
+        reader.raise_error(f"one of + - * / ** is missing before {reader.next.text}")
     return node
 
 
@@ -84,7 +84,7 @@ class _Reader:
         if match is not None:
             self.next = _Token(str(match.lastgroup), match[str(match.lastgroup)], match.end())
         elif self.text[place:].strip():
-            self.refuse(f"{self.text[place:].strip()[0]!r} has no meaning in it")
+            self.raise_error(f"{self.text[place:].strip()[0]!r} has no meaning in it")
         else:
             self.next = _Token("end", "", len(self.text))
 
@@ -96,28 +96,28 @@ class _Reader:
         self.step()
         return sign
 
-    def refuse(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
+    def raise_error(self, rule: str, remedy: str = f"write it like {_EXAMPLE}") -> NoReturn:
         text = " ".join(self.text.split())
         quoted = text if len(text) <= 60 else f"{text[:60]}..."
         raise InputError(f"{rule}; got the formula {quoted!r}; {remedy}")
 
-    def deeper(self) -> None:
+    def enter_nesting(self) -> None:
         self.depth += 1
         if self.depth > DEEPEST:
-            self.refuse(
+            self.raise_error(
                 f"brackets, functions and signs lie within each other at most {DEEPEST} deep", "give parts of it names"
             )
 
     def call(self, function: str, *arguments: Node) -> Call:
         self.calls += 1
         if self.calls > _MOST:
-            self.refuse(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
+            self.raise_error(f"a formula has at most {_MOST} signs and functions", "give parts of it names")
         return Call(function, arguments)
 
     # ---- one method for each level of binding strength ---------------------------------------------------------------
 
     def sum(self) -> Node:
-        self.deeper()
+        self.enter_nesting()
         node = self.product()
         while sign := self.take("+", "-"):
             node = self.call(sign, node, self.product())
@@ -142,15 +142,15 @@ class _Reader:
         return self.call("neg", node)
 
     def power(self) -> Node:
-        node = self.atom()
+        node = self.read_atom()
         if not self.take("**", "^"):
             return node
-        self.deeper()
+        self.enter_nesting()
         node = self.call("**", node, self.signed())
         self.depth -= 1
         return node
 
-    def atom(self) -> Node:
+    def read_atom(self) -> Node:
         token = self.next
         if token.kind == "number":
             return self.number()
@@ -162,16 +162,16 @@ class _Reader:
             self.close()
             return node
         if token.kind == "end":
-            self.refuse("a number, a name or a bracket is missing at its end")
-        self.refuse(f"a number, a name or a bracket is missing before {token.text}")
+            self.raise_error("a number, a name or a bracket is missing at its end")
+        self.raise_error(f"a number, a name or a bracket is missing before {token.text}")
 
     def close(self) -> None:
         if not self.take(")"):
-            self.refuse("every opening bracket must be closed")
+            self.raise_error("every opening bracket must be closed")
 
     def function(self, name: str) -> Node:
         if name not in ARGUMENTS:
-            self.refuse(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is none of these")
+            self.raise_error(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is none of these")
         self.step()
         arguments = [self.sum()]
         while self.take(","):
@@ -180,7 +180,7 @@ class _Reader:
         least, greatest = ARGUMENTS[name]
         if not least <= len(arguments) <= greatest:
             count = "one argument" if greatest == 1 else f"{least} to {greatest} arguments, with commas between"
-            self.refuse(f"{name} takes {count}", f"it has {len(arguments)}")
+            self.raise_error(f"{name} takes {count}", f"it has {len(arguments)}")
         return self.call(name, *arguments)
 
     # ---- numbers ---------------------------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ class _Reader:
         try:
             si = self.units.si(digits, unit)
         except InputError as error:
-            self.refuse(str(error))
+            self.raise_error(str(error))
         self.step(place)
         return Number(si, digits, unit)
 
@@ -206,6 +206,6 @@ class _Reader:
             if power := _POWER.match(self.text, place):
                 text, place = f"{text}^{power[1] or power[2]}", power.end()
             match, joined = _NEXT_UNIT.match(self.text, place), _OTHER_UNIT.match(self.text, place)
-            if match is None and joined and self.units.has(joined[1]):
+            if match is None and joined and self.units.is_unit(joined[1]):
                 match = joined
         return text, place

@@ -16,9 +16,9 @@ from ...model.machine.raw_numbers_of_designs import require_design_columns
 from ...model.machine.varying_numbers import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
-from .expression import Call, Name, Node, fold
-from .kinks import Kinks, TwoSided, pieces_of, smooth, two_sided_pieces
-from .linear import Linear, linear_of, unknown
+from .expression import Call, Name, Node, evaluate_in_algebra
+from .kinks import Kinks, TwoSided, pieces_of_formula, single_smooth_piece, two_sided_pieces
+from .linear import Linear, linear_of, linear_unknown
 from .slopes import Slopes
 
 _GOLDEN = 0.6180339887498949  # parts' labels are added with incommensurate factors, so that they hardly ever coincide
@@ -60,9 +60,9 @@ class FormulaQuantity(Quantity):
         return bare(self.expression)
 
     @property
-    def of_dimensions(self) -> bool:
+    def depends_only_on_dimensions(self) -> bool:
         """Whether it depends on crank, rod and offset alone."""
-        return all(part.of_dimensions for part in self.parts) and not self.varying
+        return all(part.depends_only_on_dimensions for part in self.parts) and not self.varying
 
     @property
     def constant(self) -> bool:
@@ -70,7 +70,7 @@ class FormulaQuantity(Quantity):
         return all(part.constant for part in self.parts) and not self.dimensions and not self.varying
 
     @property
-    def made_of(self) -> tuple[Quantity, ...]:
+    def component_quantities(self) -> tuple[Quantity, ...]:
         """The quantities that it names."""
         return self.parts
 
@@ -78,20 +78,20 @@ class FormulaQuantity(Quantity):
         """Return the formula with its parts replaced by others with the same names."""
         return replace(self, parts=parts)
 
-    def lacks(self, mechanism: Mechanism, without: Consequence) -> str | None:
+    def unmet_need(self, mechanism: Mechanism, without: Consequence) -> str | None:
         """Return why a machine does not define it: a part's unmet need; None if all needs are met."""
         if without == "zero":  # even if a part is zero, other terms may remain
             return None
-        reasons = ((part.name, part.lacks(mechanism, without)) for part in self.parts)
+        reasons = ((part.name, part.unmet_need(mechanism, without)) for part in self.parts)
         return next((f"{name}: {reason}" for name, reason in reasons if reason), None)
 
     def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
         """Return the formula for designs (n, 3 + k); see `Quantity`."""
         require_design_columns(mechanism, dimensions)
         part_values = {part.name: part.evaluate(mechanism, dimensions, gradients=gradients) for part in self.parts}
-        return self.combined(part_values, mechanism, dimensions, gradients=gradients)
+        return self.combine_parts(part_values, mechanism, dimensions, gradients=gradients)
 
-    def combined(
+    def combine_parts(
         self, part_values: Mapping[str, Values], mechanism: Mechanism, dimensions: Array, *, gradients: bool = False
     ) -> Values:
         """Return the formula for designs (n, 3 + k).
@@ -103,7 +103,7 @@ class FormulaQuantity(Quantity):
         for name, values, place in self._values_of_numbers(mechanism, dimensions):
             leaves[name] = Values(values, _unit_gradient(n, d, place) if gradients else None)
         with np.errstate(all="ignore"):
-            return fold(self.expression, Slopes(leaves, n, d, gradients))
+            return evaluate_in_algebra(self.expression, Slopes(leaves, n, d, gradients))
 
     @property
     def is_smooth(self) -> bool:
@@ -133,10 +133,10 @@ class FormulaQuantity(Quantity):
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
         for name, values, column in self._values_of_numbers(mechanism, dimensions):
-            piece = smooth(values, _unit_gradient(n, d, column))
+            piece = single_smooth_piece(values, _unit_gradient(n, d, column))
             leaves[name] = TwoSided(piece, piece, dict(self.signs).get(name, 0))
         with np.errstate(all="ignore"):
-            return pieces_of(fold(self.expression, Kinks(leaves, n, d)))
+            return pieces_of_formula(evaluate_in_algebra(self.expression, Kinks(leaves, n, d)))
 
     def _values_of_numbers(self, mechanism: Mechanism, designs: Array) -> Iterator[tuple[str, Array, int | None]]:
         """Yield the name, values (n,) and column of each dimension and variable; a fixed number has no column."""
@@ -175,8 +175,8 @@ def equation_of(formula: FormulaQuantity, value: float) -> Linear | None:
 
 def _named_linears(formula: FormulaQuantity) -> dict[str, Linear | None]:
     """Return the linear formulas that a formula names, by name."""
-    definitions: dict[str, Linear | None] = {name: unknown(name) for name in formula.dimensions}
-    definitions |= {item.name: unknown(item.name) for item in formula.varying}
+    definitions: dict[str, Linear | None] = {name: linear_unknown(name) for name in formula.dimensions}
+    definitions |= {item.name: linear_unknown(item.name) for item in formula.varying}
     for part in formula.parts:
         if isinstance(part, FormulaQuantity):
             definitions[part.name] = linear_of(part.expression, _named_linears(part))
@@ -187,11 +187,11 @@ def linear_form(formula: FormulaQuantity) -> Linear | None:
     """Return a formula as linear in dimensions, numbers and the quantities that it names; None if it is not linear."""
     definitions = _named_linears(formula)
     for part in formula.parts:
-        definitions[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else unknown(part.name)
+        definitions[part.name] = linear_form(part) if isinstance(part, FormulaQuantity) else linear_unknown(part.name)
     return linear_of(formula.expression, definitions)
 
 
-def leaves_of(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
+def basic_quantities(quantities: Iterable[Quantity]) -> tuple[Quantity, ...]:
     """Return the basic quantities: the quantities themselves, or the parts of formulas, without repetition."""
 
     def leaf_items(quantities: Iterable[Quantity]) -> Iterator[tuple[str, Quantity]]:
@@ -214,14 +214,14 @@ def values_with_formulas(
 ) -> list[Values]:
     """Return the values of quantities, combined as formulas require.
 
-    leaf_values: values of the `leaves_of` the quantities, by name.
+    leaf_values: values of the `basic_quantities`, by name.
     """
     values = dict(leaf_values)
 
     def value(item: Quantity) -> Values:
         if item.name not in values and isinstance(item, FormulaQuantity):
             part_values = {part.name: value(part) for part in item.parts}
-            values[item.name] = item.combined(part_values, mechanism, dimensions, gradients=gradients)
+            values[item.name] = item.combine_parts(part_values, mechanism, dimensions, gradients=gradients)
         return values[item.name]
 
     return [value(item) for item in quantities]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...model.errors import InputError
-from .expression import Call, Name, Node, Number, text_of
+from .expression import Call, Name, Node, Number, formula_text
 from .linear import SIZE, Linear, linear_of
 
 _ROUNDING = 1e-14
@@ -69,8 +69,10 @@ class FormulaBounds:
         found = _interval_of_call(node, given)
         linear = linear_of(node, self.linears)
         if node.function == "/" and linear is None:
-            found = _intersection(found, self._quotient(*(linear_of(item, self.linears) for item in node.arguments)))
-        return found if linear is None else _intersection(found, self._linear(linear))
+            found = _intersection(
+                found, self._bounds_of_linear_quotient(*(linear_of(item, self.linears) for item in node.arguments))
+            )
+        return found if linear is None else _intersection(found, self._bounds_of_linear(linear))
 
     def _refuse_divisor(self, node: Node, found: Interval) -> None:
         if isinstance(node, Name):
@@ -79,11 +81,11 @@ class FormulaBounds:
             remedy = "change the ranges, or rewrite the formula without that division"
         always = found.lower == found.upper == 0.0
         raise InputError(
-            f"a formula must not divide by a value that may be zero; got {text_of(node)} as a divisor, which "
+            f"a formula must not divide by a value that may be zero; got {formula_text(node)} as a divisor, which "
             f"{'is zero for every design' if always else 'may be zero within the ranges'}; {remedy}"
         )
 
-    def _linear(self, linear: Linear) -> Interval:
+    def _bounds_of_linear(self, linear: Linear) -> Interval:
         """Return the bounds of a linear formula over fully rotating linkages: rod > crank + |offset|."""
         factors = {name: float(factor) for name, factor in linear.factors}
         least = greatest = float(linear.constant)
@@ -101,7 +103,7 @@ class FormulaBounds:
         alone = (not rest and low + float(linear.constant) >= -rounding) or high + float(linear.constant) <= rounding
         return Interval(least + low, greatest + high, bool(alone and all(zeros)))
 
-    def _quotient(self, numerator: Linear | None, denominator: Linear | None) -> Interval:
+    def _bounds_of_linear_quotient(self, numerator: Linear | None, denominator: Linear | None) -> Interval:
         """Return the bounds of a quotient of two formulas, linear in the dimensions, over fully rotating linkages.
 
         The extremes are at corners. A bound at the edge of full rotation, which no design attains, is left out.
@@ -186,7 +188,7 @@ def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
             first, last, lambda a, b: 0.0 if 0.0 in (a, b) else a * b, first.excludes_zero and last.excludes_zero
         )
     if function == "/":
-        return _hull_of_ends(first, last, _quotient, first.excludes_zero)
+        return _hull_of_ends(first, last, _divide_ends, first.excludes_zero)
     if function == "**":
         return _interval_power(first, last)
     if function == "abs":
@@ -204,7 +206,7 @@ def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
         if first.upper < least or first.lower > greatest:
             raise InputError(
                 f"the argument of {function} must be from {least:g} to {greatest:g}; got "
-                f"{text_of(node.arguments[0])}, which never is within the ranges; correct the formula"
+                f"{formula_text(node.arguments[0])}, which never is within the ranges; correct the formula"
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
         return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")
@@ -234,7 +236,7 @@ def _interval_sum(first: Interval, second: Interval) -> Interval:
     return Interval(lower, upper, same and (first.excludes_zero or second.excludes_zero))
 
 
-def _quotient(a: float, b: float) -> float:
+def _divide_ends(a: float, b: float) -> float:
     if a == 0.0 or math.isinf(b):
         return 0.0
     return math.copysign(math.inf, a) * math.copysign(1.0, b) if b == 0.0 else a / b
@@ -245,7 +247,7 @@ def _hull_of_ends(
 ) -> Interval:
     # A divisor that is never zero may approach zero from one side: that end then has the sign of that side.
     ends = [end if end or second.upper > 0.0 else -0.0 for end in (second.lower, second.upper)]
-    if second.lower < 0.0 < second.upper and operation is _quotient:
+    if second.lower < 0.0 < second.upper and operation is _divide_ends:
         return Interval(-math.inf, math.inf, excludes_zero)
     values = [operation(a, b) for a in (first.lower, first.upper) for b in ends]
     return Interval(min(values), max(values), excludes_zero)

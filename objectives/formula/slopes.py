@@ -73,18 +73,21 @@ class Slopes:
         if not self.gradients:
             return Values(values, None)
         return Values(
-            values, sum_of(partials(function, argument_values, values), [item.gradients for item in arguments])
+            values,
+            weighted_sum_of_gradients(
+                partial_derivatives(function, argument_values, values), [item.gradients for item in arguments]
+            ),
         )
 
 
-def partials(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
+def partial_derivatives(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
     """Return the derivatives of a smooth function with respect to its arguments, each shaped like the arguments."""
     if function in UNARY:
         return (UNARY[function][1](arguments[0], values),)
     return BINARY[function][1](arguments[0], arguments[1], values)
 
 
-def sum_of(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
+def weighted_sum_of_gradients(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
     """Return the sum of gradients (..., d) weighted by slopes (...); a slope is ignored if its gradient is zero."""
     total: Array | None = None
     for slope, gradient in zip(slopes, gradients, strict=True):

@@ -132,16 +132,16 @@ class Designs:
 
     def velocity(self, angle: Numbers) -> Numbers:
         """Return the slider velocity along x, m/s."""
-        return cast(Numbers, self._motion(angle).x_1 * self._speed_and_acceleration(angle)[0])
+        return cast(Numbers, self._motion(angle).x_1 * self._speed_acceleration_and_slope(angle)[0])
 
     def acceleration(self, angle: Numbers) -> Numbers:
         """Return the slider acceleration along x, m/s^2."""
-        m, (speed, acceleration, _) = self._motion(angle), self._speed_and_acceleration(angle)
+        m, (speed, acceleration, _) = self._motion(angle), self._speed_acceleration_and_slope(angle)
         return cast(Numbers, m.x_2 * speed**2 + m.x_1 * acceleration)
 
     def jerk(self, angle: Numbers) -> Numbers:
         """Return the slider jerk along x, m/s^3."""
-        m, (speed, acceleration, bend) = self._motion(angle), self._speed_and_acceleration(angle)
+        m, (speed, acceleration, bend) = self._motion(angle), self._speed_acceleration_and_slope(angle)
         third = third_slider_derivative(np.sin(angle), np.cos(angle), m, self.crank)
         return cast(Numbers, third * speed**3 + 3.0 * m.x_2 * speed * acceleration + m.x_1 * speed * bend)
 
@@ -196,7 +196,7 @@ class Designs:
         """
         tau = np.broadcast_to(np.linspace(-np.pi, np.pi, _GRID, endpoint=False), (len(self), _GRID))
         spacing = _TURN / _GRID
-        samples = self._sampled(curve, tau)
+        samples = self._sample_curve(curve, tau)
         local = (samples >= np.roll(samples, 1, axis=1)) & (samples >= np.roll(samples, -1, axis=1))
         order = np.argsort(np.where(local, -samples, np.inf), axis=1, kind="stable")[:, :_PEAKS]
         is_peak = np.take_along_axis(local, order, axis=1)
@@ -206,7 +206,7 @@ class Designs:
             steps = np.linspace(-half, half, _WITHIN)
             centre = centre + steps[np.argmax(self._sample_near(curve, centre, steps), axis=2)]
             half *= 2.0 / (_WITHIN - 1)
-        centre = self._vertex(curve, centre, half)
+        centre = self._peak_angle_near(curve, centre, half)
         angle = self._crank_angles_from_crowded(centre)[0]
         values = np.array(curve(angle))
         values, angle = self._move_peaks_onto_jumps(curve, values, angle)
@@ -238,7 +238,7 @@ class Designs:
             self._known = np.array(angle), found
         return self._known[1]
 
-    def _speed_and_acceleration(self, angle: Numbers) -> tuple[Any, Any, Any]:
+    def _speed_acceleration_and_slope(self, angle: Numbers) -> tuple[Any, Any, Any]:
         """Return crank speed, crank acceleration, and the derivative of the acceleration with respect to the angle."""
         profile, mean = self.mechanism.speed_profile, self.mechanism.speed
         if profile is None:
@@ -261,7 +261,7 @@ class Designs:
         angle = 0.5 * np.pi + tau + turn - _TURN * np.round(turn / _TURN)
         return angle, kappa / (cosine**2 + (kappa * sine) ** 2)
 
-    def _sampled(self, curve: Curve, tau: Numbers) -> Array:
+    def _sample_curve(self, curve: Curve, tau: Numbers) -> Array:
         with self._with_real_designs():
             values = np.asarray(curve(self._crank_angles_from_crowded(tau)[0]))
         if values.shape != tau.shape:
@@ -274,9 +274,9 @@ class Designs:
     def _sample_near(self, curve: Curve, centre: Numbers, steps: Numbers) -> Array:
         """Return the curve (n, p, s) at steps (s,) from crowded angles (n, p)."""
         tau = centre[:, :, None] + steps
-        return self._sampled(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
+        return self._sample_curve(curve, tau.reshape(len(centre), -1)).reshape(tau.shape)
 
-    def _vertex(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
+    def _peak_angle_near(self, curve: Curve, centre: Numbers, half: float) -> Numbers:
         """Return the zero of the derivative after one Newton step; the centre itself if there is no smooth peak."""
         samples = self._sample_near(curve, centre, np.arange(-2.0, 3.0) * half)
         first, second = samples @ _FIFTH, samples @ _SECOND

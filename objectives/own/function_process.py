@@ -30,7 +30,7 @@ HEAD = struct.Struct("<cQ")
 SHAPE = struct.Struct("<QQQ")
 
 
-def load(function: str, folders: list[str]) -> Function:
+def load_function(function: str, folders: list[str]) -> Function:
     """Return the function "module:name" from a module in one of the folders or from an installed module.
 
     Raises `Refused`. The folders come first during the import, so that modules beside the job are found. Afterwards
@@ -47,7 +47,7 @@ def load(function: str, folders: list[str]) -> Function:
         error_text = f"{type(error).__name__}: {error}".rstrip(": ")
         raise Refused(
             f"must be a function in a module in the folder of the job file or installed; got "
-            f"{error_text}{error_location(error, load)}; correct module:function"
+            f"{error_text}{error_location(error, load_function)}; correct module:function"
         ) from None
     finally:
         sys.path[:] = [*before, *folders]
@@ -89,15 +89,15 @@ class Timed(Designs):
         return super().forces(angle)
 
 
-def packed(result: FunctionResult) -> bytes:
+def pack_result(result: FunctionResult) -> bytes:
     """Return a result as bytes: shape, then values, slopes and angles, NaN where there are none."""
     blank = np.full(result.values.shape, np.nan)
     parts = [blank if part is None else part for part in (result.values, result.slopes, result.angles)]
     return SHAPE.pack(3, *result.values.shape) + np.stack(parts).tobytes()
 
 
-def unpacked(data: bytes) -> FunctionResult:
-    """Return the result that `packed` wrote."""
+def unpack_result(data: bytes) -> FunctionResult:
+    """Return the result that `pack_result` wrote."""
     shape = SHAPE.unpack_from(data)
     values, slopes, angles = np.frombuffer(data, offset=SHAPE.size).reshape(shape).copy()
     return FunctionResult(values, *(None if np.isnan(part).all() else part for part in (slopes, angles)))
@@ -124,7 +124,7 @@ def main() -> None:
         Timed.wait = staticmethod(lambda: send(b"W"))
         try:
             with watch:
-                function = load(name, folders)
+                function = load_function(name, folders)
             send(b"R")
         except Refused as error:
             send(b"E", str(error).encode())
@@ -144,7 +144,7 @@ def main() -> None:
             except Refused as error:
                 send(b"E", str(error).encode())
             else:
-                send(b"A", packed(result))
+                send(b"A", pack_result(result))
 
 
 if __name__ == "__main__":

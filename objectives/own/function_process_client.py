@@ -29,7 +29,7 @@ from ...model.arrays import Array
 from ...model.kernel.interruption import interruption_grace_time, poll_interruption, record_killed_call
 from ...model.machine.mechanism import Mechanism
 from .call_function import FunctionResult, Refused
-from .function_process import HEAD, unpacked
+from .function_process import HEAD, unpack_result
 
 _START = 600.0  # s for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit before the process is ended from here
@@ -44,7 +44,7 @@ Message = tuple[bytes, bytes]
 Process = subprocess.Popen[bytes]
 
 
-def is_guard(command: Sequence[str]) -> bool:
+def is_guard_command(command: Sequence[str]) -> bool:
     """Whether a command line starts a guard, or its function's process."""
     return _PROGRAM in command
 
@@ -100,7 +100,7 @@ class Worker:
         machine = None if mechanism is self._mechanism else mechanism
         self._send((machine, np.ascontiguousarray(dimensions, np.float64).tobytes(), column))
         self._mechanism = mechanism
-        return unpacked(self._await_message(self.limit))
+        return unpack_result(self._await_message(self.limit))
 
     def close(self) -> None:
         """End the process and everything that it started."""
@@ -122,7 +122,7 @@ class Worker:
             **group,
         )
         self._late = False
-        self._end = weakref.finalize(self, _end, process, self._log)
+        self._end = weakref.finalize(self, _end_process, process, self._log)
         _running.add(self)
         self._messages: queue.SimpleQueue[Message] = queue.SimpleQueue()
         threading.Thread(
@@ -226,16 +226,16 @@ class Worker:
 def _queue_messages(stream: IO[bytes], messages: queue.SimpleQueue[Message]) -> None:
     """Put messages from a process into a queue, then an empty message at the end."""
     with stream, contextlib.suppress(OSError, ValueError):
-        while len(head := _read(stream, HEAD.size)) == HEAD.size:
+        while len(head := _read_bytes(stream, HEAD.size)) == HEAD.size:
             kind, length = HEAD.unpack(head)
-            content = _read(stream, length)
+            content = _read_bytes(stream, length)
             if len(content) < length:
                 break
             messages.put((kind, content))
     messages.put((b"", b""))
 
 
-def _read(stream: IO[bytes], length: int) -> bytes:
+def _read_bytes(stream: IO[bytes], length: int) -> bytes:
     """Return `length` bytes; fewer only at the end of the stream."""
     content = bytearray()
     while len(content) < length and (chunk := stream.read(length - len(content))):
@@ -243,7 +243,7 @@ def _read(stream: IO[bytes], length: int) -> bytes:
     return bytes(content)
 
 
-def _end(process: Process, log: str) -> None:
+def _end_process(process: Process, log: str) -> None:
     """End a process through its guard, which may be suspended.
 
     Only the guard stays, with the processes that it may not kill.

@@ -141,13 +141,13 @@ def _relay_output(printed: int) -> None:
             continue
         rest = _LEFT_OUT.encode() if len(piece) > left else b""
         lines, end, unfinished = (unfinished + piece[:left] + rest).rpartition(b"\n")
-        _write(lines + end)
+        _write_printable(lines + end)
         left -= len(piece)
     if unfinished:
-        _write(unfinished + b"\n")
+        _write_printable(unfinished + b"\n")
 
 
-def _write(text: bytes) -> None:
+def _write_printable(text: bytes) -> None:
     printable_text = printable(text.decode(errors="backslashreplace").replace("\r\n", "\n"), allowed="\n\t")
     with contextlib.suppress(OSError):  # standard error is closed
         os.write(2, printable_text.encode())

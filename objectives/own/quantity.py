@@ -77,13 +77,13 @@ class OwnQuantity(Quantity):
     longest: float = field(default=float("inf"), compare=False)
     _session: _Session = field(default_factory=_Session, init=False, compare=False, repr=False)
 
-    def follows_speed(self, mechanism: Mechanism) -> bool:
+    def depends_on_speed(self, mechanism: Mechanism) -> bool:
         """True, because a function is never called before a search."""
         return True
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_name(self.name)
+        require_column_name(self.name)
         if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
             raise InputError(f'a function must be named like "module:function"; got {self.function!r}; write it so')
         if self.gradient not in get_args(Gradient):
@@ -275,7 +275,7 @@ class OwnQuantity(Quantity):
         self._session.validated.append(mechanism)
 
 
-def require_name(name: str) -> None:
+def require_column_name(name: str) -> None:
     """Raise `InputError` for a name that cannot be a table column."""
     if not _NAME.fullmatch(name):
         raise InputError(
@@ -288,20 +288,20 @@ def with_time_limit(quantity: Quantity, longest: float) -> Quantity:
     """Return a quantity whose custom functions, even nested ones, take at most `longest` s per call."""
     if isinstance(quantity, OwnQuantity):
         return replace(quantity, longest=longest)
-    return quantity.with_parts(tuple(with_time_limit(part, longest) for part in quantity.made_of))
+    return quantity.with_parts(tuple(with_time_limit(part, longest) for part in quantity.component_quantities))
 
 
 def close_custom_functions(quantity: Quantity) -> None:
     """End the custom function processes that a quantity or one of its parts has started."""
     if isinstance(quantity, OwnQuantity):
         quantity.close()
-    for part in quantity.made_of:
+    for part in quantity.component_quantities:
         close_custom_functions(part)
 
 
 def runs_custom_function(quantity: Quantity) -> bool:
     """Whether a quantity or one of its parts is a custom function."""
-    return isinstance(quantity, OwnQuantity) or any(map(runs_custom_function, quantity.made_of))
+    return isinstance(quantity, OwnQuantity) or any(map(runs_custom_function, quantity.component_quantities))
 
 
 def quantity_entry_points() -> dict[str, Any]:

@@ -24,7 +24,7 @@ import numpy as np
 from ...model.arrays import IntArray
 from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..quantity import Array
-from .tolerance_box_points import star
+from .tolerance_box_points import quadratic_fit_points
 
 _FAINT = 1e-15  # smaller weights are rounding errors
 _LEAST = 2.0**-40  # a scrambled point at zero would map to minus infinity in a normal distribution
@@ -70,18 +70,20 @@ class Sample:
         return np.asarray(weights / weights.sum())
 
     @cached_property
-    def interpolation(self) -> Array:
+    def interpolation_matrix(self) -> Array:
         """Matrix from values at the star to values at the sample: (points, samples)."""
-        return np.ascontiguousarray((_monomials(self.deviations, self.columns) @ self._fit).T)
+        return np.ascontiguousarray((_monomials(self.deviations, self.columns) @ self._quadratic_fit_matrix).T)
 
     @cached_property
-    def linear(self) -> Array:
+    def slope_matrix(self) -> Array:
         """Matrix from values at the star to slopes by the uncertain dimensions: (d, points)."""
-        return self._fit[1 : 1 + len(self.columns)]
+        return self._quadratic_fit_matrix[1 : 1 + len(self.columns)]
 
     @cached_property
-    def _fit(self) -> Array:
-        return np.asarray(np.linalg.pinv(_monomials(star(list(self.columns)), self.columns)), dtype=np.float64)
+    def _quadratic_fit_matrix(self) -> Array:
+        return np.asarray(
+            np.linalg.pinv(_monomials(quadratic_fit_points(list(self.columns)), self.columns)), dtype=np.float64
+        )
 
     def quantile_of_machines(self, machines: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from those of all machines, (n, s) and (n, s, width)."""
@@ -93,7 +95,9 @@ class Sample:
     def quantile_of_star(self, values: Array, slopes: Array) -> tuple[Array, Array]:
         """Return quantiles (n,) and gradients (n, width) from pieces at the star, (n, q, p) and (n, q, p, width)."""
         absent = ~np.isfinite(values[:, 0])[:, :, None]
-        drawn = _einsum_by_design("npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation)
+        drawn = _einsum_by_design(
+            "npq,qs->nps", np.where(absent, 0.0, values.transpose(0, 2, 1)), self.interpolation_matrix
+        )
         drawn = np.where(absent, -np.inf, drawn)
         piece = np.argmax(drawn, axis=1)
         machines = np.take_along_axis(drawn, piece[:, None], axis=1)[:, 0]
@@ -101,7 +105,7 @@ class Sample:
         quantile = _einsum_by_design("ns,s->n", np.take_along_axis(machines, order, axis=1), rank)
         ordered_pieces = np.take_along_axis(piece, order, axis=1)
         slope = np.zeros((len(values), slopes.shape[3]))
-        weighed = self.interpolation.T[order]
+        weighed = self.interpolation_matrix.T[order]
         for p in range(values.shape[2]):
             share_of = _einsum_by_design("ns,nsq->nq", rank * (ordered_pieces == p), weighed)
             slope += _einsum_by_design("nq,nqd->nd", share_of, slopes[:, :, p])
@@ -109,12 +113,12 @@ class Sample:
             return quantile, slope
         rows = np.arange(len(values))
         top = np.argmax(values[:, 0], axis=1)
-        control = _einsum_by_design("nq,dq->nd", values[rows, :, top], self.linear)
+        control = _einsum_by_design("nq,dq->nd", values[rows, :, top], self.slope_matrix)
         deviations = self.deviations[:, list(self.columns)]
         order, rank = self._ranked(_einsum_by_design("nd,ds->ns", control, deviations.T))
         shift = _einsum_by_design("s,nsd->nd", rank, deviations[order])
         exact, exact_slope = linear_quantile(control, self.share)
-        by_control = _einsum_by_design("nd,dq->nq", exact_slope - shift, self.linear)
+        by_control = _einsum_by_design("nd,dq->nq", exact_slope - shift, self.slope_matrix)
         quantile = quantile + exact - _einsum_by_design("nd,nd->n", shift, control)
         return quantile, slope + _einsum_by_design("nq,nqd->nd", by_control, slopes[rows, :, top])
 

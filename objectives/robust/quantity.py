@@ -20,10 +20,10 @@ from ..quantity import Array, Pieces, Quantity, Values
 from .quantile import sample
 from .tolerance_box_points import (
     PointValues,
-    corners,
+    box_corners,
     evaluate_points,
     match_pieces,
-    star,
+    quadratic_fit_points,
     tolerance_limits,
     toleranced_columns,
 )
@@ -96,7 +96,7 @@ class RobustQuantity(Quantity):
         return partial(type(self), **{name: getattr(self, name) for name in options}), ()
 
     @property
-    def made_of(self) -> tuple[Quantity, ...]:
+    def component_quantities(self) -> tuple[Quantity, ...]:
         """The quantity itself."""
         return (self.inner,)
 
@@ -165,7 +165,7 @@ class RobustQuantity(Quantity):
         self, mechanism: Mechanism, dimensions: Array, columns: list[int]
     ) -> tuple[Array, Array, Array]:
         low = self.side == "low"
-        at_corners = evaluate_points(self.inner, mechanism, dimensions, corners(columns))
+        at_corners = evaluate_points(self.inner, mechanism, dimensions, box_corners(columns))
         values, slopes, labels = self._values_on_bad_side(at_corners)
         inner_points = worst_inner_points(self.inner, mechanism, dimensions, columns, at_corners, low=low)
         if not len(inner_points.rows):
@@ -210,7 +210,7 @@ class RobustQuantity(Quantity):
         the third order, 1/400 of the terms that first order neglects anyway. Their gradients follow from exact
         gradients.
         """
-        signs = corners(columns)
+        signs = box_corners(columns)
         point_values = evaluate_points(
             self.inner, mechanism, dimensions, np.concatenate([np.zeros((1, 3)), _STEP * signs])
         )
@@ -238,7 +238,7 @@ class RobustQuantity(Quantity):
     # ---- percentile -----------------------------------------------------------------------------------------------
 
     def _quantile(self, mechanism: Mechanism, dimensions: Array, columns: tuple[int, ...]) -> Pieces:
-        star_values = evaluate_points(self.inner, mechanism, dimensions, star(list(columns)))
+        star_values = evaluate_points(self.inner, mechanism, dimensions, quadratic_fit_points(list(columns)))
         values, slopes, has_twin = match_pieces(star_values)
         has_all_twins: Mask = np.logical_and.reduce(has_twin, axis=1)
         values = np.where(has_all_twins[:, None, :], values, -np.inf)

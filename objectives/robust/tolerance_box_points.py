@@ -61,7 +61,7 @@ def toleranced_columns(mechanism: Mechanism) -> list[int]:
     return np.flatnonzero((absolute > 0.0) | (fraction > 0.0)).tolist()
 
 
-def corners(columns: list[int]) -> Array:
+def box_corners(columns: list[int]) -> Array:
     """Return the corners of the box, (2^d, 3), in units of the limits; opposite corners are in mirrored rows."""
     points = np.zeros((2 ** len(columns), 3))
     points[:, columns] = list(itertools.product((-1.0, 1.0), repeat=len(columns)))
@@ -76,13 +76,13 @@ def points_at_zero_offset(columns: list[int], dimensions: Array, limits: Array) 
     if 2 not in columns:
         return np.zeros(0, np.int64), np.zeros((0, 0, 3))
     rows = np.flatnonzero((np.abs(dimensions[:, 2]) < limits[:, 2]) & (limits[:, 2] > 0.0))
-    ends = corners([column for column in columns if column != 2])
+    ends = box_corners([column for column in columns if column != 2])
     points = np.repeat(ends[None], len(rows), axis=0)
     points[:, :, 2] = -(dimensions[rows, 2] / limits[rows, 2])[:, None]
     return rows, points
 
 
-def star(columns: list[int]) -> Array:
+def quadratic_fit_points(columns: list[int]) -> Array:
     """Return the points (q, 3) for fitting a full quadratic, in units of the limits. Here q = 1 + 2 d + d (d - 1).
 
     The centre, both ends of each axis, and two opposite corners in each plane. Cubic terms then cancel in the mixed

@@ -12,7 +12,7 @@ from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Quantity
 from .tolerance_box_points import (
     PointValues,
-    corners,
+    box_corners,
     evaluate_points,
     match_pieces,
     points_at_zero_offset,
@@ -54,7 +54,7 @@ def worst_inner_points(
     """
     limits = tolerance_limits(mechanism, dimensions)
     spanning, points = points_at_zero_offset(columns, dimensions, limits)
-    ends = corners(columns)
+    ends = box_corners(columns)
     worst, slopes, turns = _signed_as_losses(at_corners, low)
     start = ends[np.argmax(worst, axis=1)]
     inward = (start * _slopes_at_worst(worst, slopes)) * limits

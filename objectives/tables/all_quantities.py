@@ -25,7 +25,7 @@ from ..registry import QUANTITIES
 from ..time_ratio import TIME_RATIO
 from ..transmission_angle import TRANSMISSION_ANGLE
 from .turn_columns import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE
-from .variable_columns import varying_column
+from .variable_columns import column_of_variable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ def analysis_columns(
     inner, outer = linkage.dead_centre_angles
     peak_torque, peak_torque_angle = first_peaks(mechanism, Signal.TORQUE, dimensions)
     averages = torque_averages(mechanism, dimensions)
-    varying = [varying_column(item) for item in mechanism.varying]
+    varying = [column_of_variable(item) for item in mechanism.varying]
     columns: dict[str, NDArray[Any]] = {
         "crank_mm": 1e3 * dimensions[:, 0],
         "rod_mm": 1e3 * dimensions[:, 1],

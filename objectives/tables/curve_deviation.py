@@ -19,7 +19,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import require_one_turn
 from ..kinds import Kind
 from ..quantity import Array
-from .curve_extremes import defined_curves, golden
+from .curve_extremes import defined_curves, golden_section_maxima
 
 _TURN = 2.0 * math.pi
 _SHIFTS = 1440  # of the grid
@@ -138,7 +138,7 @@ def _best_shifts(
     )
     lowest = np.flatnonzero((coarse <= np.roll(coarse, 1)) & (coarse <= np.roll(coarse, -1)))
     lowest = lowest[np.argsort(coarse[lowest], kind="stable")][:_CANDIDATES]
-    best, shifts = golden(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
+    best, shifts = golden_section_maxima(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
     # Also try no shift: it is as good as others if a curve is piecewise constant.
     best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
     shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]

@@ -117,7 +117,7 @@ def defined_curves(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -
     On the crossed branch, the rod angle is about pi; it is given in [0, 2 pi), where it does not jump.
     """
     every = every_curve(mechanism, linkage, crank_angle)
-    return [curve for curve in every if not undefined_because(curve.name, mechanism)]
+    return [curve for curve in every if not undefined_curve_reason(curve.name, mechanism)]
 
 
 def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> list[Curve]:
@@ -137,7 +137,7 @@ def every_curve(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> l
     return curves
 
 
-def undefined_because(name: str, mechanism: Mechanism) -> str:
+def undefined_curve_reason(name: str, mechanism: Mechanism) -> str:
     """Return the reason why a machine does not define a curve; empty if it does."""
     if name == "load" and not mechanism.loads:
         return 'it needs loads; got none; add a [[load]], for example force = "200 N"'
@@ -201,7 +201,7 @@ def _extremes_at_ends(
     sides = [_coarse_extremes(pieces, samples, sizes, sign) for sign in (-1.0, 1.0)]
     rows, left, right = (np.concatenate(parts) for parts in zip(*(side[1:] for side in sides), strict=True))
     at, signs = rows.astype(np.intp), np.repeat([-1.0, 1.0], [len(side[1]) for side in sides])
-    tops, angles = golden(lambda theta: signs * values(theta)[at, np.arange(len(at))], left, right)
+    tops, angles = golden_section_maxima(lambda theta: signs * values(theta)[at, np.arange(len(at))], left, right)
     ends = []
     for sign, (coarse, *_) in zip((-1.0, 1.0), sides, strict=True):
         refined = list(coarse)
@@ -280,7 +280,7 @@ def _maximum_brackets(curve: list[Array], pieces: list[Array]) -> list[tuple[flo
     return [(low, high) for bound, low, high in brackets[:_CANDIDATES] if bound >= best]
 
 
-def golden(
+def golden_section_maxima(
     function: Callable[[Array], Array], left: Array, right: Array, sections: int = _SECTIONS
 ) -> tuple[Array, Array]:
     """Return the maximum of a function (n,) -> (n,) in each bracket, and its location, by golden sections."""

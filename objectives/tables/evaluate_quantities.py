@@ -17,7 +17,7 @@ from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import can_swing_despite_friction
 from ...model.turning_cylinder.batch import lever_passes
 from ..cycle_peak import screen_quantities
-from ..formula.quantity import leaves_of, values_with_formulas
+from ..formula.quantity import basic_quantities, values_with_formulas
 from ..formula.resolve_names import resolve_quantities
 from ..quantity import Array, Quantity, Values
 from .design_input import (
@@ -27,7 +27,7 @@ from .design_input import (
     require_machine,
     warn_of_lengths,
 )
-from .swing_columns import require_in_motion, require_of_swing, require_same_driver
+from .swing_columns import require_quantities_of_motion, require_same_driver, require_swing_quantity
 
 
 @overload
@@ -103,11 +103,11 @@ def evaluated_as_array(
         raise InputError(f"quantities must be a list of names; got {quantities!r}; write [{quantities!r}]")
     quantities = list(quantities)
     require_same_driver(mechanism, swing)
-    require_in_motion(quantities, own, swing)
+    require_quantities_of_motion(quantities, own, swing)
     chosen = resolve_quantities(quantities, mechanism, own, turning=swing is None)
     for item in chosen:
         if swing is not None:
-            require_of_swing(item.name, item, swing)
+            require_swing_quantity(item.name, item, swing)
         reason = item.undefined_because([mechanism])
         if reason:
             raise InputError(f"{item.name}: {reason}")
@@ -151,7 +151,7 @@ def can_run_despite_friction(mechanism: Mechanism, swing: Swing | None, designs:
 def _evaluate_leaves(
     mechanism: Mechanism, quantities: Sequence[Quantity], designs: Array, gradients: bool
 ) -> list[Values]:
-    leaves = leaves_of(quantities)
+    leaves = basic_quantities(quantities)
     values = screen_quantities(leaves, mechanism, designs, gradients=gradients, certain=True, angles=ANGLES)
     for leaf in leaves:
         if leaf.name not in values:

@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ..kinds import ANGLE, DISPLAYED_KINDS, TIME, DisplayUnit, Kind
 from ..quantity import Array
 from ..units import letters_and_digits, without_word_in
-from .curve_extremes import every_curve, undefined_because
+from .curve_extremes import every_curve, undefined_curve_reason
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ class Measured:
     understood: str = ""
 
 
-def columns_of(
+def meaningful_columns(
     names: Iterable[str], mechanism: Mechanism, linkage: Linkage, units: Units | None = None
 ) -> dict[str, Column]:
     """Return the columns that have a meaning: crank angle, or else time, and curves of the machine.
@@ -89,7 +89,7 @@ def columns_of(
         columns.pop(column_names.get(TIME_OF, ""), None)
     elif TIME_OF not in column_names:
         near = next((name for name in names if _likely_word(name, ("crank_angle_deg", "time_s"))), None)
-        hint = f"is {near!r} one of them?" if near is not None else f"add one to {_listed(names)}"
+        hint = f"is {near!r} one of them?" if near is not None else f"add one to {_names_text(names)}"
         raise InputError(f"{_ANGLE_NEEDED}; got neither; {hint}")
     elif not mechanism.speed:
         raise InputError(
@@ -110,24 +110,25 @@ def columns_of(
         near = next((close for name in names if name not in columns and (close := _likely_curve(name, spoken))), None)
         hint = f"did you mean {near}?" if near else f"curves are {', '.join(curves)}"
         raise InputError(
-            f"a column must be a curve with its unit, such as slider_position_mm; got {_listed(names)}; {hint}"
+            f"a column must be a curve with its unit, such as slider_position_mm; got {_names_text(names)}; {hint}"
         )
     return columns
 
 
-def measured_from(
+def measured_samples(
     table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage, units: Units | None = None
 ) -> Measured:
     """Return the samples in a table; columns without any number are left out.
 
-    Raises `InputError` as `columns_of` does, for impossible values, and for curves that the machine does not define.
+    Raises `InputError` as `meaningful_columns` does, for impossible values, and for curves that the machine does not
+    define.
     """
     if not hasattr(table, "keys"):
         raise InputError(
             f"a measured table must have named columns; got {type(table).__name__}; give a dict or a DataFrame"
         )
     names = [str(name) for name in table]
-    columns = columns_of(names, mechanism, linkage, units)
+    columns = meaningful_columns(names, mechanism, linkage, units)
     values: dict[str, Array] = {}
     for name, column in columns.items():
         try:
@@ -161,7 +162,7 @@ def measured_from(
             f"a curve must have numbers in at least one row with a crank angle; got none in {empty_columns}; add values"
         )
     for name in curves:
-        reason = undefined_because(name, mechanism)
+        reason = undefined_curve_reason(name, mechanism)
         if reason:
             raise InputError(f"{column_names[name]!r} is not defined for this machine: {reason}; or drop the column")
     left_out = tuple(name for name in names if name not in columns or columns[name].name in empty)
@@ -248,6 +249,6 @@ def _likely_word(name: str, words: Iterable[str]) -> str | None:
     return next(iter(difflib.get_close_matches(_plain_text(name)[:60], list(words), n=1)), None)
 
 
-def _listed(names: list[str]) -> str:
+def _names_text(names: list[str]) -> str:
     quoted_names = [repr(name) for name in names[:6]]
     return ", ".join(quoted_names) + (" ..." if len(names) > 6 else "") if quoted_names else "no columns"

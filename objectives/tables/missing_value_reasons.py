@@ -80,7 +80,7 @@ def _undetermined_by_friction(quantity: Quantity, mechanism: Mechanism, designs:
 
     These designs have the worst possible value, infinite or zero, but another value without friction.
     """
-    parts = [_undetermined_by_friction(part, mechanism, designs) for part in quantity.made_of]
+    parts = [_undetermined_by_friction(part, mechanism, designs) for part in quantity.component_quantities]
     undetermined = np.any(parts, axis=0) if parts else np.zeros(len(designs), np.bool_)
     values = quantity.evaluate(mechanism, designs).values
     worst = ~np.isfinite(values) | ((values == 0.0) & (quantity.name != SELF_LOCKING_MARGIN.name))
@@ -98,8 +98,8 @@ def _undetermined_by_friction(quantity: Quantity, mechanism: Mechanism, designs:
 def _missing_value_reason(quantity: Quantity, value: float, mechanism: Mechanism, design: Array) -> str:
     """Return the reason why a moving design (1, 3) has no finite value; empty if infinity is its value."""
     if np.isnan(value):
-        return quantity.blank
-    finite = all(np.isfinite(part.evaluate(mechanism, design).values[0]) for part in quantity.made_of)
+        return quantity.no_value_reason
+    finite = all(np.isfinite(part.evaluate(mechanism, design).values[0]) for part in quantity.component_quantities)
     if finite and isinstance(quantity, RobustQuantity):
         return _TOLERANCES
     return _FORMULA if finite and isinstance(quantity, FormulaQuantity) else ""

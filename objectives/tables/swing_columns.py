@@ -18,22 +18,22 @@ from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing
 from ...model.turning_cylinder.machine import lever_linkage
-from ..formula.quantity import leaves_of
+from ..formula.quantity import basic_quantities
 from ..lever_quantity import LeverQuantity
 from ..quantity import Array, Quantity
 from ..registry import FACTS, QUANTITIES
 from ..swing_quantity import SwingQuantity
-from .variable_columns import varying_column
+from .variable_columns import column_of_variable
 
 
-def swing_facts() -> tuple[SwingQuantity, ...]:
+def swing_quantity_facts() -> tuple[SwingQuantity, ...]:
     """Return the facts of all quantities that a swing may have."""
     return tuple(fact for fact in FACTS.values() if isinstance(fact, SwingQuantity))
 
 
 def swing_quantities(swing: Swing) -> tuple[SwingQuantity, ...]:
     """Return the quantities that are defined for a swing."""
-    return tuple(replace(fact, swing=swing) for fact in swing_facts() if fact.unfit(swing) is None)
+    return tuple(replace(fact, swing=swing) for fact in swing_quantity_facts() if fact.unfit(swing) is None)
 
 
 def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
@@ -59,7 +59,7 @@ def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
     return fact.unfit(swing)
 
 
-def require_in_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
+def require_quantities_of_motion(names: Iterable[str], custom: Iterable[Quantity], swing: Swing | None) -> None:
     """Raise `InputError` if a motion does not have a named swing quantity. custom: quantities of the problem."""
     custom_names = {item.name for item in custom}
     for name in names:
@@ -123,7 +123,7 @@ def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
     return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
 
 
-def require_loads(mechanism: Mechanism) -> None:
+def require_loads_for_swing(mechanism: Mechanism) -> None:
     """Raise `InputError` for features that need a full turn: loads from a dead centre, cylinders, a speed profile."""
     of_turns = {
         "cylinders": mechanism.arrangement,
@@ -153,11 +153,11 @@ def require_loads(mechanism: Mechanism) -> None:
             )
 
 
-def require_of_swing(key: str, quantity: Quantity, swing: Swing) -> None:
+def require_swing_quantity(key: str, quantity: Quantity, swing: Swing) -> None:
     """Raise `InputError` for a quantity that needs a slider-crank whose crank rotates fully."""
-    for leaf in leaves_of([quantity]):
+    for leaf in basic_quantities([quantity]):
         if leaf.turning:
-            facts = (fact for fact in swing_facts() if isinstance(fact, LeverQuantity) == swing.of_lever)
+            facts = (fact for fact in swing_quantity_facts() if isinstance(fact, LeverQuantity) == swing.of_lever)
             names = ", ".join(fact.name for fact in facts if not swing.of_full_turn or fact.unfit(swing) is None)
             needed = 'a crank that rotates fully; got [motion] kind = "swing"; use a quantity of a swing'
             if swing.of_full_turn:
@@ -168,7 +168,7 @@ def require_of_swing(key: str, quantity: Quantity, swing: Swing) -> None:
 def quantities_for_swing(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:
     """Return the quantities of designs with a swing, in display order. custom: quantities of the problem."""
     every: Iterable[Quantity] = (*QUANTITIES.values(), *custom)
-    quantities = [item for item in every if not any(leaf.turning for leaf in leaves_of([item]))]
+    quantities = [item for item in every if not any(leaf.turning for leaf in basic_quantities([item]))]
     return tuple(sorted(quantities, key=lambda item: item.place))
 
 
@@ -180,7 +180,7 @@ def swing_columns(mechanism: Mechanism, dimensions: Array, custom: Sequence[Quan
         name: 1e3 * dimensions[:, place] for place, name in enumerate(("crank_mm", "rod_mm", "offset_mm"))
     }
     for place, item in enumerate(mechanism.varying):
-        key, unit = varying_column(item)
+        key, unit = column_of_variable(item)
         columns[key] = unit.factor * dimensions[:, 3 + place]
     for quantity in quantities_for_swing(custom):
         if quantity.undefined_because([mechanism]):

@@ -74,7 +74,7 @@ def motion_and_drive_curves(swing: Swing) -> tuple[SwingCurve, ...]:
         SwingCurve("power", "power", "power of the drive", POWER, timed=True),
         SwingCurve("load", "load", "load on the slider", FORCE),
         SwingCurve("transmission_angle", "driven_angle", angle_title, ANGLE),
-        SwingCurve(f"{driven_side(swing)}_position_error", "driven_error", error, error_kind(swing)),
+        SwingCurve(f"{driven_side_name(swing)}_position_error", "driven_error", error, driven_error_kind(swing)),
     )
     return tuple(curve for curve in every if not curve.timed or swing.duration is not None)
 
@@ -105,12 +105,12 @@ def drive_kind(swing: Swing) -> Kind:
     return TORQUE if swing.driver == "crank" else FORCE
 
 
-def error_kind(swing: Swing) -> Kind:
+def driven_error_kind(swing: Swing) -> Kind:
     """Return the kind of the error at the driven side: in slider position or in crank angle."""
     return LENGTH if swing.driver == "crank" else ANGLE
 
 
-def driven_side(swing: Swing) -> str:
+def driven_side_name(swing: Swing) -> str:
     """Return the driven side."""
     return "slider" if swing.driver == "crank" else "crank"
 

@@ -11,7 +11,7 @@ from ...model.machine.varying_numbers import Varying
 from ..kinds import KINDS, LENGTH, DisplayUnit
 
 
-def varying_column(varying: Varying) -> tuple[str, DisplayUnit]:
+def column_of_variable(varying: Varying) -> tuple[str, DisplayUnit]:
     """Return the key of a variable in tables and JSON, and its unit there.
 
     The key is the name without a leading "mechanism", with underscores, and the unit: "mechanism.slider.mass" becomes
@@ -31,4 +31,4 @@ def number_in_words(name: str) -> str:
 def columns_of_numbers(varying: Sequence[Varying]) -> dict[str, tuple[str, DisplayUnit]]:
     """Return key and unit for each number of a design by name: crank, rod, offset, and extra variables."""
     lengths = {name: (f"{name}{LENGTH.metric.suffix}", LENGTH.metric) for name in DIMENSIONS}
-    return lengths | {item.name: varying_column(item) for item in varying}
+    return lengths | {item.name: column_of_variable(item) for item in varying}

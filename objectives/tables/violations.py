@@ -26,7 +26,7 @@ def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None
         values = np.atleast_1d(np.asarray(values_of(name) if quantity.allowed_by else None, dtype=np.float64))
         if np.isnan(values).all():
             continue
-        allowable = quantity.allowable(mechanism)
+        allowable = quantity.allowable_value(mechanism)
         excess = values - allowable if quantity.better == "low" else allowable - values
         excess = np.where(excess > _ROUNDING * abs(allowable), excess, 0.0)  # zero also without a value
         if excess.any():

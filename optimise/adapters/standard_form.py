@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...objectives.quantity import Array
 from ...objectives.tables.design_input import designs_as_array
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
-from ..problem.constraint_violation import FEASIBLE, constraints_of, minimised
+from ..problem.constraint_violation import FEASIBLE, constraints_with_floors, minimised_values
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective
 from ..search.elimination import EliminationBranch, elimination_branches
@@ -223,7 +223,7 @@ def standard_form(problem: Problem, *, eliminate: bool = False, elimination_bran
             f"elimination_branch needs eliminated equalities; got elimination_branch={elimination_branch!r} with "
             "eliminate=False; set eliminate=True, or leave out elimination_branch"
         )
-    constraints = constraints_of(problem)
+    constraints = constraints_with_floors(problem)
     branch = _requested_branch(problem, elimination_branch) if eliminate else None
     if branch is None:
         names, ranges = tuple(problem.ranges), problem.ranges.values()
@@ -335,7 +335,7 @@ def _full_rotation_rows(x: Array, constraints: tuple[Constraint, ...], width: in
 
 
 def _as_minimised(objective: Objective, value: Array, slope: Array) -> tuple[Array, Array]:
-    objectives = minimised(objective, value)
+    objectives = minimised_values(objective, value)
     if objective.sense == "maximise":
         slope = -slope
     elif objective.target is not None:

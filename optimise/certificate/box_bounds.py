@@ -30,7 +30,7 @@ from .enclosed_bar_demands import DemandCurve, demand_curves
 from .enclosed_cycle_curve import CycleCurve, machines_with_separate_peaks
 from .enclosed_machine import Numbers, parameter_lookup, parameters_over_boxes
 from .enclosed_swing import SwingBoxes, SwingCurve, swing_form
-from .enclosure import Enclosure, coordinate, join_parts
+from .enclosure import Enclosure, free_unknown, join_parts
 
 Curve = CycleCurve | SwingCurve | DemandCurve
 _ROUNDED = 1e-9  # relative error of a closed form near locking is less than this
@@ -120,7 +120,7 @@ class Boxes:
                         side = "lower" if curves_of_quantity[0].least else "upper"
                         held = Constraint(quantity=name, **{side: getattr(constraint, side)})
                         limits.add_curve_constraint(held, curves[name])
-            low, high = limits.contracted()
+            low, high = limits.contracted_ranges()
             corner, smear = np.zeros((n, len(self.objectives))), 0.0 * lower
             for column, objective in enumerate(self.objectives):
                 name = objective.quantity
@@ -161,7 +161,7 @@ class Boxes:
                 branch.lower[column] * (1.0 - u[:, column]) + branch.upper[column] * u[:, column]
                 for u in (lower, upper)
             ]
-            unknowns[name] = coordinate(first, last, column, k)
+            unknowns[name] = free_unknown(first, last, column, k)
         for step in branch.steps:
             sources = [unknowns[name] for name in step.sources]
             computed = step.formula(*sources) if sources else everywhere(float(step.formula()))
@@ -171,7 +171,7 @@ class Boxes:
             limits.require_nonpositive((bounds.lower - computed) * (1.0 / scale))
             turning = self.swing is None
             ends = _ends_of_computed_dimension(step.target, unknowns if turning else {}, bounds, self.lean, n)
-            unknowns[step.target] = computed.confined(*ends)
+            unknowns[step.target] = computed.confine_to(*ends)
         unknowns["offset"] = unknowns["offset"] * branch.sign
         return parameters_over_boxes(self.mechanism, [unknowns[name] for name in branch.names])
 

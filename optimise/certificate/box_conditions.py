@@ -60,7 +60,7 @@ class Limits:
         else:
             self.require_nonpositive((constraint.lower - value) * (1.0 / (abs(constraint.lower) or 1.0)))
 
-    def contracted(self) -> tuple[Array, Array]:
+    def contracted_ranges(self) -> tuple[Array, Array]:
         """Return low and high (k, n), the part of [-1, 1]^k that holds all feasible designs."""
         low, high = -np.ones((self.k, len(self.alive))), np.ones((self.k, len(self.alive)))
         for centre, slopes, rest in self.rows:

@@ -100,7 +100,7 @@ class Tree(Table):
             return rows
         return rows[np.argpartition(-self.excess[rows], count)[:count]]
 
-    def halved(self, rows: IntArray) -> list[tuple[int, Array, Array]]:
+    def split_boxes(self, rows: IntArray) -> list[tuple[int, Array, Array]]:
         """Remove boxes and return their halves by branch: index, lower, upper (n, k)."""
         halves = []
         for index, boxes in enumerate(self.branches):

@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 
 from ...model.arrays import Array, IntArray, sorted_unique
-from ..problem.constraint_violation import FEASIBLE, minimised, restated_constraints
+from ..problem.constraint_violation import FEASIBLE, minimised_values, restated_constraints
 from ..problem.problem import Problem
-from ..search.assemble_front import columns_of, span_of
+from ..search.assemble_front import columns_of_designs, objective_ranges
 from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
@@ -21,7 +21,7 @@ from .boundable_quantities import ignored_sides, is_usable
 from .box_bounds import Boxes
 from .branch_and_bound import Tree, bounding_threads
 from .certificate import Certificate, Status, Step, message_of
-from .covering_designs import choose_covering, excess, greedy_cover, hypervolume_gap_bound
+from .covering_designs import choose_covering, excess_over_designs, greedy_cover, hypervolume_gap_bound
 
 _BATCH = 4096  # boxes halved per batch
 _MOST = 4_000_000  # open boxes; memory for these is allocated
@@ -34,7 +34,7 @@ _MOST_PAIRS = 50_000_000  # pairs of added design and corner to examine for a sm
 def _exact_objectives(problem: Problem, dimensions: Array) -> Array:
     """Return the minimised objectives (n, m) for designs of one variant, exact over continuous crank angle."""
     columns = [
-        minimised(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
+        minimised_values(wish, problem.quantity(wish.quantity).evaluate(problem.mechanism, dimensions).values)
         for wish in problem.objectives
     ]
     return np.stack(columns, axis=1)
@@ -60,7 +60,7 @@ class Search:
         for variant in sorted_unique(variants).tolist():
             rows = variants == variant
             values[rows] = _exact_objectives(problem.part(variant), dimensions[rows])
-        self.span, self.ideal = span_of(problem, values), values.min(axis=0)
+        self.span, self.ideal = objective_ranges(problem, values), values.min(axis=0)
         self.front = self._scaled(values)
         self.designs = self.front
         self.evaluators = [Evaluator(problem, branch) for branch in elimination_branches(problem)]
@@ -88,7 +88,7 @@ class Search:
                 rows = self.tree.rows_of_largest_excess(_BATCH)
                 if not len(rows) or self._should_stop():
                     break
-                for index, lower, upper in self.tree.halved(self._close_covered_boxes(rows)):
+                for index, lower, upper in self.tree.split_boxes(self._close_covered_boxes(rows)):
                     self._process_boxes(index, lower, upper, threads)
         if len(self.tree):  # check all designs against all open boxes
             self._close_covered_boxes(np.arange(len(self.tree)))
@@ -101,7 +101,7 @@ class Search:
     def _close_covered_boxes(self, rows: IntArray) -> IntArray:
         """Close the boxes that designs added since their opening cover; return the others."""
         tree = self.tree
-        tree.excess[rows] = excess(
+        tree.excess[rows] = excess_over_designs(
             tree.corner[rows],
             self.designs,
             earlier_excess=tree.excess[rows],
@@ -121,7 +121,7 @@ class Search:
         """Bound boxes of a branch, close those that can be closed, and open the rest."""
         boxes = self.tree.bound(index, lower, upper, threads)  # type: ignore[arg-type]
         corner = self._scaled(boxes.corner)
-        gaps = excess(corner, self.designs, enough=self.epsilon)
+        gaps = excess_over_designs(corner, self.designs, enough=self.epsilon)
         wanting = np.flatnonzero(gaps > self.epsilon)
         if len(wanting):
             gaps[wanting] = self._add_covering_designs(index, boxes.trial[wanting], corner[wanting], gaps[wanting])
@@ -137,7 +137,7 @@ class Search:
         if not len(good):
             return gaps
         scaled = self._scaled(values[good])
-        lead = excess(scaled, self.front)
+        lead = excess_over_designs(scaled, self.front)
         farthest = int(np.argmax(lead))
         if lead[farthest] > self.gap:
             self._remember_farthest_design(index, dimensions[good[farthest]])
@@ -148,14 +148,14 @@ class Search:
         additions = Candidates(np.full(len(rows), index), trial[rows], fresh, np.ones(len(rows), np.bool_))
         self.added = self.added.join(additions)
         self.designs = np.concatenate([self.designs, fresh])
-        return excess(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
+        return excess_over_designs(corner, fresh, earlier_excess=gaps, enough=self.epsilon)
 
     def _scaled_exact_objectives(self, index: int, dimensions: Array) -> Array:
         return self._scaled(_exact_objectives(self.evaluators[index].problem, dimensions))
 
     def _remember_farthest_design(self, index: int, design: Array) -> None:
         """Store the design of a branch that lies farthest beyond the front so far."""
-        lead = float(excess(self._scaled_exact_objectives(index, design[None]), self.front)[0])
+        lead = float(excess_over_designs(self._scaled_exact_objectives(index, design[None]), self.front)[0])
         if lead > self.gap:
             self.gap, self.hole = lead, design
 
@@ -163,7 +163,7 @@ class Search:
         if not len(corner):
             return
         self.made_periodic = max(self.made_periodic, float(gaps.max()))
-        alone = excess(corner, self.front, enough=self.epsilon)
+        alone = excess_over_designs(corner, self.front, enough=self.epsilon)
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
 
@@ -188,12 +188,12 @@ class Search:
         self._drop_redundant_designs(needy)
         self.designs = np.concatenate([self.front, self.added.values])
         dimensions = self.added.dimensions(self.evaluators)
-        leads = excess(self.added.values, self.front)
+        leads = excess_over_designs(self.added.values, self.front)
         if len(leads) and leads.max() > self.gap:
             farthest = int(np.argmax(leads))
             self._remember_farthest_design(int(self.added.branch[farthest]), dimensions[farthest])
         # If an added design covers a point, the front covers it to within the sum of both excesses.
-        least = max(self.closed_by_front, float(excess(tree.corner, self.front).max(initial=0.0)))
+        least = max(self.closed_by_front, float(excess_over_designs(tree.corner, self.front).max(initial=0.0)))
         delivered = max(min(least, proven + float(leads.max(initial=0.0))), self.gap)
         status: Status = "cancelled" if self.stopped else "out of budget"
         if proven <= self.epsilon:
@@ -212,7 +212,7 @@ class Search:
             span=self.span,
             added=dimensions,
             added_values=self.added.values * self.span + self.ideal,
-            table=self._table(dimensions) if len(dimensions) else pd.DataFrame(),
+            table=self._table_of_designs(dimensions) if len(dimensions) else pd.DataFrame(),
             boxes=tree.bounded,
             open=len(tree),
             remaining=tree.volume(),
@@ -222,9 +222,9 @@ class Search:
             message=message_of(status, self.epsilon, proven, delivered, self.gap, len(self.front), len(dimensions)),
         )
 
-    def _table(self, dimensions: Array) -> pd.DataFrame:
+    def _table_of_designs(self, dimensions: Array) -> pd.DataFrame:
         variants = np.array([evaluator.branch.variant for evaluator in self.evaluators], dtype=np.int64)
-        return pd.DataFrame(columns_of(self.problem, variants[self.added.branch], dimensions))
+        return pd.DataFrame(columns_of_designs(self.problem, variants[self.added.branch], dimensions))
 
     def _notes(self) -> tuple[str, ...]:
         notes = []

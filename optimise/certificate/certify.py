@@ -23,7 +23,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
-from ..discrete.combinations import Axes, with_values
+from ..discrete.combinations import Axes, problem_with_combinations
 from ..problem.problem import Problem
 from .certificate import Certificate, Step
 from .certificate_search import Search
@@ -80,4 +80,4 @@ def _with_variant_per_combination(problem: Problem, variants: IntArray) -> tuple
             "job with ranges"
         )
     rows = [(index, row) for index, axis in enumerate(axes) for row in axis.designs(0, axis.count)]
-    return with_values(problem, rows), np.cumsum([0, *counts[:-1]])[variants]
+    return problem_with_combinations(problem, rows), np.cumsum([0, *counts[:-1]])[variants]

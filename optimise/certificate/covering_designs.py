@@ -34,7 +34,7 @@ def _excess_of_points(points: Table, designs: Table, first: Integers, enough: fl
         out[i] = best
 
 
-def excess(
+def excess_over_designs(
     points: Array,
     designs: Array,
     *,

@@ -12,7 +12,7 @@ from ...model.kinematics.geometry import inner_crank_angle, outer_crank_angle
 from ...model.kinematics.position import motion
 from ...model.machine.design import Design
 from ...model.machine.two_turn_machine import TURN
-from .enclosure import Enclosure, interval, select
+from .enclosure import Enclosure, enclosure_of_ends, select_by_mask
 
 _ON_END = 1e-7  # fraction of the stroke; a point closer than this to a dead centre is on it
 _AT_REST = 1e-6  # relative to the crank: |x'| below it means a dead centre
@@ -64,16 +64,16 @@ def crank_at_stroke_fraction(
     x = (d.inner + (d.outer - d.inner) * np.clip(share, _ON_END, 1.0 - _ON_END)) * d.branch
     q, h = crank_pin_coefficients(d, x, side)
     on_inner, on_outer = share < _ON_END, share > 1.0 - _ON_END
-    q = select(on_inner, -d.r / (d.l - d.r), select(on_outer, d.r / (d.l + d.r), q))
-    h = select(on_inner | on_outer, 0.0 * d.r, h)
-    x = select(on_inner, d.inner * d.branch, select(on_outer, d.outer * d.branch, x))
+    q = select_by_mask(on_inner, -d.r / (d.l - d.r), select_by_mask(on_outer, d.r / (d.l + d.r), q))
+    h = select_by_mask(on_inner | on_outer, 0.0 * d.r, h)
+    x = select_by_mask(on_inner, d.inner * d.branch, select_by_mask(on_outer, d.outer * d.branch, x))
     return (q * d.e + h * x) / d.r, (q * x - h * d.e) / d.r
 
 
 def dead_centre_angle(d: Design, far: Mask) -> Enclosure:
     """Return the crank angle of the outer dead centre where `far`, otherwise of the inner one, rad."""
     outer, inner = outer_crank_angle(d.r, d.l, d.e), inner_crank_angle(d.r, d.l, d.e)
-    angle = select(far, outer, inner)
+    angle = select_by_mask(far, outer, inner)
     return angle if d.branch > 0.0 else math.pi - angle
 
 
@@ -85,16 +85,16 @@ def track_dead_centre(
     at = motion(sine, cosine, r, l, e, d.branch)
     on_dead_centre = np.abs(at.x_1) < _AT_REST * r
     far = at.x * d.branch > np.sqrt(l * l - e * e)  # sqrt(l^2 - e^2) lies between the dead centres
-    q = select(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
-    x = select(far, d.outer * d.branch, d.inner * d.branch)
+    q = select_by_mask(far, d.r / (d.l + d.r), -d.r / (d.l - d.r))
+    x = select_by_mask(far, d.outer * d.branch, d.inner * d.branch)
     k = len(q.slopes)
     if not on_dead_centre.any():
-        return on_dead_centre, interval(sine, sine, k), interval(cosine, cosine, k), angle
+        return on_dead_centre, enclosure_of_ends(sine, sine, k), enclosure_of_ends(cosine, cosine, k), angle
     followed = dead_centre_angle(d, far)
     followed = followed + TURN * np.round((angle - followed.centre) / TURN)
     return (
         on_dead_centre,
-        select(on_dead_centre, q * d.e / d.r, interval(sine, sine, k)),
-        select(on_dead_centre, q * x / d.r, interval(cosine, cosine, k)),
-        select(on_dead_centre, followed, interval(angle, angle, k)),
+        select_by_mask(on_dead_centre, q * d.e / d.r, enclosure_of_ends(sine, sine, k)),
+        select_by_mask(on_dead_centre, q * x / d.r, enclosure_of_ends(cosine, cosine, k)),
+        select_by_mask(on_dead_centre, followed, enclosure_of_ends(angle, angle, k)),
     )

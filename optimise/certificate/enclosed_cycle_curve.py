@@ -37,7 +37,7 @@ from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
 from .enclosed_crank_angles import crank_at_stroke_fraction, dead_centre_angle, track_dead_centre
 from .enclosed_machine import BoxMachine, Numbers
-from .enclosure import Enclosure, interval, join_parts, select
+from .enclosure import Enclosure, enclosure_of_ends, join_parts, select_by_mask
 
 _SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad, distances from a step
 _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
@@ -170,7 +170,8 @@ class CycleCurve:
         if jump is not None and jump.any():
             # The peak is the greater one-sided limit of the curve, one for each stroke.
             sides = [
-                select(jump, interval(side, side, len(outward.slopes)), outward) for side in (jump + 0.0, -1.0 * jump)
+                select_by_mask(jump, enclosure_of_ends(side, side, len(outward.slopes)), outward)
+                for side in (jump + 0.0, -1.0 * jump)
             ]
             return [self._cylinder_components_on_stroke(member, designs, d, place, side, read) for side in sides]
         x, y = self._cylinder_components_on_stroke(member, designs, d, place, outward, read)
@@ -208,7 +209,7 @@ class CycleCurve:
             if self.turns == 1 or len(vectors) == 1:
                 return vectors[0]
             first, known = self._turn_masks(d, local)
-            x, y = (select(first, *pair) for pair in zip(*vectors, strict=True))
+            x, y = (select_by_mask(first, *pair) for pair in zip(*vectors, strict=True))
             return Enclosure(x.centre, x.slopes, np.where(known, x.rest, np.nan), x.empty), y
         rate = 0.0
         if kind is Signal.SLIDER_JERK and self.mechanism.speed_profile is not None:
@@ -251,7 +252,7 @@ class CycleCurve:
         turned = (
             counted * (way / TURN)
             if isinstance(counted, Enclosure)
-            else interval(counted * (way / TURN), counted * (way / TURN), 0)
+            else enclosure_of_ends(counted * (way / TURN), counted * (way / TURN), 0)
         )
         low, high = turned.ends()
         with np.errstate(invalid="ignore"):

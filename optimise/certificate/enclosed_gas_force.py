@@ -9,7 +9,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.machine.loads.cylinder import Cylinder
 from ...model.machine.loads.engine import LimitedPressure
-from .enclosure import UNIT, Enclosure, interval, select
+from .enclosure import UNIT, Enclosure, enclosure_of_ends, select_by_mask
 
 
 def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Enclosure) -> Enclosure:
@@ -21,10 +21,10 @@ def gas_force(load: Cylinder, share: Enclosure, stroke: Enclosure, outward: Encl
     low, high = outward.ends()
     sides = [_pressure(load, share, stroke, expanding=(sign > 0.0) == way) for way in (True, False)]
     ends = [side.ends() for side in sides]
-    either_stroke = interval(
+    either_stroke = enclosure_of_ends(
         np.minimum(ends[0][0], ends[1][0]), np.maximum(ends[0][1], ends[1][1]), len(outward.slopes)
     )
-    pressure = select(low > 0.0, sides[0], select(high < 0.0, sides[1], either_stroke))
+    pressure = select_by_mask(low > 0.0, sides[0], select_by_mask(high < 0.0, sides[1], either_stroke))
     return (pressure - load.back_pressure) * (sign * load.area)
 
 
@@ -36,7 +36,9 @@ def _pressure(load: Cylinder, share: Enclosure, stroke: Enclosure, *, expanding:
         # It rises (expansion) or falls (compression) with the clearance, so the corners bound it.
         least, greatest = (load.clearance + load.clearance_volume / (load.area * end) for end in stroke.ends()[::-1])
         near, far = (greatest, least) if expanding else (least, greatest)
-        return interval(_pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k)
+        return enclosure_of_ends(
+            _pressure_at(load, last, far, expanding), _pressure_at(load, first, near, expanding), k
+        )
     at_first, at_last = (_pressure_at(load, end, load.clearance, expanding) for end in (first, last))
     wide = last > first
     slope = np.where(wide, (at_last - at_first) / np.where(wide, last - first, 1.0), 0.0)

@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Loads
 from ...model.machine.raw_numbers_of_designs import nominal_raw_number, raw_numbers_by_slot
 from .enclosed_gas_force import gas_force
-from .enclosure import UNIT, Enclosure, interval, select
+from .enclosure import UNIT, Enclosure, enclosure_of_ends, select_by_mask
 
 _TURN = 2.0 * np.pi
 _derive = cast(Any, derive_design)
@@ -138,8 +138,8 @@ def select_by_stroke(outward: Enclosure, out: Any, back: Any) -> Enclosure:
     if not isinstance(out, Enclosure) and not isinstance(back, Enclosure):
         least = np.where(low > 0.0, out, np.where(high < 0.0, back, min(out, back)))
         greatest = np.where(low > 0.0, out, np.where(high < 0.0, back, max(out, back)))
-        return interval(least, greatest, k)
+        return enclosure_of_ends(least, greatest, k)
     sides = [0.0 * outward + side for side in (out, back)]
     (least, greatest), (back_least, back_greatest) = (side.ends() for side in sides)
-    either = interval(np.minimum(least, back_least), np.maximum(greatest, back_greatest), k)
-    return select(low > 0.0, sides[0], select(high < 0.0, sides[1], either))
+    either = enclosure_of_ends(np.minimum(least, back_least), np.maximum(greatest, back_greatest), k)
+    return select_by_mask(low > 0.0, sides[0], select_by_mask(high < 0.0, sides[1], either))

@@ -30,7 +30,7 @@ from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
 from .enclosed_crank_angles import angle_near, crank_sine_and_cosine
 from .enclosed_machine import BoxMachine, Numbers
-from .enclosure import Enclosure, constant, join_parts, sign_of
+from .enclosure import Enclosure, constant_like, join_parts, sign_of
 
 _SIDE_STEP = 1e-9  # fraction of the time; moves to one side of a corner in the law, or of a step
 _FARTHEST = 0.25
@@ -78,10 +78,10 @@ class SwingBoxes:
     def ends(self, numbers: Numbers, d: Design) -> _Ends:
         """Return both ends of the swing."""
         swing = self.swing
-        first = numbers[START[swing.stated_for]] if self.varies else constant(swing.start, d.r)
-        last = first + (swing.end - swing.start) if swing.follows else constant(swing.end, d.r)
+        first = numbers[START[swing.stated_for]] if self.varies else constant_like(swing.start, d.r)
+        last = first + (swing.end - swing.start) if swing.follows else constant_like(swing.end, d.r)
         if swing.stated_for == "slider":
-            side = constant(1.0 if swing.side == "left" else -1.0, d.r).centre
+            side = constant_like(1.0 if swing.side == "left" else -1.0, d.r).centre
             first_angle, last_angle = (
                 angle_near(d, x, *crank_sine_and_cosine(d, x, side), side) for x in (first, last)
             )
@@ -130,7 +130,7 @@ class SwingBoxes:
         outward = m.x_1 * (driver_way * d.branch)
         turning = driver_way
         if self.slider:
-            outward = constant(driver_way * d.branch, place)
+            outward = constant_like(driver_way * d.branch, place)
             turning = driver_way * sign_of(m.x_1) if self.needs_angle else driver_way
         return _State(sine, cosine, angle, m, d, block, outward, driver_way, turning)
 

@@ -73,12 +73,12 @@ class Enclosure:
         is_finite = np.isfinite(least) & np.isfinite(greatest)
         return np.where(is_finite, least, -np.inf), np.where(is_finite, greatest, np.inf)
 
-    def confined(self, low: Array, high: Array) -> Enclosure:
+    def confine_to(self, low: Array, high: Array) -> Enclosure:
         """Return the number confined to low..high (n, ...): where it extends beyond them, only that interval counts."""
         clear = self.radius <= high - low
         if clear.all():
             return self
-        confined = select(clear, self, interval(low, np.maximum(low, high), len(self.slopes)))
+        confined = select_by_mask(clear, self, enclosure_of_ends(low, np.maximum(low, high), len(self.slopes)))
         confined.empty = self.empty
         return confined
 
@@ -195,7 +195,7 @@ class Enclosure:
             return Enclosure(centre, slopes, rest, self.empty)
         # Where defined, the result lies between zero and the root of the greatest value.
         half = np.where(np.isfinite(greatest), 0.5 * np.sqrt(np.maximum(greatest, 0.0)) * (1.0 + INFLATION), np.nan)
-        root = select(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
+        root = select_by_mask(clear, Enclosure(centre, slopes, rest), Enclosure(half, 0.0, half))
         root.empty = _merge_empty(self.empty, greatest < -INFLATION * np.abs(self.centre))
         return root
 
@@ -214,7 +214,7 @@ class Enclosure:
         high = np.arcsin(np.clip(self.centre + self.radius, -1.0, 1.0))
         outside = np.abs(self.centre) - self.radius > 1.0 + INFLATION
         wide = Enclosure(0.5 * (low + high), 0.0, 0.5 * (high - low) + 8.0 * UNIT)
-        arcsine = select(clear, Enclosure(centre, slopes, rest), wide)
+        arcsine = select_by_mask(clear, Enclosure(centre, slopes, rest), wide)
         arcsine.empty = _merge_empty(self.empty, outside)
         return arcsine
 
@@ -227,7 +227,7 @@ class Enclosure:
         rest = self.rest * np.abs(cosine) + 0.5 * self.radius**2 * (1.0 + INFLATION)
         rest = rest + 8.0 * UNIT * (1.0 + self.greatest_magnitude)
         one = np.ones_like(sine)
-        return Enclosure(sine, self.slopes * cosine, rest, self.empty).confined(-one, one)
+        return Enclosure(sine, self.slopes * cosine, rest, self.empty).confine_to(-one, one)
 
     def cos(self) -> Enclosure:
         """Return the cosine, see `sin`."""
@@ -253,14 +253,14 @@ _FUNCTIONS: dict[Any, Callable[..., Any]] = {
 }
 
 
-def interval(low: Any, high: Any, k: int) -> Enclosure:
+def enclosure_of_ends(low: Any, high: Any, k: int) -> Enclosure:
     """Return a number known only by its ends."""
     low, high = np.broadcast_arrays(np.asarray(low, dtype=np.float64), np.asarray(high, dtype=np.float64))
     rest = 0.5 * (high - low) + UNIT * (np.abs(low) + np.abs(high))
     return Enclosure(0.5 * (low + high), np.zeros((k, *low.shape)), rest)
 
 
-def constant(value: Any, like: Enclosure) -> Enclosure:
+def constant_like(value: Any, like: Enclosure) -> Enclosure:
     """Return a number that is the same for all designs in a box, with the shape of another one."""
     centre = np.broadcast_to(
         np.asarray(value, dtype=np.float64), np.broadcast_shapes(np.shape(value), like.centre.shape)
@@ -285,7 +285,7 @@ def join_parts(left: Enclosure, right: Enclosure) -> Enclosure:
     )
 
 
-def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
+def free_unknown(low: Array, high: Array, column: int, k: int) -> Enclosure:
     """Return the free unknown that varies from low to high (n,) along axis `column` of k, shape (n, 1)."""
     slopes = np.zeros((k, len(low), 1))
     slopes[column, :, 0] = 0.5 * (high - low)
@@ -293,7 +293,7 @@ def coordinate(low: Array, high: Array, column: int, k: int) -> Enclosure:
     return Enclosure(0.5 * (low + high)[:, None], slopes, (UNIT * size)[:, None])
 
 
-def select(mask: Mask, chosen: Enclosure, alternative: Enclosure) -> Enclosure:
+def select_by_mask(mask: Mask, chosen: Enclosure, alternative: Enclosure) -> Enclosure:
     """Return one number where the mask holds, the other elsewhere."""
     empty = None
     if chosen.empty is not None or alternative.empty is not None:

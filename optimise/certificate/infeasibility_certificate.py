@@ -51,7 +51,7 @@ def prove_infeasible(problem: Problem, *, seconds: float = SECONDS, poll: Callab
             rows = tree.rows_of_largest_excess(_BATCH)
             if late or not len(rows):
                 return False
-            fresh = tree.halved(rows)
+            fresh = tree.split_boxes(rows)
     return not len(tree)
 
 

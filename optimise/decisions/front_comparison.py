@@ -16,7 +16,7 @@ from ...model.arrays import Array, IntArray, Mask
 from ...model.errors import InputError
 from ..front.constant_numbers import column_ranges
 from ..front.dominance import nondominated
-from ..front.hypervolume import hypervolume, scaling
+from ..front.hypervolume import hypervolume, ideal_and_range
 
 TOLERANCE = 1e-6
 """Fraction of an objective's range within which values count as equal, about the accuracy of the designs."""
@@ -49,7 +49,7 @@ class Comparison:
     tolerance: float
 
 
-def compare(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Comparison:
+def compare_fronts(fronts: Sequence[Array], *, tolerance: float = TOLERANCE) -> Comparison:
     """Compare fronts (n_k, m) by their minimised objective values.
 
     Coverage C(A, B) after E. Zitzler and L. Thiele, "Multiobjective evolutionary algorithms: a comparative case study
@@ -101,7 +101,7 @@ def _ideal_and_range(everything: Array) -> tuple[Array, Array]:
     """Return ideal and range of the union front; where it has no range, use the range of all designs."""
     best = everything[nondominated(everything)]
     best_range = column_ranges(best)
-    return best.min(axis=0), np.where(best_range > 0.0, best_range, scaling(everything)[1])
+    return best.min(axis=0), np.where(best_range > 0.0, best_range, ideal_and_range(everything)[1])
 
 
 def _count_undominated(front: Array, fronts: Sequence[Array], tolerance: float) -> int:

@@ -23,21 +23,21 @@ from ...model.input_warning import warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage_values import implausible_length_text
 from ..front.dominance import dominating
-from ..front.front import ParetoFront, lower_and_upper, require_front
-from ..front.hypervolume import scaling
+from ..front.front import ParetoFront, bounds_of_name, require_front
+from ..front.hypervolume import ideal_and_range
 from ..front.stationarity import STATIONARY
-from ..job.mistake_messages import key_of
+from ..job.mistake_messages import key_of_location
 from ..methods.registry import require_gradients
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem, Settings
 from ..problem.requirements import Constraint, Range
-from ..search.assemble_front import assemble, empty_front
+from ..search.assemble_front import assemble_front, empty_front
 from ..search.candidates import FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded_polish import polish_on_engine
 from ..search.sample_and_zoom import Archive, Run, enumerate_branches, explore, searched_evaluators
-from ..search.sampling import generator
+from ..search.sampling import random_generator
 from ..solve import solve
 
 Ends = tuple[float | None, float | None]
@@ -50,7 +50,7 @@ _ROUNDS = 30
 _BEATEN = 1e-6  # relative to the objectives' range: a smaller domination is rounding
 
 
-def distance(values: Array, reference: Array, span: Array) -> Array:
+def distance_to_design(values: Array, reference: Array, span: Array) -> Array:
     """Return the distance (n,) of designs (n, m) from a given one (m,), with objectives divided by `span` (m,)."""
     return np.asarray(np.linalg.norm((values - reference) / span, axis=1))
 
@@ -84,13 +84,13 @@ def nearest_optimal_design(
     finished = enumerate_branches(extended_problem, evaluators, run).only_enumerated(span)
     free = searched_evaluators(evaluators)
     archive = explore(extended_problem, free, run) if free else Archive.empty(len(span))
-    order = np.argsort(distance(archive.values, values, span), kind="stable")[:_STARTS]
+    order = np.argsort(distance_to_design(archive.values, values, span), kind="stable")[:_STARTS]
     for index, u in archive[order].by_branch(evaluators):
         finished.add(index, polish_on_engine(evaluators[index], u, span))
     if not len(finished):
         return _keep_nearest(solve(extended_problem), values, span)
     _add_nearer_designs(finished, free, archive, values, extended_problem.settings.seed)
-    return assemble(extended_problem, evaluators, finished[_rank_by_distance(finished, archive, values)[:1]], run)
+    return assemble_front(extended_problem, evaluators, finished[_rank_by_distance(finished, archive, values)[:1]], run)
 
 
 def like(
@@ -110,14 +110,14 @@ def like(
                 f"a requirement for like must be a Constraint; got {item!r}; write it like "
                 'Constraint(quantity="time_ratio", lower=1.2)'
             )
-    ranges = {name: lower_and_upper(name, ends) for name, ends in (ranges or {}).items()}
+    ranges = {name: bounds_of_name(name, ends) for name, ends in (ranges or {}).items()}
     front.part(row)  # raises an error for an unknown row
     ends = (np.array(ranges.get(name, ()), dtype=np.float64) for name in DIMENSIONS)
     if (doubt := implausible_length_text(ends)) is not None:
         warn_user(f"ranges of lengths are in m: {doubt}")
     table = {name: values[row] for name, values in front.columns.items()}
     return nearest_optimal_design(
-        front.problem, table, front.values[row], scaling(front.values)[1], constraints, ranges
+        front.problem, table, front.values[row], ideal_and_range(front.values)[1], constraints, ranges
     )
 
 
@@ -140,7 +140,7 @@ def extend_problem(
             existing = f"{_ends_text((required.lower, required.upper), unit.factor, unit.symbol)} is already required"
             stricter = _ends_text((added.lower, added.upper), unit.factor, unit.symbol)
             contradictions.append(f"{quantity.title} {stricter}, where {existing}")
-            keys.append(key_of(["constraints", added.quantity]))
+            keys.append(key_of_location(["constraints", added.quantity]))
         else:
             constraints_by_name[added.quantity] = Constraint(quantity=added.quantity, lower=ends[0], upper=ends[1])
     for name, requested in ranges.items():
@@ -212,11 +212,11 @@ def _add_nearer_designs(
     finished: FrontCandidates, evaluators: list[Evaluator], archive: Archive, values: Array, seed: int
 ) -> None:
     """Add polished designs around the nearest ones, ever more closely."""
-    random = generator(seed, 2000)
+    random = random_generator(seed, 2000)
     width = _WIDEST
     for _ in range(_ROUNDS):
         parents = _rank_by_distance(finished, archive, values)[:_PARENTS]
-        before = distance(finished.values[parents[:1]], values, finished.span)[0]
+        before = distance_to_design(finished.values[parents[:1]], values, finished.span)[0]
         for index, u in finished[parents].by_branch(evaluators):
             evaluator = evaluators[index]
             points = np.repeat(u, _CHILDREN, axis=0)
@@ -224,7 +224,9 @@ def _add_nearer_designs(
             points = points[evaluator.can_evaluate(points)]
             if len(points):
                 finished.add(index, polish_on_engine(evaluator, points, finished.span))
-        after = distance(finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span)[0]
+        after = distance_to_design(
+            finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span
+        )[0]
         # A design that still moves nearer by about one step has farther to go.
         if before - after < 0.5 * width:
             width *= 0.5
@@ -239,7 +241,7 @@ def _rank_by_distance(finished: FrontCandidates, archive: Archive, values: Array
         scaled, screened = finished.values[rows] / finished.span, archive.values[archive.is_feasible] / finished.span
         beaten = dominating(-scaled, -screened, clearly=_BEATEN)
         rows = rows[~beaten] if not beaten.all() else rows
-    distances = distance(finished.values[rows], values, finished.span)
+    distances = distance_to_design(finished.values[rows], values, finished.span)
     return rows[np.lexsort((distances, finished.residual[rows] > STATIONARY))]
 
 
@@ -247,7 +249,7 @@ def _keep_nearest(front: ParetoFront, values: Array, span: Array) -> ParetoFront
     """Return a front with only its nearest design; an empty front unchanged."""
     if not len(front):
         return front
-    row = int(np.argmin(distance(front.values, values, span)))
+    row = int(np.argmin(distance_to_design(front.values, values, span)))
     return replace(
         front,
         message=f"1 design, {front.evaluations} evaluated",

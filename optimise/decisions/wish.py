@@ -33,12 +33,12 @@ from ..methods.achievement_objectives import Achievement
 from ..methods.registry import require_gradients
 from ..methods.scalar_objective import SUM, Form
 from ..problem.constraint_violation import FEASIBLE
-from ..search.assemble_front import assemble, empty_front
+from ..search.assemble_front import assemble_front, empty_front
 from ..search.candidates import Candidates, FrontCandidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.mirrored_branches import drop_mirrored_branches
-from ..search.polish import polish
+from ..search.polish import polish_designs
 from ..search.sample_and_zoom import BANDS, Run
 from ..search.sampling import distant_rows
 from .wish_outcome import Wished, outcomes_of
@@ -91,8 +91,8 @@ class Wishes:
             return Wished(found=nothing, row=row, wishes=wishes, value=np.nan, outcomes=(), message=message)
         index, u, value = best
         finished = FrontCandidates.without_designs(self.span)
-        finished.add(index, polish(evaluators[index], u[None], self.span, iterations=0))
-        front_of_wish = assemble(front.problem, evaluators, finished, run)
+        finished.add(index, polish_designs(evaluators[index], u[None], self.span, iterations=0))
+        front_of_wish = assemble_front(front.problem, evaluators, finished, run)
         outcomes = outcomes_of(front, wishes, aims, row, front_of_wish)
         return Wished(found=front_of_wish, row=row, wishes=wishes, value=value, outcomes=outcomes)
 
@@ -190,7 +190,7 @@ class Wishes:
             return []
         start = self._starts.u[rows][:, : evaluator.dimension]
         achievement = Achievement(evaluator, form, self.ideal, self.span)
-        polished_starts = polish(achievement, start, np.ones(1 + len(self.span)), hold=False)
+        polished_starts = polish_designs(achievement, start, np.ones(1 + len(self.span)), hold=False)
         good = (polished_starts.violation <= FEASIBLE) & np.isfinite(polished_starts.values).all(axis=1)
         return [
             (float(polished_starts.values[at].sum()), index, polished_starts.u[at])

@@ -19,7 +19,7 @@ from ...model.errors import InputError
 from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.units import quote, to_si
 from ..front.front import ParetoFront
-from ..problem.constraint_violation import minimised
+from ..problem.constraint_violation import minimised_values
 
 Kind = Literal["value", "improve", "keep", "limit", "free"]
 _LIMIT = re.compile(r"(?:may\s+)?worsen\s+to\s+(.+)", re.IGNORECASE)
@@ -138,4 +138,4 @@ def _require_consistent_wishes(front: ParetoFront, wishes: tuple[Wish, ...], row
 def minimised_aim(front: ParetoFront, column: int, wish: Wish) -> float:
     """Return a wish's value as minimised, SI: negated if maximised, or the distance from a target."""
     assert wish.value is not None
-    return float(minimised(front.objectives[column], np.array([wish.value]))[0])
+    return float(minimised_values(front.objectives[column], np.array([wish.value]))[0])

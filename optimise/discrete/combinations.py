@@ -14,9 +14,9 @@ from ..front.dominance import nondominated
 from ..front.hypervolume import ReportProgress, ignore_progress
 from ..problem.constraint_violation import (
     FEASIBLE,
-    all_minimised,
-    constraints_of,
+    constraints_with_floors,
     greatest_violation,
+    minimised_objectives,
     needs_cycle,
     rotates_beyond_rounding,
 )
@@ -109,7 +109,7 @@ class Axes:
 
 
 @dataclass(frozen=True)
-class Judged:
+class FeasibleDesigns:
     """Combinations that meet every requirement, and the nearest of the others.
 
     part: problem of the nearest one. dimensions: (n, 3 + v). values: (n, m), objectives as minimised. judged: number of
@@ -125,14 +125,14 @@ class Judged:
     missed: float
 
     @classmethod
-    def empty(cls, part: Problem) -> Judged:
+    def empty(cls, part: Problem) -> FeasibleDesigns:
         """Return no designs."""
         return cls(part, np.zeros((0, len(part.ranges))), np.zeros((0, len(part.objectives))), 0, None, np.inf)
 
-    def merge(self, others: Judged) -> Judged:
+    def merge(self, others: FeasibleDesigns) -> FeasibleDesigns:
         """Return these designs together with others, and the nearer infeasible design of the two."""
         nearer = others if others.missed < self.missed else self
-        return Judged(
+        return FeasibleDesigns(
             nearer.part,
             np.concatenate([self.dimensions, others.dimensions]),
             np.concatenate([self.values, others.values]),
@@ -141,32 +141,36 @@ class Judged:
             nearer.missed,
         )
 
-    def best(self) -> Judged:
+    def best(self) -> FeasibleDesigns:
         """Return only the combinations that no other dominates, because millions of them would take gigabytes."""
         rows = nondominated(self.values)
         return replace(self, dimensions=self.dimensions[rows], values=self.values[rows])
 
 
-def judge_all(axes: Axes, report: ReportProgress = ignore_progress, *, dimensions_only: bool = False) -> Judged:
+def best_of_all_combinations(
+    axes: Axes, report: ReportProgress = ignore_progress, *, dimensions_only: bool = False
+) -> FeasibleDesigns:
     """Judge all combinations of a variant without free numbers; return the best if there are too many.
 
     report: called after every few thousand. dimensions_only: whether to judge only requirements that need no cycle, and
     no objectives.
     """
-    judged = Judged.empty(axes.part)
+    judged = FeasibleDesigns.empty(axes.part)
     step = _ROBUST_BATCH if asks_robust(axes.part) and not dimensions_only else _BATCH
     for begin in range(0, axes.count, step):
         report(begin, axes.count)
-        batch = judge(axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only)
+        batch = designs_meeting_requirements(
+            axes.part, axes.designs(begin, begin + step), dimensions_only=dimensions_only
+        )
         judged = judged.merge(batch)
         judged = judged.best() if len(judged.values) > _HELD else judged
     return judged
 
 
-def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Judged:
+def designs_meeting_requirements(part: Problem, designs: Array, *, dimensions_only: bool = False) -> FeasibleDesigns:
     """Return the designs (n, 3 + v) that meet every requirement, with their objectives."""
     turning = designs[rotates_beyond_rounding(designs)]
-    constraints = constraints_of(part)
+    constraints = constraints_with_floors(part)
     slow = [item for item in constraints if needs_cycle(part.quantity(item.quantity))]
     worst = greatest_violation(part, turning, [item for item in constraints if item not in slow])
     rows = np.flatnonzero(worst <= FEASIBLE)
@@ -175,10 +179,10 @@ def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Ju
         rows = rows[worst[rows] <= FEASIBLE]
     values = np.zeros((len(rows), len(part.objectives)))
     if len(rows) and not dimensions_only:
-        values = all_minimised(part, part.evaluate(turning[rows]))
+        values = minimised_objectives(part, part.evaluate(turning[rows]))
     has_values = np.isfinite(values).all(axis=1)
     nearest = int(np.argmin(worst)) if len(worst) and np.isfinite(worst).any() else None
-    return Judged(
+    return FeasibleDesigns(
         part,
         turning[rows][has_values],
         values[has_values],
@@ -188,7 +192,7 @@ def judge(part: Problem, designs: Array, *, dimensions_only: bool = False) -> Ju
     )
 
 
-def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
+def combinations_around(axes: Axes, designs: Array, limit: int) -> Array:
     """Return combinations (n, 3 + v) around designs, NaN where a number is free; the nearest to each design first.
 
     The window around each design is as wide as `limit` allows, and contains at least the values on either side.
@@ -206,20 +210,20 @@ def neighbours(axes: Axes, designs: Array, limit: int) -> Array:
     return np.asarray(stacked[np.sort(first)][:limit])
 
 
-def judge_near(
+def best_near_designs(
     axes: Axes, designs: Array, window: int, limit: int, report: ReportProgress = ignore_progress
-) -> tuple[Judged, IntArray]:
+) -> tuple[FeasibleDesigns, IntArray]:
     """Return the best combinations around designs of a fully discrete variant, and the indices of all judged ones.
 
     First, it judges a window of at most `window` combinations around the designs. Then it judges the neighbours of the
     best so far, until none are left or `limit` combinations are judged.
     """
-    best, judged_numbers = Judged.empty(axes.part), np.zeros(0, np.int64)
-    fresh = np.unique(axes.combination_numbers(neighbours(axes, designs, window)))
+    best, judged_numbers = FeasibleDesigns.empty(axes.part), np.zeros(0, np.int64)
+    fresh = np.unique(axes.combination_numbers(combinations_around(axes, designs, window)))
     while len(fresh):
         for begin in range(0, len(fresh), _BATCH):
             report(len(judged_numbers) + begin, limit)
-            batch = judge(axes.part, axes.designs_of_numbers(fresh[begin : begin + _BATCH]))
+            batch = designs_meeting_requirements(axes.part, axes.designs_of_numbers(fresh[begin : begin + _BATCH]))
             best = best.merge(batch.best()).best()
         judged_numbers = np.union1d(judged_numbers, fresh)
         fresh = np.zeros(0, np.int64)
@@ -256,7 +260,7 @@ def _combinations_around(axes: Sequence[Array | None], design: Array, width: int
     return np.asarray(grid[np.argsort(way, kind="stable")])
 
 
-def with_values(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Problem:
+def problem_with_combinations(problem: Problem, chosen: Sequence[tuple[int, Array]]) -> Problem:
     """Return a problem whose variants are combinations. chosen: index of each variant and its design (3 + v,).
 
     A number that is NaN stays free within its range.

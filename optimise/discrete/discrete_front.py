@@ -23,7 +23,15 @@ from ..front.rounded_design import drop_conversion_rounding
 from ..problem.problem import Problem
 from ..problem.robust_problem import asks_robust
 from ..problem.table_columns import STATUS
-from .combinations import Axes, Judged, has_judged_neighbours, judge_all, judge_near, neighbours, with_values
+from .combinations import (
+    Axes,
+    FeasibleDesigns,
+    best_near_designs,
+    best_of_all_combinations,
+    combinations_around,
+    has_judged_neighbours,
+    problem_with_combinations,
+)
 from .discrete_messages import failure_message, result_message
 
 MOST, _MOST_ROBUST = 5_000_000, 1 << 13
@@ -49,11 +57,11 @@ def discrete_front(
     is_complete, count = all(axis.has_no_free_number for axis in axes), sum(axis.count for axis in axes)
     limit = (_MOST_ROBUST if asks_robust(problem) else MOST) if is_complete else SOLVED
     exact = count <= limit
-    judged: Judged | None = None
+    judged: FeasibleDesigns | None = None
     chosen: Chosen = []
     judged_numbers: list[IntArray] = []
     if exact and is_complete:
-        chosen, judged = _designs_to_deliver(problem, axes, [judge_all(axis, report) for axis in axes])
+        chosen, judged = _designs_to_deliver(problem, axes, [best_of_all_combinations(axis, report) for axis in axes])
         if not chosen:
             return nothing("infeasible", failure_message(problem, judged))
     continuous = search(replace(problem, discrete=()))
@@ -66,7 +74,7 @@ def discrete_front(
             rows = (
                 axis.designs(0, axis.count)
                 if exact
-                else neighbours(axis, _designs_of_variant(continuous, index), SOLVED)
+                else combinations_around(axis, _designs_of_variant(continuous, index), SOLVED)
             )
             chosen += [(index, row) for row in rows]
         chosen = _first_of_each_variant(chosen)
@@ -78,13 +86,13 @@ def discrete_front(
     elif not exact:
         share, window = limit // len(axes), min(limit, _WINDOW) // len(axes)
         judged_parts = [
-            judge_near(axis, _designs_of_variant(continuous, index), window, share, report)
+            best_near_designs(axis, _designs_of_variant(continuous, index), window, share, report)
             for index, axis in enumerate(axes)
         ]
         judged_numbers = [numbers for _, numbers in judged_parts]
         chosen, judged = _designs_to_deliver(problem, axes, [part for part, _ in judged_parts])
     if not chosen:
-        return nothing("infeasible", failure_message(problem, judged or Judged.empty(axes[0].part)))
+        return nothing("infeasible", failure_message(problem, judged or FeasibleDesigns.empty(axes[0].part)))
     summary = DiscreteSearch(
         exact=exact,
         combinations=count,
@@ -92,7 +100,7 @@ def discrete_front(
         rules={item.name: item.rule for item in problem.discrete},
         continuous=tuple(continuous.values.min(axis=0).tolist()) if len(continuous) else (),
     )
-    front = search(with_values(problem, chosen))
+    front = search(problem_with_combinations(problem, chosen))
     if not exact and len(front):
         front = _downgrade_unproven(front, axes, chosen, judged_numbers)
     return _front_of_problem(problem, front, continuous, chosen, summary)
@@ -114,7 +122,9 @@ def _downgrade_unproven(
     return replace(front, columns={**front.columns, STATUS: status})
 
 
-def _designs_to_deliver(problem: Problem, axes: list[Axes], parts: list[Judged]) -> tuple[Chosen, Judged]:
+def _designs_to_deliver(
+    problem: Problem, axes: list[Axes], parts: list[FeasibleDesigns]
+) -> tuple[Chosen, FeasibleDesigns]:
     """Return the designs to deliver: the non-dominated ones from all variants, at most the requested number."""
     together = parts[0]
     for part in parts[1:]:

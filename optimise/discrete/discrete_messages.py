@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.tables.variable_columns import columns_of_numbers
 from ..front.front import ParetoFront
-from ..problem.constraint_violation import constraints_of, relative_violation
+from ..problem.constraint_violation import constraints_with_floors, relative_violation
 from ..problem.problem import Problem
-from .combinations import Judged
+from .combinations import FeasibleDesigns
 
 
 def rules_text(problem: Problem) -> str:
     """Describe the choices with the number of their options, and the discrete numbers with their possible values."""
     options = [len({variant.labels[place] for variant in problem.variants}) for place in range(len(problem.choices))]
-    choices = [f"{name} ({counted(count, 'option')})" for name, count in zip(problem.choices, options, strict=True)]
+    choices = [
+        f"{name} ({count_with_noun(count, 'option')})" for name, count in zip(problem.choices, options, strict=True)
+    ]
     return ", ".join([*choices, *(f"{item.name} ({item.rule})" for item in problem.discrete)])
 
 
@@ -25,7 +27,7 @@ def result_message(front: ParetoFront) -> str:
     rules = rules_text(problem)
     if not len(front):
         return f"no design among {_count_combinations(summary.judged)} of {rules} meets every requirement"
-    count = counted(len(front), "design")
+    count = count_with_noun(len(front), "design")
     if len(front) >= problem.settings.designs:
         count += ", as many as requested"
     if summary.exact:
@@ -50,7 +52,7 @@ def result_message(front: ParetoFront) -> str:
     return f"{text}; with continuous values the best would be {', '.join(costs)}" if costs else text
 
 
-def failure_message(problem: Problem, judged: Judged) -> str:
+def failure_message(problem: Problem, judged: FeasibleDesigns) -> str:
     """Return the message that no combination is feasible, with the deviations of the nearest one and a remedy."""
     rules = rules_text(problem)
     subject = (
@@ -68,7 +70,7 @@ def failure_message(problem: Problem, judged: Judged) -> str:
         if name in listed_names
     )
     worst, shortfall, remedy = 0.0, "", ""
-    for item in constraints_of(judged.part):
+    for item in constraints_with_floors(judged.part):
         quantity = judged.part.quantity(item.quantity)
         value = judged.part.evaluate(judged.nearest[None], [item.quantity])[:, 0]
         value_of_nearest, short = float(value[0]), float(relative_violation(item, value)[0])
@@ -86,4 +88,4 @@ def failure_message(problem: Problem, judged: Judged) -> str:
 
 
 def _count_combinations(count: int) -> str:
-    return counted(count, "combination")
+    return count_with_noun(count, "combination")

@@ -9,7 +9,7 @@ import numpy as np
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
 from ..problem.problem import Problem
-from .combinations import Axes, Judged, judge_all
+from .combinations import Axes, FeasibleDesigns, best_of_all_combinations
 from .discrete_messages import failure_message
 
 MOST = 200_000
@@ -26,9 +26,9 @@ def require_meetable(problem: Problem) -> None:
     axes = [_dimension_axes(Axes.of_problem(part)) for part in problem.parts()]
     if not all(axis.has_no_free_number for axis in axes) or sum(axis.count for axis in axes) > MOST:
         return
-    judged = Judged.empty(axes[0].part)
+    judged = FeasibleDesigns.empty(axes[0].part)
     for axis in axes:
-        judged = judged.merge(judge_all(axis, dimensions_only=True))
+        judged = judged.merge(best_of_all_combinations(axis, dimensions_only=True))
         if len(judged.dimensions):
             return
     sizes = tuple(item for item in problem.discrete if item.name in DIMENSIONS)

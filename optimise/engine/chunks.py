@@ -120,7 +120,7 @@ class Chunked(Generic[Subject]):
             light = pace.row * left < 2.0 * CHUNK
             if pace.seconds >= _SURE and not light:
                 if self.engine.should_map(pace.row * left):
-                    return parts + self._mapped(work, question, rows[begin:], pace, 1 if together else _EACH)
+                    return parts + self._map_chunks(work, question, rows[begin:], pace, 1 if together else _EACH)
                 light = True
             if self.poll is not None:
                 self.poll()
@@ -132,7 +132,7 @@ class Chunked(Generic[Subject]):
             begin += count
         return parts
 
-    def _mapped(
+    def _map_chunks(
         self, work: Work[Subject, Question, Part], question: Question, rows: Array, pace: _Pace, per_worker: int
     ) -> list[Part]:
         engine = self.engine

@@ -95,7 +95,7 @@ class Cluster:
         delay, self._reached = _DELAYS[0], time.monotonic()
         while len(results) < len(items):
             try:
-                self._round(self._connected_client(), function, items, results, killed, poll)
+                self._run_round(self._connected_client(), function, items, results, killed, poll)
             except (_Lost, OSError, CancelledError, TimeoutError) as error:
                 lost = self._client is not None
                 self.close()
@@ -116,7 +116,7 @@ class Cluster:
             with contextlib.suppress(Exception):  # the connection may already be lost
                 client.close(timeout=_CONNECT)
 
-    def _round(
+    def _run_round(
         self,
         client: Any,
         function: Callable[[Item], Found],
@@ -137,7 +137,7 @@ class Cluster:
             name = uuid.uuid4().hex
             keys = [f"slidercrank-{name}-{index}" for index in indices]
             futures = client.map(
-                _run_task, [(_library_versions(), function, items[index]) for index in indices], key=keys
+                _run_with_equal_versions, [(_library_versions(), function, items[index]) for index in indices], key=keys
             )
             pending.update(zip(futures, indices, strict=True))
 
@@ -214,7 +214,7 @@ class Cluster:
         return self._client
 
 
-def _run_task(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
+def _run_with_equal_versions(task: tuple[tuple[str, ...], Callable[[Any], Any], Any]) -> Any:
     versions, function, item = task
     if versions != _library_versions():
         raise EngineError(

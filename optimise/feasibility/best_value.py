@@ -128,10 +128,10 @@ def reduce_to_dimensions(problem: Problem) -> Problem:
 
 def rules_on_dimensions(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints on quantities that depend on crank, rod and offset alone."""
-    return tuple(c for c in problem.constraints if problem.quantity(c.quantity).of_dimensions)
+    return tuple(c for c in problem.constraints if problem.quantity(c.quantity).depends_only_on_dimensions)
 
 
 def _reduce_part_to_dimensions(part: Problem) -> Problem:
     machine = massless_machine(part.mechanism)
-    custom = tuple(quantity for quantity in part.own if quantity.of_dimensions)
+    custom = tuple(quantity for quantity in part.own if quantity.depends_only_on_dimensions)
     return replace(part, mechanism=machine, constraints=rules_on_dimensions(part), own=custom, costs=None)

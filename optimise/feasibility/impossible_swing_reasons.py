@@ -25,12 +25,12 @@ _HALVINGS = 10  # bisections of the friction fraction, for three digits
 
 def require_swinging(problem: Problem) -> None:
     """Raise `InfeasibleError` if no design in a large sample makes the required swing, or if friction locks it."""
-    message = why_no_swing(problem)
+    message = no_swing_reason(problem)
     if message:
         raise InfeasibleError(f"motion: {message}")
 
 
-def why_no_swing(problem: Problem) -> str:
+def no_swing_reason(problem: Problem) -> str:
     """Return why no design within the ranges swings as required, in words; "" if one in a large sample does."""
     motion = problem.motion
     assert motion is not None
@@ -39,7 +39,7 @@ def why_no_swing(problem: Problem) -> str:
     closing = passing = 0
     stuck: list[tuple[Mechanism, Array]] = []
     for index, branch in enumerate(elimination_branches(problem)):
-        machine, designs = problem.part(branch.variant).mechanism, _samples(problem, branch, index)
+        machine, designs = problem.part(branch.variant).mechanism, _sample_designs(problem, branch, index)
         closing += int(closes_over_swing(machine, motion, designs).sum())
         passing += int(swings_without_dead_point(machine, motion, designs).sum())
         able = designs[can_move(machine, motion, designs)]
@@ -76,7 +76,7 @@ def why_no_swing(problem: Problem) -> str:
     )
 
 
-def _samples(problem: Problem, branch: EliminationBranch, index: int) -> Array:
+def _sample_designs(problem: Problem, branch: EliminationBranch, index: int) -> Array:
     """Return designs (n, 3 + k) of a branch, whatever they can do."""
     designs = branch.dimensions(first_samples(_SAMPLES, len(branch.free), problem.settings.seed, index))
     return np.asarray(designs[np.isfinite(designs).all(axis=1)])
@@ -86,7 +86,7 @@ def _unswung_lever(problem: Problem, motion: Swing) -> str:
     """Return the reason why no lever within the ranges makes the required swing; "" if one in a sample does."""
     for index, branch in enumerate(elimination_branches(problem)):
         machine = problem.part(branch.variant).mechanism
-        if can_move(machine, motion, _samples(problem, branch, index)).any():
+        if can_move(machine, motion, _sample_designs(problem, branch, index)).any():
             return ""
     if motion.of_full_turn:
         return (

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ..engine.engine import Engine
-from ..problem.constraint_violation import FEASIBLE, constraints_of
+from ..problem.constraint_violation import FEASIBLE, constraints_with_floors
 from ..problem.problem import Problem, Settings
 from ..search.checkpoints import Checkpoints
 from ..search.elimination import elimination_branches
@@ -18,7 +18,7 @@ from ..search.evaluation import Evaluator
 from ..search.least_violation import least_violation
 from ..search.sampling import first_samples
 from .best_value import Best
-from .impossible_swing_reasons import why_no_swing
+from .impossible_swing_reasons import no_swing_reason
 from .quantities_without_value import valueless_quantity_text
 from .relaxation import Relaxation, relaxation_of_missed_bound, relaxations
 
@@ -41,7 +41,7 @@ class Diagnosis:
     message: str
 
 
-def diagnose(
+def diagnose_infeasibility(
     problem: Problem,
     best: Callable[[Problem], Best | None],
     checkpoints: Checkpoints | None = None,
@@ -59,13 +59,13 @@ def diagnose(
     if len(feasible):
         return Diagnosis(feasible, (), "")
     if not turning:
-        message = nearest or (_UNMOVED if problem.motion is None else why_no_swing(problem))
+        message = nearest or (_UNMOVED if problem.motion is None else no_swing_reason(problem))
         return Diagnosis(feasible, (), message)
     found = []
     stroke = {quantity.name for quantity in STROKE_TIME_RATIOS.values()} - {
         item.quantity for item in problem.constraints
     }
-    for constraint in constraints_of(problem):
+    for constraint in constraints_with_floors(problem):
         if constraint.quantity in stroke:  # the slow stroke along a speed profile is reported below
             continue
         for item in relaxations(problem, constraint, best):
@@ -129,7 +129,7 @@ def _nearest_design_text(problem: Problem, variant: int, design: Array) -> str:
     """Describe a design, and the values it has for the requirements that it misses."""
     part = problem.part(variant)
     found = []
-    for constraint in constraints_of(part):
+    for constraint in constraints_with_floors(part):
         value = float(part.quantity(constraint.quantity).evaluate(part.mechanism, design[None]).values[0])
         for word, bound in constraint.sides:
             item = relaxation_of_missed_bound(part, constraint, word, bound, value)

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.formula.quantity import FormulaQuantity
-from ..problem.constraint_violation import constraints_of
+from ..problem.constraint_violation import constraints_with_floors
 from ..problem.problem import Problem
 from ..search.evaluation import Evaluator
 from ..search.sampling import first_samples
@@ -21,7 +21,7 @@ def valueless_quantity_text(part: Problem, designs: Array) -> str:
 
     part: a problem without choices. The designs must be able to move as required.
     """
-    names = [*(item.quantity for item in part.objectives), *(item.quantity for item in constraints_of(part))]
+    names = [*(item.quantity for item in part.objectives), *(item.quantity for item in constraints_with_floors(part))]
     for name in dict.fromkeys(names):
         quantity = part.quantity(name)
         if np.isfinite(quantity.evaluate(part.mechanism, designs).values).any():
@@ -31,8 +31,8 @@ def valueless_quantity_text(part: Problem, designs: Array) -> str:
             if isinstance(quantity, FormulaQuantity)
             else "change the ranges"
         )
-        why = f": {quantity.blank}" if quantity.blank else ""
-        count = counted(len(designs), "design")
+        why = f": {quantity.no_value_reason}" if quantity.no_value_reason else ""
+        count = count_with_noun(len(designs), "design")
         return f"{quantity.title} has no value for any of {count} within the ranges{why}; {remedy}"
     return ""
 

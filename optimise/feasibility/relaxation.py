@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from ...model.arrays import Array
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merged
-from ..problem.restatement import restate
+from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merge_constraints
+from ..problem.restatement import restate_constraint
 from .best_value import Best, with_single_objective
 from .safe_side_rounding import isolated_value_text, round_to_safe_side
 
@@ -128,9 +128,11 @@ def _drop_side(problem: Problem, constraint: Constraint, word: Word) -> Problem:
     constraints = tuple(item for item in problem.constraints if item.quantity != constraint.quantity)
     if lower is not None or upper is not None:
         constraints = (*constraints, Constraint(quantity=constraint.quantity, lower=lower, upper=upper))
-    names = restate(problem, constraint)
-    left = restate(problem, constraints[-1]) if lower is not None or upper is not None else None
+    names = restate_constraint(problem, constraint)
+    left = restate_constraint(problem, constraints[-1]) if lower is not None or upper is not None else None
     floor = problem.quantity(names.quantity).floor
     if floor is not None and names.lower is not None and (left is None or left.lower is None):
-        constraints = merged((*constraints, Constraint(quantity=names.quantity, lower=_LOWEST * names.lower)))
+        constraints = merge_constraints(
+            (*constraints, Constraint(quantity=names.quantity, lower=_LOWEST * names.lower))
+        )
     return replace(problem, constraints=constraints)

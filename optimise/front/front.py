@@ -26,7 +26,7 @@ from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.violations import violations
 from ..problem.problem import Problem
-from ..problem.question_registry import question_to, subject_of
+from ..problem.question_registry import question_about, subject_of_question
 from ..problem.requirements import Objective
 from ..problem.table_columns import sufficient_option_field
 from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
@@ -36,10 +36,10 @@ from .front_picture import figure, svg
 from .nonnegative_least_squares import nonnegative_least_squares
 from .progress import Progress
 from .rounded_design import Rounded
-from .rounding import doubtful_misses, ranges_or_sizes, rounding
+from .rounding import doubtful_misses, ranges_or_sizes, round_design
 from .rounding_search import Stage
 from .saved_front import front_fields, write_front
-from .stationarity import STATIONARY, multipliers
+from .stationarity import STATIONARY, optimality_multipliers
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -157,8 +157,8 @@ class ParetoFront:
         questions are about a design: `front.ask("press", front.knee())`. Raises `InputError` for an unknown question,
         row or input, and for anything that the front lacks.
         """
-        if row is None or subject_of(question) == "front":
-            record: dict[str, Any] = question_to("front", question).answer_of(self, row, inputs)
+        if row is None or subject_of_question(question) == "front":
+            record: dict[str, Any] = question_about("front", question).answer_of(self, row, inputs)
             return record
         return self.part(row).ask(question, self.dimensions[row], **inputs)
 
@@ -263,7 +263,7 @@ class ParetoFront:
             raise InputError(f"a pick needs a front with designs; this one is empty: {self.message}")
         keep, ranges = np.ones(len(self), dtype=bool), []
         for column, ends in bounds.items():
-            least, greatest = lower_and_upper(column, ends)
+            least, greatest = bounds_of_name(column, ends)
             values = self.columns[column] if column in self.columns else self._evaluate(column)
             if values.dtype.kind not in "fiu":
                 raise InputError(f"bounds may only be on numbers; got {column}, a column of words; see front.designs")
@@ -341,7 +341,7 @@ class ParetoFront:
             )
             stay.append(f"{name} stays {label}{also}")
         span = ranges_or_sizes(self.values, self.values[row], self._objective_targets)
-        yield (yield from rounding(part, design, span, to, count=count, allow=allow, notes=stay))
+        yield (yield from round_design(part, design, span, to, count=count, allow=allow, notes=stay))
 
     def rates(self, row: int) -> Array:
         """Return the trade-off rates (m, m) at a design: `[a, b]` is objective a's loss per unit gained in b.
@@ -359,7 +359,7 @@ class ParetoFront:
         spans = units * np.where(ranges > 0.0, ranges, 1.0)
         left = self.values[row] - self.values.min(axis=0)
         slopes = slopes * (units / spans)[owner.astype(int)][:, None]
-        residual, shares, pushes = multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
+        residual, shares, pushes = optimality_multipliers(slopes, self.active[row]) if k else (np.inf, 0.0, 0.0)
         if residual <= STATIONARY:
             # Along the remaining slopes, all objectives would gain slightly without limit, so the design counts as
             # exactly stationary.
@@ -457,7 +457,7 @@ def _losses_of_cheapest_gain(slopes: Array, owner: Array, active: Array, b: int,
     return solution[k : k + m]
 
 
-def lower_and_upper(name: str, ends: object) -> tuple[float | None, float | None]:
+def bounds_of_name(name: str, ends: object) -> tuple[float | None, float | None]:
     """Return the least and greatest value for a name, None if unbounded.
 
     Raises `InputError` unless `ends` is such a pair.

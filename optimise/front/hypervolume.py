@@ -23,7 +23,7 @@ def ignore_progress(done: int, total: int) -> None:
     """Ignore progress reports."""
 
 
-def scaling(values: Array) -> tuple[Array, Array]:
+def ideal_and_range(values: Array) -> tuple[Array, Array]:
     """Return ideal and range of objective values (n, m); the range of a constant objective is its magnitude."""
     ideal, span = np.ascontiguousarray(values.T).min(axis=1), column_ranges(values)
     return ideal, np.where(span > 0.0, span, np.maximum(np.abs(ideal), 1e-12))
@@ -132,7 +132,7 @@ def choose_designs(
         return np.array(sorted(set(always) | set(np.argsort(values[:, 0], kind="stable")[:count].tolist()))[:count])
     import moocore
 
-    ideal, span = scaling(values)
+    ideal, span = ideal_and_range(values)
     scaled = np.ascontiguousarray((values - ideal) / span)
     bounds = GainBounds(scaled)
     gains, fresh = bounds.boxes.copy(), np.full(n, -1)

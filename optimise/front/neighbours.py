@@ -9,7 +9,7 @@ from ...model.kernel.batches import in_chunks
 from ...model.kernel.kernel import Integers, Table, kernel
 
 
-def neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
+def nearest_neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
     """Return distances and rows (n, count) of the nearest of points (n, m), nearest first, starting with itself.
 
     count: number of neighbours, at most n.

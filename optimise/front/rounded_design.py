@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.variable_columns import columns_of_numbers
 from ..problem.constraint_violation import FEASIBLE, relative_violation
@@ -96,8 +96,9 @@ class Rounded:
     def message_in(self, system: System) -> str:
         """Return the result of the search in words. system: system of its units."""
         if not self.judged:
-            return f"no rounded design within {counted(self.steps_tried, 'step')} rotates fully; give smaller steps"
-        near = f"{counted(self.judged, 'rounded design')} within {counted(self.steps_tried, 'step')}"
+            steps = count_with_noun(self.steps_tried, "step")
+            return f"no rounded design within {steps} rotates fully; give smaller steps"
+        near = f"{count_with_noun(self.judged, 'rounded design')} within {count_with_noun(self.steps_tried, 'step')}"
         if self.steps_tried < REACHES[0]:
             near += f" (not {REACHES[0]}, because {len(self.steps)} numbers are rounded together)"
         if self.is_met:

@@ -22,7 +22,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
 from ...objectives.units import quote, to_si
-from ..problem.constraint_violation import FEASIBLE, constraints_of
+from ..problem.constraint_violation import FEASIBLE, constraints_with_floors
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from .constant_numbers import column_ranges
@@ -34,7 +34,7 @@ _LARGE = 0.1  # relative to a bound: a greater miss without a unit was probably 
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*")
 
 
-def rounding(
+def round_design(
     part: Problem,
     given: Array,
     span: Array,
@@ -127,7 +127,7 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
         {name: value for name, value in _require_misses_by_quantity(allow).items() if not isinstance(value, str)},
         [],
     )
-    bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_of(part)}
+    bounds = {item.quantity: max(abs(bound) for _, bound in item.sides) for item in constraints_with_floors(part)}
     for name, value in _allowed_misses(part, plain_misses).items():
         quantity = part.quantity(name)
         if quantity.unit.symbol != quantity.kind.unit and value > _LARGE * bounds[name]:
@@ -139,7 +139,7 @@ def doubtful_misses(part: Problem, allow: Mapping[str, float | str]) -> list[str
 
 def _allowed_misses(part: Problem, misses: Mapping[str, float | str]) -> dict[str, float]:
     """Return the allowed deviations of requirements, SI, by quantity. A required slow stroke cannot be missed."""
-    constraints = {item.quantity: item for item in constraints_of(replace(part, slow_stroke=None))}
+    constraints = {item.quantity: item for item in constraints_with_floors(replace(part, slow_stroke=None))}
     quantities = {name: part.quantity(name) for name in constraints}
     names = {alias: name for name, quantity in quantities.items() for alias in (quantity.field, quantity.stem, name)}
     allowed: dict[str, float] = {}

@@ -17,10 +17,10 @@ from ...objectives.tables.evaluate_quantities import can_run_despite_friction
 from ...objectives.tables.variable_columns import columns_of_numbers
 from ..problem.constraint_violation import (
     FEASIBLE,
-    all_minimised,
-    constraints_of,
+    constraints_with_floors,
     greatest_violation,
-    minimised,
+    minimised_objectives,
+    minimised_values,
     needs_cycle,
     rotates_beyond_rounding,
 )
@@ -74,11 +74,11 @@ class RoundingSearch:
         """Prepare; see `rounding.rounding`. Raises `InputError` for a step without a multiple in range."""
         self.part, self.design, self.span, self.steps, self.ranges = part, design, span, steps, part.ranges
         self.allowed = allowed
-        self.constraints = constraints_of(part)
+        self.constraints = constraints_with_floors(part)
         self.quick = [item for item in self.constraints if not needs_cycle(part.quantity(item.quantity))]
         self.slow = [item for item in self.constraints if item not in self.quick]
         self.most = _MOST_ROBUST if asks_robust(part) else _MOST
-        self.design_objectives = all_minimised(part, self.values(design[None]))[0]
+        self.design_objectives = minimised_objectives(part, self.values(design[None]))[0]
         self.window, self.judged, self.feasible_count = 0, 0, 0
         self._possible_values(1)
 
@@ -124,7 +124,7 @@ class RoundingSearch:
 
     def losses(self, values: Array) -> Array:
         """Return the losses of objectives (n, m) compared with the design's, in units of `span`."""
-        now = all_minimised(self.part, values)
+        now = minimised_objectives(self.part, values)
         with np.errstate(invalid="ignore"):
             lost = np.where(now == self.design_objectives, 0.0, now - self.design_objectives) / self.span
         return np.asarray(np.where(np.isnan(lost), np.inf, lost))
@@ -208,7 +208,7 @@ class RoundingSearch:
         order = np.lexsort((self._steps_away(designs), np.round(total, _TIE), np.round(losses.max(axis=1), _TIE)))
         if losses.shape[1] == 1:  # if one dominates all others, the next best are of interest
             return designs[order]
-        free = nondominated(all_minimised(self.part, values)[order])
+        free = nondominated(minimised_objectives(self.part, values)[order])
         return np.asarray(designs[order[free]])
 
     def _nearest_by_miss(
@@ -250,7 +250,7 @@ class RoundingSearch:
         losses = np.full(len(designs), -np.inf)
         for place, objective in enumerate(self.part.objectives):
             if not needs_cycle(self.part.quantity(objective.quantity)):
-                now = minimised(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
+                now = minimised_values(objective, self.part.evaluate(designs, [objective.quantity])[:, 0])
                 losses = np.fmax(losses, (now - self.design_objectives[place]) / self.span[place])
         return losses
 

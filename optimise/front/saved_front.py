@@ -13,7 +13,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ..problem.constraint_violation import all_minimised
+from ..problem.constraint_violation import minimised_objectives
 from ..problem.problem import Problem
 from .discrete_search_summary import DiscreteSearch
 from .progress import Progress
@@ -119,7 +119,7 @@ def _require_same_objectives(fields: dict[str, Any], objectives: list[Any], prob
         return
     try:
         part = problem.part(fields["variants"][0] if fields["variants"] else 0)
-        values = all_minimised(part, part.evaluate(fields["dimensions"][:1]))[0]
+        values = minimised_objectives(part, part.evaluate(fields["dimensions"][:1]))[0]
     except InputError as error:
         raise InputError(f"{file} is the front of another problem: {error}; {remedy}") from None
     for (name, _, _), saved, value in zip(objectives, fields["values"][0], values, strict=True):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.arrays import Array
-from ..problem.constraint_violation import sides
+from ..problem.constraint_violation import closed_sides
 from ..problem.requirements import Constraint
 from .constant_numbers import is_constant
 
@@ -19,7 +19,7 @@ def slack_of(constraint: Constraint, values: Array) -> Array:
     if constraint.equality:
         slack = -_distances_from_bound(values, constraint.lower, np.abs(values - float(constraint.lower or 0.0)))
     else:
-        for side, bound, _ in sides(constraint):
+        for side, bound, _ in closed_sides(constraint):
             slack = np.minimum(slack, _distances_from_bound(values, bound, side * (bound - values)))
     return slack
 

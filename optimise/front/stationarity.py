@@ -22,7 +22,7 @@ STATIONARY = 1e-6
 _STIFF = 1e3  # weight of the rows that fix the sums of weights, relative to gradient rows of size one
 
 
-def multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
+def optimality_multipliers(goals: Array, active: Array) -> tuple[float, Array, Array]:
     """Return residual, lambda (p,), mu (q,) for objective gradients (p, k) and active constraint gradients (q, k)."""
     p, q = len(goals), len(active)
     size, lengths = _row_sizes(goals, active)

@@ -19,24 +19,24 @@ from pydantic import ValidationError
 
 from ...model.errors import InfeasibleError, InputError, InputWarning, JobError
 from ...model.file_name_encoding import path_from_text, path_text
-from ...objectives.units import printable_name
+from ...objectives.units import quoted_if_unprintable
 from ..problem.problem import Problem
 from .catalogue import catalogue_files, with_catalogues, with_options
-from .custom_quantities import declared_quantities, function_modules
+from .custom_quantities import declared_quantities, function_module_files
 from .drive import motor_torque_warnings
-from .job_file import LARGEST, read, require_plain_data
-from .load_file import names_of_load_files, with_loads
-from .mistake_messages import LONGEST, MOST, explain
-from .mistake_order import first_problems
-from .model import Job, job_with
+from .job_file import LARGEST, read_job_file, require_plain_data
+from .load_file import names_of_load_files, with_load_points
+from .mistake_messages import LONGEST, MOST, sentences_on_mistakes
+from .mistake_order import first_mistakes
+from .model import Job, job_type_with_quantities
 from .named_files import Files
-from .plain_numbers import PlainNumbers, plain_bounds, plain_values, read_and_note_plain_numbers
+from .plain_numbers import PlainNumbers, formula_bounds_without_unit, numbers_without_unit, read_and_note_plain_numbers
 from .problem_of_job import problem_of
 from .schema import schema_of
-from .speed_profile import speeds_file, with_speeds
+from .speed_profile import speed_profile_file, with_speed_points
 from .target_motion import target_motion_file, with_target_motion
-from .toml_errors import with_lines
-from .variables_and_variants import with_values
+from .toml_errors import with_line_numbers
+from .variables_and_variants import with_values_at_paths
 
 __all__ = ["Job", "job_schema", "load_job", "needed_files", "parse_job", "read_job", "with_files"]
 
@@ -71,21 +71,21 @@ def load_job(
             allow_user_code=allow_user_code,
             require_feasible=require_feasible,
         )
-    warn_about(problem)
+    warn_of_problem(problem)
     return problem
 
 
-def warn_about(problem: Problem) -> None:
+def warn_of_problem(problem: Problem) -> None:
     """Issue a Python warning for each warning of a problem, attributed to the caller's caller.
 
     Also warn about loads that drive it, or that are stated for more than the whole stroke, about loaded strokes that
     are fast in every design, and about offsets that a slow stroke excludes.
     """
     from ..search.driving_load_warnings import driving_load_warnings
-    from ..search.overlong_stroke_part_warnings import full_stroke_load_warnings
+    from ..search.overlong_stroke_part_warnings import overlong_part_warnings
     from ..search.stroke_warnings import stroke_warnings
 
-    sentences = [*driving_load_warnings(problem), *full_stroke_load_warnings(problem)]
+    sentences = [*driving_load_warnings(problem), *overlong_part_warnings(problem)]
     for sentence in (*problem.warnings, *sentences, *stroke_warnings(problem, certain=True)):
         warnings.warn(sentence, InputWarning, stacklevel=3)
 
@@ -97,16 +97,18 @@ def read_job(path: str | PathLike[str]) -> dict[str, Any]:
     """
     with _prefix_errors_with_file(path):
         file = path_from_text(path)
-        return with_files(read(file), file.parent)
+        return with_file_contents(read_job_file(file), file.parent)
 
 
-def with_files(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+def with_file_contents(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with the contents of the files that it names in place of their names. Raises JobError.
 
     files: the folder that contains them, or their contents by name, as text or as bytes.
     """
     try:
-        return with_catalogues(with_speeds(with_loads(with_target_motion(data, files), files), files), files)
+        return with_catalogues(
+            with_speed_points(with_load_points(with_target_motion(data, files), files), files), files
+        )
     except JobError:
         raise
     except InputError as error:
@@ -121,21 +123,26 @@ def _prefix_errors_with_file(path: str | PathLike[str]) -> Iterator[None]:
         name, file, message = path_text(path), path_from_text(path), str(error)
         with contextlib.suppress(OSError, ValueError):
             if file.suffix.casefold() == ".toml" and file.is_file() and file.stat().st_size <= LARGEST:
-                message = with_lines(message, file.read_text(encoding="utf-8-sig"))
-        error.args = (f"{printable_name(name)}: {message}",)
+                message = with_line_numbers(message, file.read_text(encoding="utf-8-sig"))
+        error.args = (f"{quoted_if_unprintable(name)}: {message}",)
         raise error from None
 
 
 def needed_files(path: str | PathLike[str]) -> list[Path]:
     """Return the files beside a job file that it needs: tables, and modules with its custom functions."""
     file = path_from_text(path)
-    data, folder = read(file), file.parent
+    data, folder = read_job_file(file), file.parent
     files = [
         name
-        for name in (target_motion_file(data), speeds_file(data), *names_of_load_files(data), *catalogue_files(data))
+        for name in (
+            target_motion_file(data),
+            speed_profile_file(data),
+            *names_of_load_files(data),
+            *catalogue_files(data),
+        )
         if name
     ]
-    return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *function_modules(data, folder)]
+    return [*(folder / path_from_text(name) for name in dict.fromkeys(files)), *function_module_files(data, folder)]
 
 
 def parse_job(
@@ -154,26 +161,28 @@ def parse_job(
     require_plain_data(data)
     data, _ = with_options(data)
     custom = declared_quantities(data, allowed=allow_user_code)
-    job = job_with(custom)
+    job = job_type_with_quantities(custom)
     doubts: list[PlainNumbers] = []
     try:
         stated, doubts = read_and_note_plain_numbers(job, data, values)
-        stated = with_values(stated, values, "values") if values else stated
+        stated = with_values_at_paths(stated, values, "values") if values else stated
         problem = problem_of(stated, folder=folder, installed=custom.installed, require_feasible=require_feasible)
-        doubts += plain_bounds(problem, data)
+        doubts += formula_bounds_without_unit(problem, data)
         sentences = [] if stated.choice else motor_torque_warnings(problem.mechanism, data)
         warned = tuple(dict.fromkeys([*(item.warning for item in doubts if item.warning), *sentences]))
         return replace(problem, warnings=warned) if warned else problem
     except ValidationError as error:
-        doubts = plain_values(job, data)
-        sentences = [_with_unit_warnings(sentence, doubts) for sentence in explain(error, schema_of(job), data)]
+        doubts = numbers_without_unit(job, data)
+        sentences = [
+            _with_unit_warnings(sentence, doubts) for sentence in sentences_on_mistakes(error, schema_of(job), data)
+        ]
         count = f"{len(sentences)} problems" if len(sentences) < LONGEST else "very many problems"
         heading = [count] if len(sentences) > 1 else []
         overflow = ["... and more"] if len(sentences) > MOST else []
-        raise JobError("\n  ".join([*heading, *first_problems(sentences, data), *overflow])) from None
+        raise JobError("\n  ".join([*heading, *first_mistakes(sentences, data), *overflow])) from None
     except InputError as error:  # a number meant in another unit is a likely cause
         if isinstance(error, InfeasibleError) and isinstance(error.problem, Problem):
-            doubts += plain_bounds(error.problem, data)
+            doubts += formula_bounds_without_unit(error.problem, data)
         text = _with_unit_warnings(str(error), doubts, everywhere=isinstance(error, InfeasibleError))
         if not isinstance(error, JobError):
             raise JobError(text) from None
@@ -188,7 +197,7 @@ def _with_unit_warnings(sentence: str, doubts: Iterable[PlainNumbers], *, everyw
     """
     place = re.match(r"[a-z_][^:;=]*(?=: )", sentence)
     key = place[0] if place else ""
-    likely_causes = [item.warning for item in doubts if item.warning and (everywhere or not key or item.concerns(key))]
+    likely_causes = [item.warning for item in doubts if item.warning and (everywhere or not key or item.is_at_key(key))]
     rest = sentence[len(key) :].removeprefix(": ")
     return (f"{key}: " if key else "") + "; ".join((*dict.fromkeys(likely_causes), rest))
 

@@ -15,11 +15,11 @@ from typing import Any
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.units import quote
-from .catalogue_columns import Column, columns_of
+from .catalogue_columns import Column, columns_of_header
 from .catalogue_screening import screen_rows
-from .mistake_messages import key_of
+from .mistake_messages import key_of_location
 from .named_files import Files, read_named_text
-from .number_paths import unknown_path_message, with_number
+from .number_paths import unknown_path_message, with_value_at_path
 from .raw_tables import table_in, tables_in
 from .text_table import TableFile, read_table
 from .text_table_layout import are_numbers
@@ -70,7 +70,7 @@ def with_catalogues(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     job = dict(data)
     if catalogue_files(data):
         job["choice"] = [
-            {**part, "table": read_named_text(files, key_of(["choice", place, "file"]), part["file"])}
+            {**part, "table": read_named_text(files, key_of_location(["choice", place, "file"]), part["file"])}
             if _names_file(part)
             else part
             for place, part in enumerate(job["choice"])
@@ -89,12 +89,14 @@ def with_options(data: Mapping[str, Any]) -> tuple[dict[str, Any], list[Catalogu
     for place, part in enumerate(parts):
         if not isinstance(part, Mapping) or not isinstance(part.get("table"), str):
             continue
-        key = key_of(["choice", place, "table"])
+        key = key_of_location(["choice", place, "table"])
         if "option" in part:
             raise JobError(f"{key}: must not be combined with options; got both; leave out one of the two")
         file = part.get("file")
         source_name = (
-            f"{key_of(['choice', place, 'file'])}: {quote(file)}" if isinstance(file, str) else f"{key}: the table"
+            f"{key_of_location(['choice', place, 'file'])}: {quote(file)}"
+            if isinstance(file, str)
+            else f"{key}: the table"
         )
         catalogue = read_catalogue(part["table"], source_name, names, data, str(part.get("name", "")))
         parts[place] = {**part, "option": catalogue.options}
@@ -127,11 +129,11 @@ def _read_catalogue(
     table: TableFile, custom_names: frozenset[str], tables: Mapping[str, Any] | None, name: str
 ) -> Catalogue:
     file_name = table.name
-    columns = columns_of(table.heads, file_name, custom_names)
+    columns = columns_of_header(table.heads, file_name, custom_names)
     if tables is not None:
-        _require_given(columns, file_name, tables)
+        _require_stated_number(columns, file_name, tables)
     _require_distinct_row_names(table)
-    filled_columns = [column for column in map(partial(_checked_column, table), columns) if column is not None]
+    filled_columns = [column for column in map(partial(_validated_column, table), columns) if column is not None]
     places = [column.place for column in filled_columns if column.kind is not None or not column.is_amount]
     blank = [column.place for column in filled_columns if column.word is not None or column.is_amount]
     digits = dict(zip(places, table.digits(places, missing=blank), strict=True))
@@ -180,7 +182,7 @@ def _require_distinct_row_names(table: TableFile) -> None:
         labels[label] = number
 
 
-def _checked_column(table: TableFile, column: Column) -> Column | None:
+def _validated_column(table: TableFile, column: Column) -> Column | None:
     """Return a column, one that is stored as numbers or text; None if it is empty. Texts are checked."""
     cells = table.texts(column.place)
     filled = [cell for cell in cells if cell]
@@ -198,7 +200,7 @@ def _checked_column(table: TableFile, column: Column) -> Column | None:
     return replace(column, kind=None)
 
 
-def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
+def _require_stated_number(columns: Sequence[Column], name: str, tables: Mapping[str, Any]) -> None:
     """Reject a column that sets, or seems to set, a number that the job does not state."""
     machine = table_in(tables, "mechanism")
     for column in columns:
@@ -210,7 +212,7 @@ def _require_given(columns: Sequence[Column], name: str, tables: Mapping[str, An
             )
         if column.word is None and not column.is_amount and column.name not in DIMENSIONS:
             try:
-                with_number(tables, column.name, 0.0)
+                with_value_at_path(tables, column.name, 0.0)
             except LookupError:
                 raise JobError(
                     f"{name}, column {quote(column.header)}: {unknown_path_message(column.name, tables)}"

@@ -13,13 +13,13 @@ from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.catalogue_amount import kind_of_amount
 from ...objectives.formula.dimensional_analysis import kind_of_formula
-from ...objectives.formula.expression import Name, names_in, text_of
-from ...objectives.formula.formulas import ROOTS, Units, unknown_name
+from ...objectives.formula.expression import Name, formula_text, names_in
+from ...objectives.formula.formulas import ROOTS, Units, unknown_name_error
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.own.quantity import LONGEST_NAME, quantity_entry_points
 from ...objectives.registry import FACTS, QUANTITIES
-from ...objectives.units import closest, quote, to_si
+from ...objectives.units import closest_word, quote, to_si
 
 _UNIT = r"(?:\((?P<unit>[^()]*)\)|\[(?P<other>[^\[\]]*)\])?"
 _COLUMN = re.compile(rf"(?P<name>[^#]+?)(?:\s+(?P<word>min|max|equals))?\s*{_UNIT}")
@@ -71,7 +71,7 @@ class Column:
         return f"{self.name} {self.word or ''} ({self.unit})".replace(" ()", "").replace("  ", " ")
 
 
-def columns_of(header: Sequence[str], name: str, custom_names: frozenset[str]) -> list[Column]:
+def columns_of_header(header: Sequence[str], name: str, custom_names: frozenset[str]) -> list[Column]:
     """Return the columns that a header line names, without those that begin with #.
 
     A quantity without min, max or equals becomes a limit on its bad side. Other columns that set no number of the job
@@ -109,11 +109,11 @@ def _read_column(place: int, text: str, column_name: str, custom_names: frozense
     if word is not None:
         try:
             name, kind = _limited_quantity(
-                name if name in custom_names else _quantity_names().get(identifier(name), name), custom_names
+                name if name in custom_names else _quantity_names().get(identifier_from_text(name), name), custom_names
             )
         except InputError as error:
-            key = identifier(name)
-            if not re.fullmatch(r"[\w -]+", name) or closest(key, (*_quantity_names(), *custom_names)) is not None:
+            key = identifier_from_text(name)
+            if not re.fullmatch(r"[\w -]+", name) or closest_word(key, (*_quantity_names(), *custom_names)) is not None:
                 raise JobError(f"{column_name}: {error}") from None
             raise JobError(
                 f"{column_name}: a limit must be on a quantity; got {quote(name)}, which is not one; name the column "
@@ -124,17 +124,17 @@ def _read_column(place: int, text: str, column_name: str, custom_names: frozense
         return Column(place, text, name, word, unit, kind)
     if _PATH.fullmatch(name):
         return Column(place, text, name, None, unit)
-    quantity = FACTS.get(_quantity_names().get(identifier(name), ""))
+    quantity = FACTS.get(_quantity_names().get(identifier_from_text(name), ""))
     if quantity is not None and not _GIVEN & set(quantity.offered):
         _require_unit(unit, quantity.kind, column_name, text)
         return Column(
             place, text, quantity.name, "max" if quantity.better == "low" else "min", unit, quantity.kind, added=True
         )
     _require_amount_name(text, name, unit, column_name, custom_names)
-    return Column(place, text, identifier(name), None, unit, kind_of_amount(unit), is_amount=True)
+    return Column(place, text, identifier_from_text(name), None, unit, kind_of_amount(unit), is_amount=True)
 
 
-def identifier(text: str) -> str:
+def identifier_from_text(text: str) -> str:
     """Return a text as a name of lower-case letters, digits and _; empty if nothing remains."""
     plain = unicodedata.normalize("NFKD", text.casefold()).encode("ascii", "ignore").decode()
     return re.sub("[^a-z0-9]+", "_", plain).strip("_")
@@ -143,7 +143,9 @@ def identifier(text: str) -> str:
 @cache
 def _quantity_names() -> dict[str, str]:
     """Return the names of quantities by name and by title."""
-    return {identifier(quantity.title): name for name, quantity in FACTS.items()} | {name: name for name in FACTS}
+    return {identifier_from_text(quantity.title): name for name, quantity in FACTS.items()} | {
+        name: name for name in FACTS
+    }
 
 
 def _require_amount_name(text: str, name: str, unit: str, column_name: str, custom_names: frozenset[str]) -> None:
@@ -151,14 +153,14 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
     unit_text = f" ({unit})" if unit else ""
     misplaced = _MISPLACED.fullmatch(name)
     bare = (misplaced["after"] or misplaced["before"]) if misplaced is not None else ""
-    limited = _quantity_names().get(identifier(bare), bare)
-    if misplaced is not None and _is_known(limited, custom_names):
+    limited = _quantity_names().get(identifier_from_text(bare), bare)
+    if misplaced is not None and _is_quantity_or_formula(limited, custom_names):
         word = _LIMIT[(misplaced["first"] or misplaced["last"]).casefold()]
         raise JobError(
             f"{column_name}: min, max or equals must follow the quantity, in lower case; write {limited} "
             f"{word}{unit_text}"
         )
-    quantity_name = _quantity_names().get(identifier(name), name)
+    quantity_name = _quantity_names().get(identifier_from_text(name), name)
     if quantity_name in FACTS or quantity_name in custom_names:
         raise JobError(
             f"{column_name}: a quantity needs min, max or equals; got none; write {quantity_name} max{unit_text} for "
@@ -170,15 +172,15 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
             f"{column_name}: a number of the job must be named by its path; got {name}; write {number_path}{unit_text}"
         )
     for formula in (name, text):  # with text, because the brackets at its end may belong to a function
-        if _is_known(formula, custom_names):
+        if _is_quantity_or_formula(formula, custom_names):
             limited, _ = _limited_quantity(formula, custom_names)
             raise JobError(
                 f"{column_name}: a formula needs min, max or equals; got none; write {limited} max for its limit"
             )
-    key = identifier(name)
+    key = identifier_from_text(name)
     if not key or not (name[0].isalpha() and key[0].isalpha()) or len(key) > LONGEST_NAME:
         raise JobError(f"{column_name}: {_RULE}; got neither; rename it, or let it begin with # to skip it")
-    peak = f"peak_{identifier(bare)}"
+    peak = f"peak_{identifier_from_text(bare)}"
     near = [peak] if peak in _quantity_names() else difflib.get_close_matches(key, _quantity_names(), n=1, cutoff=_NEAR)
     if near:
         raise JobError(
@@ -188,7 +190,7 @@ def _require_amount_name(text: str, name: str, unit: str, column_name: str, cust
         )
 
 
-def _is_known(text: str, custom_names: frozenset[str]) -> bool:
+def _is_quantity_or_formula(text: str, custom_names: frozenset[str]) -> bool:
     """Return whether a text is a quantity or a formula."""
     try:
         return bool(_limited_quantity(text, custom_names))
@@ -209,13 +211,13 @@ def _limited_quantity(text: str, custom_names: frozenset[str]) -> tuple[str, Kin
     installed = quantity_entry_points() if unknown else {}
     for name in unknown:
         if name not in installed:
-            raise unknown_name(name, known_names, units, text)
+            raise unknown_name_error(name, known_names, units, text)
     if isinstance(node, Name) and node.name in FACTS:
         return node.name, FACTS[node.name].kind
     kinds = dict.fromkeys(DIMENSIONS, LENGTH) | {name: quantity.kind for name, quantity in FACTS.items()}
     if any(name not in kinds or name in custom_names for name in names):
-        return text_of(node), None
-    return text_of(node), kind_of_formula(node, {name: kinds[name] for name in names})
+        return formula_text(node), None
+    return formula_text(node), kind_of_formula(node, {name: kinds[name] for name in names})
 
 
 def _require_unit(unit: str, kind: Kind, column_name: str, head: str) -> None:

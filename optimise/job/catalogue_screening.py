@@ -5,7 +5,7 @@ constraints. Consider two rows with the same numbers of the job, where the first
 The first then allows every design that the second allows, with objectives at least as good. So the front of all rows
 does not need the second, which is dominated. Among equal rows, the smallest stays. Limits that are equalities can be
 compared only if equal. The same applies to maxima of quantities whose floor depends on them (see
-`violation.constraints_of`), and to amounts in a formula.
+`constraint_violation.constraints_with_floors`), and to amounts in a formula.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ...objectives.formula.formulas import identifiers_in
 from ...objectives.units import to_si
 from ..problem.constraint_violation import FEASIBLE
 from .catalogue_columns import Column
-from .option_amounts import excluded_in_words
+from .option_amounts import excess_amount_text
 from .raw_tables import table_in
 
 ORDER = ("price", "mass")
@@ -181,7 +181,7 @@ def _excluded_rows(
         for row in np.flatnonzero(outside).tolist():
             if rows[row][column.place]:
                 cell = f"{rows[row][column.place]} {column.unit}".rstrip()
-                reasons[row] = excluded_in_words(column.name, cell, word, bound)
+                reasons[row] = excess_amount_text(column.name, cell, word, bound)
     return reasons
 
 

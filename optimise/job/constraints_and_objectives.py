@@ -33,11 +33,11 @@ from ...model.linkage.linkage import SlowStroke
 from ...objectives.formula.formulas import ROOTS, Formulas, is_formula
 from ...objectives.kinds import RATIO, Kind
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, plus_minus_ends, printable_name, quote
+from ...objectives.units import closest_word, plus_minus_ends, quote, quoted_if_unprintable
 from ..problem.requirements import SENSES, Constraint, Objective, Word
-from .mistake_messages import key_of, toml_text
+from .mistake_messages import key_of_location, toml_text
 from .value_grids import crossed_ends_remedy
-from .value_types import Part, Physical, optional, plus_minus_error, required
+from .value_types import Part, Physical, optional_entry, plus_minus_error, required_entry
 
 
 class Bounds(Part):
@@ -126,15 +126,15 @@ _RAW = Annotated[Any, _FormulaBoundMarker(RATIO)]
 class FormulaBounds(Bounds):
     """Bounds on a formula: values of its kind, or formulas."""
 
-    min: _RAW | None = optional("least", "1 mm")
-    max: _RAW | None = optional("greatest", "400 mm")
-    equals: _RAW | None = optional("exact value", "0 mm", "3.2 * offset")
+    min: _RAW | None = optional_entry("least", "1 mm")
+    max: _RAW | None = optional_entry("greatest", "400 mm")
+    equals: _RAW | None = optional_entry("exact value", "0 mm", "3.2 * offset")
 
 
 class FormulaTarget(Target):
     """Target value for a formula."""
 
-    target: _RAW = required("to come near to", "2 mm")
+    target: _RAW = required_entry("to come near to", "2 mm")
 
 
 WORDS: tuple[Word, ...] = ("min", "max", "equals")
@@ -148,7 +148,7 @@ def _check_sense(value: object) -> object:
     if isinstance(value, str):
         if value in SENSES and value != "target":
             return SENSES[value]
-        near = closest(value, ("minimise", "maximise"))
+        near = closest_word(value, ("minimise", "maximise"))
         hint = f'; did you mean "{near}"?' if near else ""
         raise InputError(f"must be {_SENSES}; got {quote(value)}{hint}")
     if not isinstance(value, Mapping | Target):
@@ -192,7 +192,7 @@ class _Table(Part):
             path, value = _rejoin_dotted_key(key, data[key])
             raise InputError(
                 f"a key with dots must be in quotes, like a formula; got "
-                f"{printable_name(path)} without; write it as {toml_text(path)} = {toml_text(value)}"
+                f"{quoted_if_unprintable(path)} without; write it as {toml_text(path)} = {toml_text(value)}"
             )
         keys = [key for key in data if isinstance(key, str) and cls._is_formula(key)]
         rest = {key: value for key, value in data.items() if key not in keys}
@@ -239,9 +239,9 @@ def constraint_and_objective_tables(
         if kind not in forms:
             forms[kind] = _bound_and_objective_types(kind, names)
         bounds, wish = forms[kind]
-        limits[name] = (bounds | None, optional(title, {bound: example}))
-        wishes[name] = (wish | None, optional(title, "minimise", {"target": example}))
-    slow = optional("the slow stroke; determines offset and direction of rotation", "outward")
+        limits[name] = (bounds | None, optional_entry(title, {bound: example}))
+        wishes[name] = (wish | None, optional_entry(title, "minimise", {"target": example}))
+    slow = optional_entry("the slow stroke; determines offset and direction of rotation", "outward")
     limits[SLOW_STROKE] = (SlowStroke | None, slow)
     limits["formulas"] = (dict[str, FormulaBounds], Field(default={}, alias=_KEY))
     several: Any = dict
@@ -262,9 +262,9 @@ def _bound_and_objective_types(kind: Kind, names: frozenset[str]) -> tuple[Any, 
     name = kind.plain.title().replace(" ", "")
     example = [kind.example if kind.unit else float(kind.example)]
     help_of = {"min": "least", "max": "greatest", "equals": "exact value"}
-    limits: Any = {word: (bound | None, optional(text, *example)) for word, text in help_of.items()}
+    limits: Any = {word: (bound | None, optional_entry(text, *example)) for word, text in help_of.items()}
     bounds = create_model(f"{name}Bounds", __base__=Bounds, **limits)
-    target_field: Any = {"target": (value, required("to come near to", *example))}
+    target_field: Any = {"target": (value, required_entry("to come near to", *example))}
     target = create_model(f"{name}Target", __base__=Target, **target_field)
     return bounds, _target_type(target)
 
@@ -300,7 +300,7 @@ def constraints_of(
         if all(isinstance(value, float) for value in stated_bounds.values()) and name in FACTS:
             yield Constraint(quantity=name, **_ends_of_bounds(stated_bounds))
         elif formulas is not None:
-            yield from _bounds_of_formula(f"{key}{key_of([name])}", name, stated_bounds, formulas)
+            yield from _bounds_of_formula(f"{key}{key_of_location([name])}", name, stated_bounds, formulas)
 
 
 def _bounds_of_formula(key: str, name: str, bounds: Mapping[Word, object], formulas: Formulas) -> Iterator[Constraint]:
@@ -339,7 +339,7 @@ def slow_stroke_of(part: ConstraintsPart) -> SlowStroke | None:
 def objectives_of(part: ObjectivesPart, formulas: Formulas) -> Iterator[Objective]:
     """Return a job's objectives in the form that the problem uses. Raises JobError for an invalid formula."""
     for name, wish in _table_entries(part):
-        key = f"objectives.{key_of([name])}"
+        key = f"objectives.{key_of_location([name])}"
         of = formulas.quantity(name, key)
         if isinstance(wish, Target):
             target = cast(Any, wish).target

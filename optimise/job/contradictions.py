@@ -27,22 +27,22 @@ from ..feasibility.impossible_swing_reasons import require_swinging
 from ..problem.always_zero_quantities import require_nonzero_quantities
 from ..problem.contradictory_problems import require_longer_slow_stroke
 from ..problem.problem import Problem
-from ..problem.requirements import Range, merged
-from ..problem.restatement import restate
+from ..problem.requirements import Range, merge_constraints
+from ..problem.restatement import restate_constraint
 from ..search.elimination import offset_signs, require_offset_for_slow_stroke
 from .impossible_options import require_possible_option
-from .linear_contradictions import require_compatible
-from .mistake_messages import key_of
+from .linear_contradictions import require_compatible_linear_requirements
+from .mistake_messages import key_of_location
 from .possible_values import Box, require_reachable
 
 
-def require_consistent(problem: Problem) -> None:
+def require_no_contradiction(problem: Problem) -> None:
     """Raise an error, naming key, rule, value and remedy, if the problem contradicts itself.
 
     It is an `InfeasibleError` if the parts are valid but no design meets them all, otherwise a `JobError`.
     """
     for key, quantity, word, value in _bounds_and_targets(problem):
-        _require_possible(problem, key, quantity, word, value)
+        _require_possible_value(problem, key, quantity, word, value)
     for objective in problem.objectives:
         _require_varying_objective(problem, objective.quantity)
     _require_one_density(problem)
@@ -56,7 +56,7 @@ def require_consistent(problem: Problem) -> None:
     _require_reachable_formulas(problem)
     require_slow_stroke(problem)
     require_possible_option(problem)
-    require_compatible(problem)
+    require_compatible_linear_requirements(problem)
 
 
 _ONE_MATERIAL = 0.05
@@ -157,13 +157,13 @@ def _why_nothing_delivered(part: Problem) -> str:
 
 def _require_reachable_formulas(problem: Problem) -> None:
     """Raise `InfeasibleError` if formulas require values of known quantities beyond those within the ranges."""
-    restated = {item.quantity: restate(problem, item) for item in problem.constraints}
-    keys = [key_of(["constraints", name]) for name, item in restated.items() if item.quantity != name]
+    restated = {item.quantity: restate_constraint(problem, item) for item in problem.constraints}
+    keys = [key_of_location(["constraints", name]) for name, item in restated.items() if item.quantity != name]
     if not keys:
         return
     words = f"{' and '.join(keys)} {'requires' if len(keys) == 1 else 'require'} in other words"
     try:
-        require_reachable(replace(problem, constraints=merged(restated.values())))
+        require_reachable(replace(problem, constraints=merge_constraints(restated.values())))
     except InputError as error:
         raise InfeasibleError(f"{error}; this is what {words}") from None
 
@@ -172,22 +172,22 @@ def _bounds_and_targets(problem: Problem) -> Iterator[tuple[str, str, str, float
     """Yield key, quantity, word and value of every bound and target."""
     for constraint in problem.constraints:
         for word, value in constraint.sides:
-            yield key_of(["constraints", constraint.quantity]), constraint.quantity, word, value
+            yield key_of_location(["constraints", constraint.quantity]), constraint.quantity, word, value
     for variant in problem.variants:
         for constraint in variant.limits:
             for word, value in constraint.sides:
                 yield (
-                    f"choice {' and '.join(map(quote, variant.labels))}: {key_of([constraint.quantity])}",
+                    f"choice {' and '.join(map(quote, variant.labels))}: {key_of_location([constraint.quantity])}",
                     constraint.quantity,
                     word,
                     value,
                 )
     for objective in problem.objectives:
         if objective.target is not None:
-            yield key_of(["objectives", objective.quantity]), objective.quantity, "target", objective.target
+            yield key_of_location(["objectives", objective.quantity]), objective.quantity, "target", objective.target
 
 
-def _require_possible(problem: Problem, key: str, name: str, word: str, value: float) -> None:
+def _require_possible_value(problem: Problem, key: str, name: str, word: str, value: float) -> None:
     """Reject a value that a quantity cannot have in any linkage."""
     quantity = problem.quantity(name)
     value_text = f"got {word} {value * quantity.unit.factor:.6g} {quantity.unit.symbol}".rstrip()
@@ -202,12 +202,17 @@ def _require_possible(problem: Problem, key: str, name: str, word: str, value: f
 def _require_varying_objective(problem: Problem, name: str) -> None:
     """Reject an objective that is the same for every design."""
     equality = next(
-        (c for c in problem.constraints if c.equality and name in (c.quantity, restate(problem, c).quantity)), None
+        (
+            c
+            for c in problem.constraints
+            if c.equality and name in (c.quantity, restate_constraint(problem, c).quantity)
+        ),
+        None,
     )
     if equality is not None:
         raise JobError(
             f"objectives.{name}: a quantity with a fixed value cannot also be an objective; got "
-            f"{key_of(['constraints', equality.quantity])} with equals; leave out one of the two"
+            f"{key_of_location(['constraints', equality.quantity])} with equals; leave out one of the two"
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:

@@ -12,7 +12,7 @@ from ...model.machine.speed_profile import SpeedTable
 from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
 from ...objectives.units import quote
 from .speed_profile import SpeedProfilePart
-from .value_types import AngularAcceleration, Part, PhysicalWithin, optional
+from .value_types import AngularAcceleration, Part, PhysicalWithin, optional_entry
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
@@ -67,23 +67,25 @@ _SPEED = _CrankSpeedMarker(
 class CrankSpeedPart(Part):
     """Crank speed and its variation over a turn."""
 
-    speed: Annotated[float, _SPEED] | None = optional(
+    speed: Annotated[float, _SPEED] | None = optional_entry(
         "crank speed, positive counter-clockwise, negative clockwise; not for a swing",
         "300 rpm",
     )
-    cycle_time: Annotated[float, _CYCLE_TIME] | None = optional(
+    cycle_time: Annotated[float, _CYCLE_TIME] | None = optional_entry(
         "instead of speed: time of one cycle, which is one turn, or two if a load has a cycle of 720 deg", "2 s"
     )
-    strokes_per_minute: Annotated[float, _STROKES] | None = optional("instead of speed: crank turns per minute", 30)
-    direction: Direction | None = optional(
+    strokes_per_minute: Annotated[float, _STROKES] | None = optional_entry(
+        "instead of speed: crank turns per minute", 30
+    )
+    direction: Direction | None = optional_entry(
         "direction of rotation, with cycle_time or strokes_per_minute; default counter-clockwise", "clockwise"
     )
-    acceleration: AngularAcceleration = optional(
+    acceleration: AngularAcceleration = optional_entry(
         "angular acceleration of the crank, the same at every crank angle",
         "20 rad/s^2",
         default=0.0,
     )
-    speed_profile: SpeedProfilePart | None = optional(
+    speed_profile: SpeedProfilePart | None = optional_entry(
         "variation of the speed with the crank angle; applies to all quantities except stresses and wear",
         {"cosines": [0.0, 0.05]},
     )

@@ -19,7 +19,13 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...objectives.kinds import ANGLE, TIME, Kind
-from ...objectives.units import letters_and_digits, quote, symbol_in, value_of_one_si_unit_in, without_word_in
+from ...objectives.units import (
+    letters_and_digits,
+    quote,
+    unit_in_heading,
+    value_of_one_si_unit_in,
+    without_word_in,
+)
 from .text_table import TableFile
 
 _BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]")
@@ -76,27 +82,29 @@ class Curve:
         return f"{file}: {'; '.join(self.notes)}"
 
 
-def curve_in(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequence[Kind]) -> Curve:
+def curve_of_table(table: TableFile, argument_kinds: Sequence[Kind], value_kinds: Sequence[Kind]) -> Curve:
     """Return the curve from a table's columns whose units have some kinds. Raises `InputError` for none or several."""
     kinds = (*argument_kinds, *value_kinds)
     heads = [head for place, text in enumerate(table.heads) if (head := _read_heading(place, text, kinds)) is not None]
     if not heads and len(table.heads) == 2:
         columns = list(zip(table.heads, (argument_kinds, value_kinds), strict=True))
-        likely = [next((kind for kind in kinds if _names_kind(text, kind)), kinds[0]) for text, kinds in columns]
+        likely = [
+            next((kind for kind in kinds if _heading_names_kind(text, kind)), kinds[0]) for text, kinds in columns
+        ]
         example = ",".join(f"{text} ({kind.metric.symbol})" for text, kind in zip(table.heads, likely, strict=True))
         raise InputError(
             f"{table.name}: the columns have no units; got {', '.join(map(quote, table.heads))}; write, for example, "
             f"{quote(example)}"
         )
     angles = [head for head in heads if head.kind is ANGLE and ANGLE in argument_kinds]
-    x = _only_head(
+    x = _only_heading(
         table,
         [head for head in heads if head.kind in argument_kinds and not (angles and head.kind is TIME)],
         argument_kinds,
     )
-    y = _only_head(table, [head for head in heads if head.kind in value_kinds and head is not x], value_kinds)
+    y = _only_heading(table, [head for head in heads if head.kind in value_kinds and head is not x], value_kinds)
     for head in (x, y):
-        _require_kind(table, head, kinds)
+        _require_heading_of_kind(table, head, kinds)
     arguments, values = table.numbers([x.place, y.place])
     again = np.flatnonzero((np.diff(arguments) == 0.0) & (np.diff(values) == 0.0))
     arguments, values = np.delete(arguments, again + 1), np.delete(values, again + 1)
@@ -117,9 +125,9 @@ def _read_heading(place: int, text: str, kinds: Sequence[Kind]) -> Head | None:
         (kind, unit)
         for text_unit in _units_in(text)
         for kind in kinds
-        if (unit := symbol_in(text_unit, kind)) is not None
+        if (unit := unit_in_heading(text_unit, kind)) is not None
     ]
-    named = [meaning for meaning in meanings if _names_kind(text, meaning[0])]
+    named = [meaning for meaning in meanings if _heading_names_kind(text, meaning[0])]
     return Head(place, text, *(named or meanings)[0]) if meanings else None
 
 
@@ -131,13 +139,13 @@ def _units_in(text: str) -> list[str]:
     return [without_word_in(unit) for unit in units]
 
 
-def _names_kind(text: str, kind: Kind) -> bool:
+def _heading_names_kind(text: str, kind: Kind) -> bool:
     return kind.plain.split()[-1] in text.casefold()
 
 
-def _require_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
+def _require_heading_of_kind(table: TableFile, head: Head, kinds: Sequence[Kind]) -> None:
     """Raise `InputError` for a heading whose name contradicts its unit."""
-    named = [kind for kind in kinds if _names_kind(head.text, kind)]
+    named = [kind for kind in kinds if _heading_names_kind(head.text, kind)]
     if named and head.kind not in named:
         raise InputError(
             f"{table.name}, column {quote(head.text)}: must have the unit of {named[0].name}, as its name says; got "
@@ -155,9 +163,9 @@ def _heading_remedy(heads: Sequence[str], kinds: Sequence[Kind]) -> str:
     return "name the unit"
 
 
-def _only_head(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
+def _only_heading(table: TableFile, heads: list[Head], kinds: Sequence[Kind]) -> Head:
     """Return the only column, or, among several of one kind, the only one that names the kind."""
-    named = [head for head in heads if _names_kind(head.text, head.kind)]
+    named = [head for head in heads if _heading_names_kind(head.text, head.kind)]
     candidates = named if len(named) == 1 and len({head.kind for head in heads}) == 1 else heads
     if len(candidates) == 1:
         return candidates[0]

@@ -23,18 +23,18 @@ from ...objectives.own.quantity import (
     OwnQuantity,
     installed_quantity,
     quantity_entry_points,
-    require_name,
+    require_column_name,
 )
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_of_any_unit, quote, value_of_one_si_unit_in
 from .constraints_and_objectives import SLOW_STROKE, Stated
-from .option_amounts import amounts_in, kinds_of_amounts
+from .option_amounts import kinds_of_amounts, readable_amounts
 from .part_kinds import Kinds
 from .raw_tables import options_in, table_in
-from .value_types import Part, Physical, optional, required
+from .value_types import Part, Physical, optional_entry, required_entry
 
 
-def _check_function(text: str) -> str:
+def _require_function_name(text: str) -> str:
     if not FUNCTION.fullmatch(text):
         raise InputError(
             f'must name a module and a function in it; got {quote(text)}; write it like "mymodule:myfunction", or '
@@ -43,7 +43,7 @@ def _check_function(text: str) -> str:
     return text
 
 
-def _check_unit(text: str) -> str:
+def _require_unit(text: str) -> str:
     try:
         kind_of_any_unit(text)
     except InputError as error:
@@ -68,19 +68,19 @@ Title = Annotated[str, Field(max_length=60), AfterValidator(require_one_line)]
 class FunctionPart(Part):
     """A Python function as a quantity, whose name may be used in [objectives] and [constraints]."""
 
-    function: Annotated[str, Field(max_length=200), AfterValidator(_check_function)] = required(
+    function: Annotated[str, Field(max_length=200), AfterValidator(_require_function_name)] = required_entry(
         "module:function; the module is in the folder of the job file or installed", "mymodule:greatest_jerk"
     )
-    unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] = optional(
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_require_unit)] = optional_entry(
         'display unit; the function returns SI; "" for a ratio', "m/s^3", default=""
     )
-    title: Title | None = optional("title; default: the name", "greatest jerk of the slider")
-    gradient: Gradient = optional(
+    title: Title | None = optional_entry("title; default: the name", "greatest jerk of the slider")
+    gradient: Gradient = optional_entry(
         "method for derivatives: complex step for a function that runs on complex numbers",
         "complex step",
         default="complex step",
     )
-    limit: Annotated[float, Physical(TIME, "positive")] = optional(
+    limit: Annotated[float, Physical(TIME, "positive")] = optional_entry(
         "time limit of a call for up to 256 designs", "30 s", default=LIMIT
     )
 
@@ -100,12 +100,12 @@ class FunctionPart(Part):
 class FormulaPart(Part):
     """A formula as a quantity; its name may be used in [objectives], [constraints] and other formulas."""
 
-    formula: Annotated[str, Field(max_length=20_000)] = required(
+    formula: Annotated[str, Field(max_length=20_000)] = required_entry(
         "formula of quantities, dimensions, variables, numbers with units, + - * / ** and functions",
         "offset - crank",
     )
-    title: Title | None = optional("title; default: the name", "clearance beside the crank")
-    unit: Annotated[str, Field(max_length=30), AfterValidator(_check_unit)] | None = optional(
+    title: Title | None = optional_entry("title; default: the name", "clearance beside the crank")
+    unit: Annotated[str, Field(max_length=30), AfterValidator(_require_unit)] | None = optional_entry(
         "display unit; default: the usual unit for its kind", "mm"
     )
 
@@ -135,20 +135,20 @@ def require_usable_names(parts: Parts) -> Parts:
             raise InputError(
                 f"the name of a quantity must be new; got {quote(name)}, which exists already; choose another name"
             )
-        require_name(name)
+        require_column_name(name)
         if isinstance(part, FunctionPart):
             part.build(name, ())
     return parts
 
 
-def functions_of(parts: Parts, folder: Path | None) -> Iterator[OwnQuantity]:
+def function_quantities(parts: Parts, folder: Path | None) -> Iterator[OwnQuantity]:
     """Yield a job's functions in the form that the problem uses. folder: where to look for their modules."""
     for name, part in parts.items():
         if isinstance(part, FunctionPart):
-            yield part.build(name, import_folders(folder))
+            yield part.build(name, module_search_folders(folder))
 
 
-def formulas_of(parts: Parts) -> dict[str, formulas.Stated]:
+def named_formulas(parts: Parts) -> dict[str, formulas.Stated]:
     """Return the named formulas of a job."""
     return {name: part.build() for name, part in parts.items() if isinstance(part, FormulaPart)}
 
@@ -193,7 +193,7 @@ def declared_quantities(data: Mapping[str, Any], *, allowed: bool) -> Declared:
             tables[name] = _quantity_facts(name.replace("_", " "), kind)
     tables |= {
         name: _quantity_facts(name.replace("_", " "), kind)
-        for name, kind in kinds_of_amounts(amounts_in(data)).items()
+        for name, kind in kinds_of_amounts(readable_amounts(data)).items()
         if name not in FACTS and name != SLOW_STROKE and name.isidentifier() and not name.startswith("_")
     }
     limits = (table_in(part, "constraints") for part in (data, *options_in(data)))
@@ -232,12 +232,12 @@ def _used_names(table: Mapping[str, Any]) -> Iterator[str]:
                 yield from identifiers_in(bound)
 
 
-def import_folders(folder: Path | None) -> list[str]:
+def module_search_folders(folder: Path | None) -> list[str]:
     """Return the folders to search for a job's modules: that of the job file, then the working directory."""
     return [str(place.resolve()) for place in ((folder,) if folder else ()) + (Path(),)]
 
 
-def function_modules(data: Mapping[str, Any], folder: Path) -> list[Path]:
+def function_module_files(data: Mapping[str, Any], folder: Path) -> list[Path]:
     """Return the files beside a job file that contain its functions."""
     parts = data.get("quantity", {})
     functions = [part.get("function") for part in parts.values() if isinstance(part, Mapping)] if parts else []

@@ -25,8 +25,8 @@ from .value_types import (
     PositiveTorque,
     Recovery,
     Torque,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 
@@ -35,7 +35,7 @@ class ConstantMotor(Built[model.Motor]):
 
     makes = model.ConstantTorque
 
-    torque: DrivingTorque = required("at every speed; zero if only a load drives the crank", "20 N m")
+    torque: DrivingTorque = required_entry("at every speed; zero if only a load drives the crank", "20 N m")
 
 
 class LineMotor(Built[model.Motor]):
@@ -43,8 +43,8 @@ class LineMotor(Built[model.Motor]):
 
     makes = model.LinearMotor
 
-    stall_torque: PositiveTorque = required("at standstill", "60 N m")
-    no_load_speed: PositiveAngularSpeed = required("where the torque is zero", "400 rpm")
+    stall_torque: PositiveTorque = required_entry("at standstill", "60 N m")
+    no_load_speed: PositiveAngularSpeed = required_entry("where the torque is zero", "400 rpm")
 
 
 class RatedMotor(Checked[model.Motor]):
@@ -53,9 +53,9 @@ class RatedMotor(Checked[model.Motor]):
     makes = model.LinearMotor.through
     renamed: ClassVar = {"rated_torque": "torque", "rated_speed": "speed"}
 
-    rated_torque: PositiveTorque = required("at the rated speed", "14.6 N m")
-    rated_speed: PositiveAngularSpeed = required("under the rated torque", "1440 rpm")
-    no_load_speed: PositiveAngularSpeed = required("where the torque is zero", "1500 rpm")
+    rated_torque: PositiveTorque = required_entry("at the rated speed", "14.6 N m")
+    rated_speed: PositiveAngularSpeed = required_entry("under the rated torque", "1440 rpm")
+    no_load_speed: PositiveAngularSpeed = required_entry("where the torque is zero", "1500 rpm")
 
 
 class TableMotor(Checked[model.Motor]):
@@ -63,13 +63,13 @@ class TableMotor(Checked[model.Motor]):
 
     makes = model.TorqueTable
 
-    speeds: tuple[AngularSpeed, ...] = required(
+    speeds: tuple[AngularSpeed, ...] = required_entry(
         "motor speeds, increasing; the first must be zero or negative",
         ["0 rpm", "750 rpm", "1500 rpm"],
         min_length=2,
         max_length=1000,
     )
-    torques: tuple[Torque, ...] = required(
+    torques: tuple[Torque, ...] = required_entry(
         "at each speed", ["30 N m", "45 N m", "0 N m"], min_length=2, max_length=1000
     )
 
@@ -101,25 +101,25 @@ class DrivePart(Checked[model.Drive]):
 
     makes = model.Drive
 
-    motor: AnyMotor | None = optional(
+    motor: AnyMotor | None = optional_entry(
         "motor torque over motor speed, for a machine driven by its motor",
         {"stall_torque": "60 N m", "no_load_speed": "400 rpm"},
         {"torque": "20 N m"},
     )
-    flywheel: Inertia = optional("inertia on the crankshaft", "0.5 kg m^2", default=0.0)
-    motor_inertia: Inertia = optional(
+    flywheel: Inertia = optional_entry("inertia on the crankshaft", "0.5 kg m^2", default=0.0)
+    motor_inertia: Inertia = optional_entry(
         "of the rotor and everything that turns at motor speed", "0.004 kg m^2", default=0.0
     )
-    gear_ratio: PositiveRatio = optional("motor turns per crank turn", 5.0, default=1.0)
-    gear_efficiency: Efficiency = optional("of the gear while the motor drives", 0.94, default=1.0)
-    braking_efficiency: Efficiency | None = optional(
+    gear_ratio: PositiveRatio = optional_entry("motor turns per crank turn", 5.0, default=1.0)
+    gear_efficiency: Efficiency = optional_entry("of the gear while the motor drives", 0.94, default=1.0)
+    braking_efficiency: Efficiency | None = optional_entry(
         "of the gear while the crank drives the motor; gear_efficiency if left out", 0.9
     )
-    greatest_torque: PositiveTorque | None = optional("that the motor can give briefly", "15 N m")
-    rated_torque: PositiveTorque | None = optional("that the motor can give continuously", "5 N m")
-    greatest_speed: PositiveAngularSpeed | None = optional("of the motor", "4000 rpm")
-    copper_loss: Loss | None = optional("heat in the winding at the rated torque", "120 W")
-    recovery: Recovery = optional("fraction of the braking energy that the supply takes back", 0.8, default=0.0)
+    greatest_torque: PositiveTorque | None = optional_entry("that the motor can give briefly", "15 N m")
+    rated_torque: PositiveTorque | None = optional_entry("that the motor can give continuously", "5 N m")
+    greatest_speed: PositiveAngularSpeed | None = optional_entry("of the motor", "4000 rpm")
+    copper_loss: Loss | None = optional_entry("heat in the winding at the rated torque", "120 W")
+    recovery: Recovery = optional_entry("fraction of the braking energy that the supply takes back", 0.8, default=0.0)
 
 
 def motor_torque_warnings(mechanism: Mechanism, tables: Mapping[str, Any]) -> list[str]:

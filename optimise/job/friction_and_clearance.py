@@ -17,8 +17,8 @@ from .value_types import (
     PositiveClearance,
     PositiveLength,
     Pressure,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 Coefficient = Annotated[
@@ -36,8 +36,10 @@ class PinPart(Built[Pin]):
 
     makes = Pin
 
-    radius: PositiveLength | None = optional("radius of the pin; default half its diameter in [sections]", "10 mm")
-    coefficient: Coefficient = required("of friction, on the pin's surface", 0.08)
+    radius: PositiveLength | None = optional_entry(
+        "radius of the pin; default half its diameter in [sections]", "10 mm"
+    )
+    coefficient: Coefficient = required_entry("of friction, on the pin's surface", 0.08)
 
 
 class FrictionPart(Built[Friction]):
@@ -45,10 +47,14 @@ class FrictionPart(Built[Friction]):
 
     makes = Friction
 
-    guide: Coefficient = optional("coefficient of the slider in its guide", 0.1, default=0.0)
-    crank_pivot: PinPart | None = optional("between frame and crank", {"radius": "15 mm", "coefficient": 0.08})
-    crank_pin: PinPart | None = optional("between crank and connecting rod", {"radius": "10 mm", "coefficient": 0.08})
-    slider_pin: PinPart | None = optional("between connecting rod and slider", {"radius": "8 mm", "coefficient": 0.08})
+    guide: Coefficient = optional_entry("coefficient of the slider in its guide", 0.1, default=0.0)
+    crank_pivot: PinPart | None = optional_entry("between frame and crank", {"radius": "15 mm", "coefficient": 0.08})
+    crank_pin: PinPart | None = optional_entry(
+        "between crank and connecting rod", {"radius": "10 mm", "coefficient": 0.08}
+    )
+    slider_pin: PinPart | None = optional_entry(
+        "between connecting rod and slider", {"radius": "8 mm", "coefficient": 0.08}
+    )
 
     def with_pins(self, pins: PinsPart | None) -> Friction:
         """Return the friction; pins without a radius have the diameters of [sections].
@@ -76,15 +82,15 @@ class ClearancePart(Checked[Clearance]):
     makes = Clearance
     renamed: ClassVar = {"radial_clearance": "radius"}
 
-    joint: Joint = required("pin with clearance", "crank pin")
-    radial_clearance: PositiveClearance = required(
+    joint: Joint = required_entry("pin with clearance", "crank pin")
+    radial_clearance: PositiveClearance = required_entry(
         "radius of the bearing minus radius of the journal: half the difference of the diameters", "0.2 mm"
     )
-    journal_radius: PositiveLength = required("of the pin", "10 mm")
-    restitution: _Restitution = optional(
+    journal_radius: PositiveLength = required_entry("of the pin", "10 mm")
+    restitution: _Restitution = optional_entry(
         "speed after an impact over speed before, above 0 and at most 1", 0.9, default=0.9
     )
-    friction: Fraction = optional("coefficient between journal and bearing", 0.1, default=0.0)
-    law: Law = optional("of the damping in a contact", "flores", default="flores")
-    elastic_modulus: Pressure = optional("of journal and bearing; default steel", "207 GPa", default=207e9)
-    poisson: _Poisson = optional("Poisson's ratio of journal and bearing", 0.3, default=0.3)
+    friction: Fraction = optional_entry("coefficient between journal and bearing", 0.1, default=0.0)
+    law: Law = optional_entry("of the damping in a contact", "flores", default="flores")
+    elastic_modulus: Pressure = optional_entry("of journal and bearing; default steel", "207 GPa", default=207e9)
+    poisson: _Poisson = optional_entry("Poisson's ratio of journal and bearing", 0.3, default=0.3)

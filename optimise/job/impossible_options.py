@@ -35,11 +35,11 @@ def impossible_options(problem: Problem) -> list[tuple[str, str]]:
     return [
         (", ".join(variant.labels) or f"combination {place + 1}", why)
         for place, variant in enumerate(problem.variants)
-        if (why := next(_reasons_against(problem, place), None))
+        if (why := next(_impossibility_reasons(problem, place), None))
     ]
 
 
-def _reasons_against(problem: Problem, variant: int) -> Iterator[str]:
+def _impossibility_reasons(problem: Problem, variant: int) -> Iterator[str]:
     try:
         part = problem.part(variant)
     except InputError as error:  # requirements exclude each other
@@ -53,7 +53,7 @@ def _reasons_against(problem: Problem, variant: int) -> Iterator[str]:
         return
     for constraint in part.constraints:
         quantity = part.quantity(constraint.quantity)
-        if part.common_bounds(quantity) is None or not quantity.of_dimensions:
+        if part.common_bounds(quantity) is None or not quantity.depends_only_on_dimensions:
             continue
         least, greatest = box.possible(quantity)
         rounding = SLACK * max(abs(least), abs(greatest))

@@ -12,7 +12,7 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.formula.dimensional_analysis import kind_of_formula
 from ...objectives.formula.expression import names_in
-from ...objectives.formula.formulas import Units, is_formula, unknown_name
+from ...objectives.formula.formulas import Units, is_formula, unknown_name_error
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
@@ -20,8 +20,8 @@ from ...objectives.tables.variable_columns import number_in_words
 from ...objectives.units import is_value, kind_of_any_unit
 from .catalogue import with_options
 from .constraints_and_objectives import SLOW_STROKE, WORDS
-from .mistake_messages import key_of
-from .option_amounts import amounts_in, kinds_of_amounts
+from .mistake_messages import key_of_location
+from .option_amounts import kinds_of_amounts, readable_amounts
 from .raw_tables import table_in
 from .variables import stated_variables
 
@@ -79,17 +79,17 @@ def _read_formula(key: str, text: str, kinds: _Kinds) -> StatedFormula:
 def _stated_formulas(tables: Mapping[str, Any], kinds: _Kinds) -> Iterator[tuple[str, str]]:
     for name, part in kinds.stated.items():
         if isinstance(part.get("formula"), str):
-            yield key_of(["quantity", name, "formula"]), part["formula"]
+            yield key_of_location(["quantity", name, "formula"]), part["formula"]
     for table in ("constraints", "objectives"):
         for name, bounds in table_in(tables, table).items():
             if not isinstance(name, str) or name == SLOW_STROKE:
                 continue
             if name not in FACTS:
-                yield key_of([table, name]), name
+                yield key_of_location([table, name]), name
             for word in WORDS if isinstance(bounds, Mapping) else ():
                 bound = bounds.get(word)
                 if isinstance(bound, str) and is_formula(bound, kinds.names):
-                    yield key_of([table, name, word]), bound
+                    yield key_of_location([table, name, word]), bound
 
 
 def _part_title(name: str, part: Mapping[str, Any]) -> str:
@@ -103,7 +103,7 @@ class _Kinds:
     def __init__(self, tables: Mapping[str, Any]) -> None:
         with suppress(InputError):  # an invalid table, which validation reports
             tables = with_options(tables)[0]
-        self.amounts = kinds_of_amounts(amounts_in(tables))
+        self.amounts = kinds_of_amounts(readable_amounts(tables))
         entries = islice(table_in(tables, "quantity").items(), _MOST)
         self.stated = {name: part for name, part in entries if isinstance(name, str) and isinstance(part, Mapping)}
         self.varying = [
@@ -122,7 +122,7 @@ class _Kinds:
         kinds = {}
         for name in names_in(node):
             if name not in self.names:
-                raise unknown_name(name, [*self._known, *self.stated], self._units, text)
+                raise unknown_name_error(name, [*self._known, *self.stated], self._units, text)
             kinds[name] = self.quantity_kind(name)
         known_kinds = {name: kind for name, kind in kinds.items() if kind is not None}
         return kind_of_formula(node, known_kinds) if len(known_kinds) == len(kinds) else None

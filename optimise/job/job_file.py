@@ -13,7 +13,7 @@ from typing import Any
 
 from ...model.errors import JobError
 from ...objectives.units import quote
-from .mistake_messages import DEEPEST, key_of
+from .mistake_messages import DEEPEST, key_of_location
 from .toml_errors import explain_toml_error
 
 LARGEST = 1_000_000
@@ -31,7 +31,7 @@ _PASSED = re.compile(rf"(?s)(?:{_TEXT})|\"(?:[^\"\\\n]|\\.)*+\"?+|'[^'\n]*+'?+|#
 _DEEP_KEY = re.compile(rf"(?s)(?:(?:{_TEXT})|#[^\n]*+|(?!{_DEEP})(?:{_WORD}(?:{_DOT}{_WORD})*+|.))*+{_DEEP}")
 
 
-def read(path: Path) -> dict[str, Any]:
+def read_job_file(path: Path) -> dict[str, Any]:
     """Return the tables of a job file, as TOML or JSON according to its suffix. Raises JobError."""
     if path.suffix.casefold() not in (".toml", ".json"):
         raise JobError(
@@ -174,7 +174,7 @@ def require_plain_data(value: object, at: tuple[object, ...] = ()) -> None:
             if not isinstance(key, str):
                 raise JobError(f"a key must be text; got {quote(key)}")
             if item is None:
-                raise JobError(f"{key_of((*at, key))}: must have a value; got null; leave the key out instead")
+                raise JobError(f"{key_of_location((*at, key))}: must have a value; got null; leave the key out instead")
             require_plain_data(item, (*at, key))
     elif isinstance(value, list | tuple):
         for place, item in enumerate(value):

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...model.swing.swing import CRANK_TURN
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from .catalogue import Catalogue, with_options
 from .custom_quantities import declared_quantities
-from .mistake_messages import key_of, toml_text
-from .model import Job, job_with
+from .mistake_messages import key_of_location, toml_text
+from .model import Job, job_type_with_quantities
 from .named_files import SOURCE
 from .plain_numbers import read_and_note_plain_numbers
 
@@ -29,7 +29,7 @@ def notes_of(data: Mapping[str, Any]) -> list[str]:
     the intended one, the problem has a warning instead.
     """
     data, tables = with_options(data)
-    job, plain = read_and_note_plain_numbers(job_with(declared_quantities(data, allowed=True)), data)
+    job, plain = read_and_note_plain_numbers(job_type_with_quantities(declared_quantities(data, allowed=True)), data)
     plain_notes = [item.note for item in plain if not item.warning]
     notes = []
     if plain_notes:
@@ -73,7 +73,9 @@ def _catalogue_notes(table: Catalogue) -> Iterator[str]:
     left = table.rows - len(table.lost) - len(table.excluded)
     has_omissions = bool(table.lost or table.excluded)
     sentences = (
-        [f"of {counted(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"] if has_omissions else []
+        [f"of {count_with_noun(table.rows, 'row')} {left} {'is' if left == 1 else 'are'} searched"]
+        if has_omissions
+        else []
     )
     sentences += (
         [f"omitted: {_join_first([f'{row} ({why})' for row, why in table.excluded.items()])}"] if table.excluded else []
@@ -108,7 +110,11 @@ def file_summaries(data: Mapping[str, Any]) -> list[str]:
         *((["load", n], part) for n, part in enumerate(data.get("load", ()))),
     ]
     return [
-        *(f"{key_of(path)}, {part[SOURCE]}" for path, part in places if isinstance(part, Mapping) and part.get(SOURCE)),
+        *(
+            f"{key_of_location(path)}, {part[SOURCE]}"
+            for path, part in places
+            if isinstance(part, Mapping) and part.get(SOURCE)
+        ),
         *(f"choice {quote(table.name)}: {table.understood}" for table in with_options(data)[1]),
     ]
 

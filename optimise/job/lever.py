@@ -26,8 +26,8 @@ from .value_types import (
     PositiveLength,
     Pressure,
     Stiffness,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 TURNING_CYLINDER = "turning cylinder"
@@ -38,23 +38,29 @@ class CylinderPart(Checked[Cylinder]):
 
     makes = Cylinder
 
-    closed_length: PositiveLength | None = optional("least length between its pins; with it the stroke", "650 mm")
-    stroke: PositiveLength | None = optional("stroke of the cylinder; with it the closed length", "430 mm")
-    dead_length: PositiveLength | None = optional(
+    closed_length: PositiveLength | None = optional_entry("least length between its pins; with it the stroke", "650 mm")
+    stroke: PositiveLength | None = optional_entry("stroke of the cylinder; with it the closed length", "430 mm")
+    dead_length: PositiveLength | None = optional_entry(
         "instead of a closed length: what the closed cylinder is longer than its stroke, or than its travel", "210 mm"
     )
-    mounting: Mounting = optional(
+    mounting: Mounting = optional_entry(
         "clevis or eye at the end of the barrel, or trunnion, beyond which the barrel extends",
         "trunnion",
         default="clevis",
     )
-    bore: PositiveLength | None = optional("bore, for pressures and flow", "40 mm")
-    rod: PositiveLength | None = optional("diameter of the piston rod, for the pulling force and buckling", "25 mm")
-    supply_pressure: Pressure | None = optional("greatest pressure above that of the other side", "160 bar")
-    seal_friction: NonNegativeForce = optional("force of the seal against the motion", "50 N", default=0.0)
-    barrel_mass: Mass = optional("of the barrel, a uniform bar as long as the closed cylinder", "8 kg", default=0.0)
-    piston_rod_mass: Mass = optional("of the piston rod, a uniform bar as long as the barrel", "3 kg", default=0.0)
-    length_tolerance: Clearance = optional("of the length of the cylinder", "1 mm", default=0.0)
+    bore: PositiveLength | None = optional_entry("bore, for pressures and flow", "40 mm")
+    rod: PositiveLength | None = optional_entry(
+        "diameter of the piston rod, for the pulling force and buckling", "25 mm"
+    )
+    supply_pressure: Pressure | None = optional_entry("greatest pressure above that of the other side", "160 bar")
+    seal_friction: NonNegativeForce = optional_entry("force of the seal against the motion", "50 N", default=0.0)
+    barrel_mass: Mass = optional_entry(
+        "of the barrel, a uniform bar as long as the closed cylinder", "8 kg", default=0.0
+    )
+    piston_rod_mass: Mass = optional_entry(
+        "of the piston rod, a uniform bar as long as the barrel", "3 kg", default=0.0
+    )
+    length_tolerance: Clearance = optional_entry("of the length of the cylinder", "1 mm", default=0.0)
 
 
 class ArmPart(Checked[Arm]):
@@ -62,16 +68,18 @@ class ArmPart(Checked[Arm]):
 
     makes = Arm
 
-    mass: Mass = optional("of the arm", "12 kg", default=0.0)
-    centre: Length = optional("from the pivot to the arm's mass centre, along its line", "250 mm", default=0.0)
-    inertia: Inertia = optional("about its mass centre", "0.5 kg m^2", default=0.0)
-    torque: DrivingTorque = optional("on the arm, against its motion", "50 N m", default=0.0)
-    ram: PositiveLength | None = optional(
+    mass: Mass = optional_entry("of the arm", "12 kg", default=0.0)
+    centre: Length = optional_entry("from the pivot to the arm's mass centre, along its line", "250 mm", default=0.0)
+    inertia: Inertia = optional_entry("about its mass centre", "0.5 kg m^2", default=0.0)
+    torque: DrivingTorque = optional_entry("on the arm, against its motion", "50 N m", default=0.0)
+    ram: PositiveLength | None = optional_entry(
         "from the pivot to a pin that slides in a ram, which moves at right angles to the line between both pivots",
         "500 mm",
     )
-    ram_mass: Mass = optional("of the ram", "30 kg", default=0.0)
-    ram_force: NonNegativeForce = optional("against the motion of the ram on its slow stroke", "2 kN", default=0.0)
+    ram_mass: Mass = optional_entry("of the ram", "30 kg", default=0.0)
+    ram_force: NonNegativeForce = optional_entry(
+        "against the motion of the ram on its slow stroke", "2 kN", default=0.0
+    )
 
 
 class SpringPart(Checked[LeverSpring]):
@@ -79,13 +87,13 @@ class SpringPart(Checked[LeverSpring]):
 
     makes = LeverSpring
 
-    frame: PositiveLength = required("from the lever's pivot to the spring's pin on the frame", "500 mm")
-    frame_angle: Angle = required("direction to that pin, counter-clockwise from +x", "-90 deg")
-    lever: PositiveLength = required("from the lever's pivot to the spring's pin on the lever", "300 mm")
-    pin_angle: Angle = optional("angle to that pin from the lever's own line", "10 deg", default=0.0)
-    force: Force = required("push at its length; below 0 for a pull", "600 N")
-    length: PositiveLength = required("length between its pins at which it has the force", "450 mm")
-    stiffness: Stiffness = optional("what the push loses per extension", "1.2 N/mm", default=0.0)
+    frame: PositiveLength = required_entry("from the lever's pivot to the spring's pin on the frame", "500 mm")
+    frame_angle: Angle = required_entry("direction to that pin, counter-clockwise from +x", "-90 deg")
+    lever: PositiveLength = required_entry("from the lever's pivot to the spring's pin on the lever", "300 mm")
+    pin_angle: Angle = optional_entry("angle to that pin from the lever's own line", "10 deg", default=0.0)
+    force: Force = required_entry("push at its length; below 0 for a pull", "600 N")
+    length: PositiveLength = required_entry("length between its pins at which it has the force", "450 mm")
+    stiffness: Stiffness = optional_entry("what the push loses per extension", "1.2 N/mm", default=0.0)
 
 
 def lever_of(

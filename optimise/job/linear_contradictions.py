@@ -15,12 +15,12 @@ import numpy as np
 
 from ...model.errors import InfeasibleError
 from ...objectives.formula.expression import Call
-from ...objectives.formula.linear import Linear, unknown
+from ...objectives.formula.linear import Linear, linear_unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ..problem.problem import Problem
 from ..search.elimination import offset_signs
 from ..search.linear_rules import linear_equations, with_offset_size
-from .mistake_messages import key_of
+from .mistake_messages import key_of_location
 
 _UNIT = 1e3  # lengths in mm: the solver's tolerance is 1e-7 of its unit
 _ANY: dict[str, tuple[float, float]] = {"crank": (1e-6, math.inf), "rod": (1e-6, math.inf), "offset": (0.0, math.inf)}
@@ -38,7 +38,7 @@ class _Row:
     exact: bool
 
 
-def require_compatible(problem: Problem) -> None:
+def require_compatible_linear_requirements(problem: Problem) -> None:
     """Raise InfeasibleError, naming the requirements, if no point within the ranges meets all linear ones."""
     is_possible: dict[tuple[object, ...], bool] = {}
     parts = problem.parts()
@@ -66,7 +66,7 @@ def _conflict_text(part: Problem) -> str:
             for rows, ends in sides
         ):
             names = fewer
-    first = f"constraints.{key_of([names[0]])}"
+    first = f"constraints.{key_of_location([names[0]])}"
     constraints = {item.quantity: item for item in part.constraints}
     bounds = []
     for name in names:
@@ -128,7 +128,7 @@ def _has_common_point(rows: Sequence[_Row], ends: dict[str, tuple[float, float]]
     """Return whether some point within the ranges meets all rows, as far as a linear programme can tell."""
     from scipy.optimize import linprog
 
-    turned = unknown("crank").plus(unknown("offset")).plus(unknown("rod"), Fraction(-1))
+    turned = linear_unknown("crank").plus(linear_unknown("offset")).plus(linear_unknown("rod"), Fraction(-1))
     every = [*rows, _Row("", turned, False)] if turning else list(rows)
     table = np.array([[float(dict(row.sum.factors).get(name, 0)) for name in ends] for row in every])
     size = np.maximum(np.abs(table).max(axis=1), 1e-300)

@@ -11,8 +11,8 @@ from ...model.machine.loads.registry import load_classes
 from ...objectives.kinds import ANGLE, TIME, Kind
 from ...objectives.units import quote
 from . import value_types
-from .curve_file import convert_time_to_angle, curve_in, first_cycle, reduce_curve_points
-from .mistake_messages import key_of
+from .curve_file import convert_time_to_angle, curve_of_table, first_cycle, reduce_curve_points
+from .mistake_messages import key_of_location
 from .named_files import SOURCE, Files, read_named_table, require_point_count
 from .raw_tables import tables_in
 from .stated_speed import stated_speed
@@ -23,22 +23,22 @@ def names_of_load_files(data: Mapping[str, Any]) -> list[str]:
     return [part["file"] for part in tables_in(data, "load") if isinstance(part.get("file"), str)]
 
 
-def with_loads(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+def with_load_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with each load's file replaced by its points. Raises `InputError`."""
     job = dict(data)
     if names_of_load_files(data):
-        job["load"] = [_fill_from_files(part, place, files, data) for place, part in enumerate(job["load"])]
+        job["load"] = [_load_with_points(part, place, files, data) for place, part in enumerate(job["load"])]
     return job
 
 
-def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
+def _load_with_points(part: Any, place: int, files: Files, data: Mapping[str, Any]) -> Any:
     file = part.get("file") if isinstance(part, Mapping) else None
     tables = {
         (_kind_of_entry(at), _kind_of_entry(value_entry)): table for table, at, value_entry in load_tables_with_points()
     }
     if not isinstance(file, str):
         return part
-    name = key_of(["load", place, "file"])
+    name = key_of_location(["load", place, "file"])
     allowed_keys = [
         "file",
         *dict.fromkeys(one.name for table in tables.values() for one in table.entries if not one.several),
@@ -46,11 +46,12 @@ def _fill_from_files(part: Any, place: int, files: Files, data: Mapping[str, Any
     for key in part:
         if key not in allowed_keys:
             raise JobError(
-                f"{key_of(['load', place, key])}: a load with file must not have this key; got {quote(part[key])}; "
+                f"{key_of_location(['load', place, key])}: a load with file must not have this key; got "
+                f"{quote(part[key])}; "
                 f"possible here: {', '.join(allowed_keys)}"
             )
     argument_kinds = (*dict.fromkeys(at for at, _ in tables), TIME)
-    curve = curve_in(
+    curve = curve_of_table(
         read_named_table(files, name, file),
         argument_kinds,
         tuple(dict.fromkeys(value_entry for _, value_entry in tables)),

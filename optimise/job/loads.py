@@ -25,7 +25,7 @@ from . import value_types
 from .load_file import load_tables_with_points
 from .named_files import MOST_POINTS, SOURCE, unread_file_error
 from .part_kinds import Kinds
-from .value_types import Checked, optional
+from .value_types import Checked, optional_entry
 
 
 def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
@@ -54,10 +54,10 @@ class LoadPart(Checked[model.Load]):
 
     def build(self) -> model.Load:
         """Return the load for the model."""
-        return self.built
+        return self.built_load
 
     @cached_property
-    def built(self) -> model.Load:
+    def built_load(self) -> model.Load:
         """The load for the model; building a long table takes a moment."""
         return super().build()
 
@@ -86,7 +86,7 @@ def _entry_field(entry: model.Entry) -> Any:
     shape: Any = {"min_length": 2, "max_length": MOST_POINTS} if entry.several else {}
     default = ... if entry.default is None else entry.default
     words = isinstance(default, str)
-    return optional(entry.description, entry.example, default=default, validate_default=words, **shape)
+    return optional_entry(entry.description, entry.example, default=default, validate_default=words, **shape)
 
 
 def _load_file_part() -> type[LoadPart]:
@@ -96,17 +96,19 @@ def _load_file_part() -> type[LoadPart]:
         for entry in table.entries:
             if not entry.several:
                 entries.setdefault(entry.name, []).append(entry)
-    file = optional("a table beside the job file: forces, torques or pressures, recognised by their units", "trace.csv")
+    file = optional_entry(
+        "a table beside the job file: forces, torques or pressures, recognised by their units", "trace.csv"
+    )
     fields: dict[str, Any] = {"file": (Annotated[str, Field(max_length=200)], file)}
     for name, several in entries.items():
         kind: Any = reduce(or_, map(_entry_type, several)) | None
-        fields[name] = (kind, optional(several[0].description, several[0].example))
+        fields[name] = (kind, optional_entry(several[0].description, several[0].example))
     part = create_model("FileLoad", __base__=LoadPart, __doc__="A load whose points are in a file.", **fields)
-    part.makes = staticmethod(_refuse_file)
+    part.makes = staticmethod(_raise_unread_file)
     return part
 
 
-def _refuse_file(file: str, **_: object) -> model.Load:
+def _raise_unread_file(file: str, **_: object) -> model.Load:
     raise unread_file_error(file, "points")
 
 

@@ -32,8 +32,8 @@ from .value_types import (
     PositiveLength,
     Radius,
     ToleranceOf,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 During = Literal["cycle", "outward stroke", "inward stroke"]
@@ -44,9 +44,9 @@ class SectionLink(Built[Link]):
 
     makes = Bar
 
-    width: PositiveLength = required("in the plane of motion", "30 mm")
-    depth: PositiveLength = required("normal to the plane", "20 mm")
-    density: Density = required("of the material", "7850 kg/m^3")
+    width: PositiveLength = required_entry("in the plane of motion", "30 mm")
+    depth: PositiveLength = required_entry("normal to the plane", "20 mm")
+    density: Density = required_entry("of the material", "7850 kg/m^3")
 
 
 class MassLink(Built[Link]):
@@ -54,16 +54,16 @@ class MassLink(Built[Link]):
 
     makes = RigidLink
 
-    mass: Mass = required("of the link", "0.5 kg")
-    inertia: Inertia | None = optional(
+    mass: Mass = required_entry("of the link", "0.5 kg")
+    inertia: Inertia | None = optional_entry(
         "about the mass centre; default mass length^2 / 12, a slender uniform rod", "0.0012 kg m^2"
     )
-    centre: Length | None = optional(
+    centre: Length | None = optional_entry(
         "distance of the mass centre from the crank pivot (crank) or from the crank "
         "pin (rod), along the link; default half the length",
         "30 mm",
     )
-    centre_across: Length = optional(
+    centre_across: Length = optional_entry(
         "distance of the mass centre from the link's axis, positive to the left", "2 mm", default=0.0
     )
 
@@ -108,12 +108,12 @@ class CounterweightPart(Built[Counterweight]):
 
     makes = Counterweight
 
-    mass: Mass = required("of the counterweight", "0.4 kg")
-    radius: Radius = required("from the crank pivot to its mass centre", "25 mm")
-    angle: Angle = optional(
+    mass: Mass = required_entry("of the counterweight", "0.4 kg")
+    radius: Radius = required_entry("from the crank pivot to its mass centre", "25 mm")
+    angle: Angle = optional_entry(
         "of its mass centre from the crank's direction; 180 deg is opposite the pin", "180 deg", default=math.pi
     )
-    inertia: Inertia = optional("about its own mass centre", "0.0001 kg m^2", default=0.0)
+    inertia: Inertia = optional_entry("about its own mass centre", "0.0001 kg m^2", default=0.0)
 
 
 class CylindersPart(Checked[Arrangement]):
@@ -121,18 +121,18 @@ class CylindersPart(Checked[Arrangement]):
 
     makes = Arrangement
 
-    phases: tuple[Angle, ...] = required(
+    phases: tuple[Angle, ...] = required_entry(
         "angle of the crank of each cylinder from the shaft's zero, counter-clockwise",
         ["0 deg", "180 deg"],
         max_length=MOST,
     )
-    banks: tuple[Angle, ...] = optional(
+    banks: tuple[Angle, ...] = optional_entry(
         "angle of each cylinder's slider line from +x, counter-clockwise; default: all zero",
         ["-45 deg", "45 deg"],
         default=(),
         max_length=MOST,
     )
-    places: tuple[Length, ...] = optional(
+    places: tuple[Length, ...] = optional_entry(
         "position of each cylinder along the shaft, for the rocking couple; default: all in one plane",
         ["-50 mm", "50 mm"],
         default=(),
@@ -143,17 +143,17 @@ class CylindersPart(Checked[Arrangement]):
 class SliderPart(Part):
     """The slider."""
 
-    mass: Mass = required("of the slider and everything that moves with it", "0.8 kg")
-    dead_centre: DeadCentre = optional("from which its distances are measured", "outer", default="outer")
-    touch_distance: PositiveLength | None = optional(
+    mass: Mass = required_entry("of the slider and everything that moves with it", "0.8 kg")
+    dead_centre: DeadCentre = optional_entry("from which its distances are measured", "outer", default="outer")
+    touch_distance: PositiveLength | None = optional_entry(
         "before the dead centre, where it meets the workpiece; touch_speed is the slider speed there", "10 mm"
     )
-    dwell_distance: PositiveLength | None = optional(
+    dwell_distance: PositiveLength | None = optional_entry(
         "from the dead centre, within which the slider counts as at rest; dwell_angle is the crank angle of this dwell",
         "0.5 mm",
     )
 
-    guide_distance: Length | None = optional(
+    guide_distance: Length | None = optional_entry(
         "outward from its pin at the outer dead centre to the centre of its guide in the frame, for guide_moment",
         "150 mm",
     )
@@ -172,42 +172,42 @@ class SliderPart(Part):
 class MechanismPart(CrankSpeedPart):
     """Drive and masses of the machine; lengths belong in [variables]."""
 
-    crank: AnyLink | None = optional("section or mass of the crank; default massless", {"mass": "0.2 kg"})
-    rod: AnyLink | None = optional(
+    crank: AnyLink | None = optional_entry("section or mass of the crank; default massless", {"mass": "0.2 kg"})
+    rod: AnyLink | None = optional_entry(
         "section or mass of the connecting rod; default massless",
         {"width": "30 mm", "depth": "20 mm", "density": "7850 kg/m^3"},
     )
-    counterweight: CounterweightPart | None = optional(
+    counterweight: CounterweightPart | None = optional_entry(
         "counterweight, a mass fixed to the crank", {"mass": "0.4 kg", "radius": "25 mm"}
     )
-    slider: SliderPart | None = optional("slider; default massless", {"mass": "0.8 kg"})
-    cylinders: CylindersPart | None = optional(
+    slider: SliderPart | None = optional_entry("slider; default massless", {"mass": "0.8 kg"})
+    cylinders: CylindersPart | None = optional_entry(
         "several identical cylinders on one crankshaft; torque, power, work and shaking are totals",
         {"phases": ["0 deg", "180 deg"]},
     )
-    gravity: Gravity | None = optional("magnitude of gravity; default: none", "9.81 m/s^2")
-    gravity_direction: Angle | None = optional(
+    gravity: Gravity | None = optional_entry("magnitude of gravity; default: none", "9.81 m/s^2")
+    gravity_direction: Angle | None = optional_entry(
         "direction of gravity, counter-clockwise from +x (outward on the open branch, inward on the crossed branch); "
         "default 270 deg, across a level slider line",
         "270 deg",
     )
-    branch: Branch = optional(
+    branch: Branch = optional_entry(
         "open: the slider is on the side of +x, and outward is +x; crossed: the slider is on the side of "
         "-x, and outward is -x",
         "open",
         default="open",
     )
 
-    inversion: Literal["turning cylinder"] | None = optional(
+    inversion: Literal["turning cylinder"] | None = optional_entry(
         "turning cylinder: the rod is fixed as the frame, and a cylinder that turns about its end moves the crank, a "
         "lever, or a crank that rotates fully moves the cylinder or an arm; default: a slider-crank",
         "turning cylinder",
     )
-    frame_angle: Angle | None = optional(
+    frame_angle: Angle | None = optional_entry(
         "for a turning cylinder: direction from the lever's pivot to the cylinder's, counter-clockwise from +x",
         "-60 deg",
     )
-    pin_angle: Angle = optional(
+    pin_angle: Angle = optional_entry(
         "for a turning cylinder: angle from the line that gives the lever angle to the pin of the lever",
         "10 deg",
         default=0.0,
@@ -246,24 +246,28 @@ class ClearancesPart(Built[Clearances]):
 
     makes = Clearances
 
-    crank_pivot: Clearance = optional("of the bearing of the crank in the frame", "0.02 mm", default=0.0)
-    crank_pin: Clearance = optional("of the joint of crank and rod", "0.02 mm", default=0.0)
-    slider_pin: Clearance = optional("of the joint of rod and slider", "0.02 mm", default=0.0)
-    guide: Clearance = optional("of the slider, to either side of its line", "0.05 mm", default=0.0)
+    crank_pivot: Clearance = optional_entry("of the bearing of the crank in the frame", "0.02 mm", default=0.0)
+    crank_pin: Clearance = optional_entry("of the joint of crank and rod", "0.02 mm", default=0.0)
+    slider_pin: Clearance = optional_entry("of the joint of rod and slider", "0.02 mm", default=0.0)
+    guide: Clearance = optional_entry("of the slider, to either side of its line", "0.05 mm", default=0.0)
 
 
 class TolerancesPart(Part):
     """Tolerances of dimensions and crank angle, and the part of the cycle where the error counts."""
 
-    crank: LengthTolerance = optional("of the crank, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
-    rod: LengthTolerance = optional("of the rod, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
-    offset: LengthTolerance = optional("of the offset, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
-    crank_angle: AngleTolerance = optional("of the crank angle", "0.1 deg", default=0.0)
-    clearances: ClearancesPart = optional(
+    crank: LengthTolerance = optional_entry(
+        "of the crank, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0
+    )
+    rod: LengthTolerance = optional_entry("of the rod, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0)
+    offset: LengthTolerance = optional_entry(
+        "of the offset, as a length or a percentage", "0.05 mm", "0.1 %", default=0.0
+    )
+    crank_angle: AngleTolerance = optional_entry("of the crank angle", "0.1 deg", default=0.0)
+    clearances: ClearancesPart = optional_entry(
         "radial clearances of the joints", {"crank_pin": "0.02 mm"}, default=ClearancesPart()
     )
-    during: During = optional("the stroke in which the position error counts", "cycle", default="cycle")
-    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_require_ordered_ends)] = optional(
+    during: During = optional_entry("the stroke in which the position error counts", "cycle", default="cycle")
+    part_of_stroke: Annotated[tuple[Fraction, Fraction], AfterValidator(_require_ordered_ends)] = optional_entry(
         "part of the stroke in which the position error counts: fractions from the inner (0) to the outer dead centre "
         "(1)",
         [0.0, 0.25],

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from ...objectives.registry import FACTS
-from ...objectives.units import closest, printable_name, quote
+from ...objectives.units import closest_word, quote, quoted_if_unprintable
 from .suggested_bounds import suggested_bounds
 
 _MOST_KEYS = 20  # keys to list if none is similar
@@ -64,7 +64,7 @@ _LIMITS = {
 """Sentences for kinds of errors, by their pydantic names, and the context value that each uses."""
 
 
-def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | None = None) -> list[str]:
+def sentences_on_mistakes(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | None = None) -> list[str]:
     """Return one sentence for each mistake, most useful first.
 
     schema: the JSON Schema of the job, with the allowed keys and an example for each. tables: the tables as read, for
@@ -78,19 +78,19 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
     for details in listed:
         if details["type"] == "too_short" and details["loc"] in parents:
             continue  # a list that is too short only because entries were rejected
-        path = keys_of(details["loc"])
+        path = keys_of_location(details["loc"])
         if details["type"] == "extra_forbidden":
             unknown[details["loc"]], near = _unknown_key_message(details["loc"], details["input"], schema)
             explained.add(near)
         elif path[:-1] == ["constraints"] and details["input"] in _WISHES:
-            unknown[tuple(path)] = f"{key_of(path)}: {sentence_of(details, schema)}"
+            unknown[tuple(path)] = f"{key_of_location(path)}: {mistake_sentence(details, schema)}"
             misplaced_objectives.add(path[-1])
         else:
-            sentence = f"{key_of(path)}: {sentence_of(details, schema)}"
+            sentence = f"{key_of_location(path)}: {mistake_sentence(details, schema)}"
             if details["type"] != "missing":
                 wrong.append(sentence)
             else:
-                missing[key_of(path)] = sentence
+                missing[key_of_location(path)] = sentence
     for table in dict.fromkeys(loc[:-1] for loc in unknown):
         keys = [str(loc[-1]) for loc in unknown if loc[:-1] == table]
         keys.sort(key=list((tables or {}).get("constraints", keys) if table == ("constraints",) else keys).index)
@@ -99,9 +99,10 @@ def explain(error: ValidationError, schema: Schema, tables: Mapping[str, Any] | 
         owner = min(owners, key=lambda one: one.strip("[]") not in missing, default="")
         if len(keys) > 1 and owner and owner.strip("[]") not in table:
             unknown = {loc: sentence for loc, sentence in unknown.items() if loc[:-1] != table}
-            place = f"in {key_of(keys_of(table))}" if table else "at the top of the file"
+            place = f"in {key_of_location(keys_of_location(table))}" if table else "at the top of the file"
             wrong.append(
-                f"{key_of(keys_of([*table, keys[0]]))}: {', '.join(keys[:-1])} and {keys[-1]} belong below the heading "
+                f"{key_of_location(keys_of_location([*table, keys[0]]))}: {', '.join(keys[:-1])} and {keys[-1]} "
+                "belong below the heading "
                 f"{owner}; got them {place}; write {owner} above {keys[0]}, or move them there"
             )
             explained.add(owner.strip("[]"))
@@ -117,12 +118,12 @@ def _is_tag(part: object) -> bool:
     return isinstance(part, str) and part.startswith("(") and part.endswith(")")
 
 
-def keys_of(loc: Sequence[Any]) -> list[Any]:
+def keys_of_location(loc: Sequence[Any]) -> list[Any]:
     """Return a location in the tables of a job, without the validator's tags."""
     return [part for part in loc if not _is_tag(part)]
 
 
-def key_of(path: Sequence[object]) -> str:
+def key_of_location(path: Sequence[object]) -> str:
     """Return a location as a job file writes it: mechanism.slider.mass, load #2.force."""
     text = ""
     for part in path:
@@ -141,14 +142,17 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
     In a table with several kinds, such as a load, only the keys of its own kind are possible.
     """
     table, key = loc[:-1], loc[-1]
-    path = keys_of(table)
+    path = keys_of_location(table)
     allowed = sorted(_possible_keys(schema, table), key=FACTS.__contains__)  # custom quantities first
     left_over = (
         f" and {len(allowed) - _MOST_KEYS} more, all in `slidercrank schema`" if len(allowed) > _MOST_KEYS else ""
     )
     possible = f"possible here: {', '.join(allowed[:_MOST_KEYS])}{left_over}"
-    place = key_of([*path, key])
-    owning_kinds, kind = _kinds_with(str(key), schema, path), table[-1][1:-1] if table and _is_tag(table[-1]) else ""
+    place = key_of_location([*path, key])
+    owning_kinds, kind = (
+        _kinds_with_key(str(key), schema, path),
+        table[-1][1:-1] if table and _is_tag(table[-1]) else "",
+    )
     if owning_kinds and kind in allowed:
         noun = path[-2] if isinstance(path[-1], int) else "table"
         owners = " or ".join(filter(None, (", ".join(owning_kinds[:-1]), owning_kinds[-1])))
@@ -157,17 +161,17 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
             f"{owners}; {possible}"
         ), ""
     owner = where_key_belongs(str(key), schema)
-    near = None if owner else closest(str(key), allowed)
+    near = None if owner else closest_word(str(key), allowed)
     subject, suggestion = f"key {quote(str(key))}", near
     if not table and isinstance(value, Mapping | list):
-        subject, suggestion = f"heading [{place}]", next(iter(headings([near or ""], schema)), near)
+        subject, suggestion = f"heading [{place}]", next(iter(headings_with_keys([near or ""], schema)), near)
     choice = f"did you mean {suggestion}?" if near else owner or possible
-    return f"{place}: unknown {subject}; {choice}", key_of([*path, near]) if near else ""
+    return f"{place}: unknown {subject}; {choice}", key_of_location([*path, near]) if near else ""
 
 
 def where_key_belongs(key: str, schema: Schema) -> str:
     """Say where a key belongs that its table lacks; "" if no table has it either."""
-    if key in schema["properties"] and not headings([key], schema):
+    if key in schema["properties"] and not headings_with_keys([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
     owners = sorted(_tables_with_all_keys([key], schema), key="[cylinder]".__eq__)  # which few jobs have
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
@@ -179,12 +183,12 @@ def _tables_with_all_keys(keys: Sequence[str], schema: Schema) -> list[str]:
     return [
         heading
         for name in names
-        for heading, allowed_keys in headings([name], schema).items()
+        for heading, allowed_keys in headings_with_keys([name], schema).items()
         if allowed_keys.issuperset(keys)
     ]
 
 
-def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
+def headings_with_keys(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
     """Return a table's heading, none if it is another entry, with the keys allowed below it."""
     (first, *rest), name = words, ".".join(words)
     tops: list[list[Any]] = [[first], [first, 0]] if rest else [[first]]
@@ -192,53 +196,53 @@ def headings(words: Sequence[str], schema: Schema) -> dict[str, set[str]]:
     return {heading: keys for heading, path in places if (keys := set(_possible_keys(schema, path)))}
 
 
-def _kinds_with(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
+def _kinds_with_key(key: str, schema: Schema, path: Sequence[Any]) -> list[str]:
     """Return the keys that identify those kinds of a table that have a key."""
-    having = [node for node in nodes_at(schema, path) if key in node.get("properties", {})]
+    having = [node for node in schema_nodes_at(schema, path) if key in node.get("properties", {})]
     keys = [node.get("x-load", {}).get("key") or next(iter(node.get("required", ())), "") for node in having]
     return list(dict.fromkeys(filter(None, keys)))
 
 
-def sentence_of(details: ErrorDetails, schema: Schema) -> str:
+def mistake_sentence(details: ErrorDetails, schema: Schema) -> str:
     """Return rule, value and remedy for one mistake."""
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
-    example = example_of(schema, path)
+    example = example_of_key(schema, path)
     write = f"; write for example {example}" if example else ""
     value_text = f"got {quote(value)}"
     if kind == "value_error":
         return str(context["error"])
     if kind == "missing":
         return f"is missing, but required{write.replace('write', 'add')}"
-    table = ".".join(printable_name(key) for key in keys_of(path) if isinstance(key, str))
+    table = ".".join(quoted_if_unprintable(key) for key in keys_of_location(path) if isinstance(key, str))
     if kind in ("tuple_type", "list_type") and isinstance(value, Mapping) and _possible_keys(schema, [*path, 0]):
         return f"{SEVERAL.format(table)}; got a single one; write [[{table}]] for [{table}]"
-    if rule_of(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
+    if broken_rule(details) == _TABLE and isinstance(value, list) and any(isinstance(item, Mapping) for item in value):
         return f"{SINGLE.format(table)}; got a list of {len(value)}; write [{table}] for [[{table}]]"
     if kind == "literal_error":
         # Tables for different kinds of load share key names, so this description comes from the validator.
         expected = re.findall(r"'([^']*)'", str(context.get("expected", "")))
-        words = expected or list(dict.fromkeys(_allowed_words(nodes_at(schema, path))))
-        near = closest(value, words) if isinstance(value, str) else None
+        words = expected or list(dict.fromkeys(_allowed_words(schema_nodes_at(schema, path))))
+        near = closest_word(value, words) if isinstance(value, str) else None
         hint = f'; did you mean "{near}"?' if near else ""
-        return f"must be {_any_of(words)}; {value_text}{hint}"
+        return f"must be {_alternatives_text(words)}; {value_text}{hint}"
     if kind == "string_pattern_mismatch":  # names of choices, which become columns
         return f"must begin with a letter and contain only letters, digits, spaces, - and _; {value_text}{write}"
     if kind == "string_too_long":
-        return f"{rule_of(details)}; {value_text}; shorten it"
+        return f"{broken_rule(details)}; {value_text}; shorten it"
     if kind in ("too_short", "too_long"):
-        return f"{rule_of(details)}; got {len(value)}{write}"
+        return f"{broken_rule(details)}; got {len(value)}{write}"
     is_value = isinstance(value, str | float | int) and not isinstance(value, bool)
-    if rule_of(details) == _TABLE and value in _WISHES and keys_of(path)[-2:-1] == ["constraints"]:
+    if broken_rule(details) == _TABLE and value in _WISHES and keys_of_location(path)[-2:-1] == ["constraints"]:
         return f"{quote(value)} belongs below [objectives]; got it below [{path[0]}]; move it there"
-    if rule_of(details) == _TABLE and is_value and "equals" in _possible_keys(schema, path):
+    if broken_rule(details) == _TABLE and is_value and "equals" in _possible_keys(schema, path):
         fact = FACTS.get(str(path[-1]))
         first, *alternatives = map(toml_text, suggested_bounds(value, fact.kind if fact else None))
-        write = f"; write {key_of(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
+        write = f"; write {key_of_location(path[-1:])} = {', '.join(filter(None, (first, ' or '.join(alternatives))))}"
         return f"must be a table with equals, min or max; {value_text}{write}"
-    return f"{rule_of(details)}; {value_text}{write}"
+    return f"{broken_rule(details)}; {value_text}{write}"
 
 
-def rule_of(details: Mapping[str, Any]) -> str:
+def broken_rule(details: Mapping[str, Any]) -> str:
     """Return the rule that a value breaks, from the validator's finding but without Python terms."""
     kind, context = details["type"], details.get("ctx", {})
     if kind in _LIMITS:
@@ -247,16 +251,16 @@ def rule_of(details: Mapping[str, Any]) -> str:
     return _RULES.get(kind) or str(details["msg"])[:1].lower() + str(details["msg"])[1:]
 
 
-def _any_of(words: Sequence[str]) -> str:
+def _alternatives_text(words: Sequence[str]) -> str:
     quoted = [f'"{word}"' for word in words]
     return " or ".join(quoted) if len(quoted) < 3 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
-def example_of(schema: Schema, path: Sequence[Any]) -> str:
+def example_of_key(schema: Schema, path: Sequence[Any]) -> str:
     """Return an example of the key, as in a job file; "" if the schema has none."""
-    for node in nodes_at(schema, path):
+    for node in schema_nodes_at(schema, path):
         if node.get("examples"):
-            key = next((str(part) for part in reversed(keys_of(path)) if isinstance(part, str)), "")
+            key = next((str(part) for part in reversed(keys_of_location(path)) if isinstance(part, str)), "")
             return f"{key} = {toml_text(node['examples'][0])}"
     return ""
 
@@ -264,7 +268,7 @@ def example_of(schema: Schema, path: Sequence[Any]) -> str:
 def toml_text(value: object) -> str:
     """Return a value in TOML notation, on one line."""
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key_of([key])} = {toml_text(item)}" for key, item in value.items()) + " }"
+        return "{ " + ", ".join(f"{key_of_location([key])} = {toml_text(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(toml_text(item) for item in value) + "]"
     return quote(value)
@@ -273,7 +277,7 @@ def toml_text(value: object) -> str:
 def _possible_keys(schema: Schema, path: Sequence[Any]) -> dict[str, Any]:
     """Return the keys that are possible in a table."""
     properties: dict[str, Any] = {}
-    for node in nodes_at(schema, path):
+    for node in schema_nodes_at(schema, path):
         properties |= node.get("properties", {})
     return properties
 
@@ -285,7 +289,7 @@ def _allowed_words(nodes: Sequence[Schema]) -> Iterator[str]:
             yield str(node["const"])
 
 
-def nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
+def schema_nodes_at(schema: Schema, path: Sequence[Any]) -> list[Schema]:
     """Return every alternative of the schema at a location; after a tag, only those with its key."""
     nodes = _schema_alternatives(schema, schema)
     for part in path:

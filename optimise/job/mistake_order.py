@@ -7,10 +7,10 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .mistake_messages import MOST, key_of
+from .mistake_messages import MOST, key_of_location
 
 
-def first_problems(sentences: list[str], tables: Mapping[str, Any]) -> list[str]:
+def first_mistakes(sentences: list[str], tables: Mapping[str, Any]) -> list[str]:
     """Return at most `MOST` sentences: the first ones in the order of the keys that they begin with."""
     if len(sentences) <= MOST:
         return sentences
@@ -33,5 +33,5 @@ def key_above(key: str) -> str:
 def _keys_in_order(part: Any, path: tuple[object, ...]) -> Iterator[str]:
     entries = part.items() if isinstance(part, Mapping) else enumerate(part) if isinstance(part, list) else ()
     for step, entry in entries:
-        yield key_of((*path, step))
+        yield key_of_location((*path, step))
         yield from _keys_in_order(entry, (*path, step))

@@ -14,7 +14,7 @@ from ...model.machine.slider_distances import SliderDistances
 from ...model.machine.two_turn_machine import turns_per_cycle
 from ...model.swing.swing import Swing
 from ...objectives.units import quote
-from ..methods.registry import methods
+from ..methods.registry import methods_by_name
 from ..problem.problem import Settings
 from .constraints_and_objectives import ConstraintsPart, ObjectivesPart, Stated, constraint_and_objective_tables
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
@@ -29,8 +29,8 @@ from .sections_table import EXAMPLE as SECTIONS
 from .sections_table import SectionsPart
 from .target_motion import TargetMotionPart
 from .tolerance_costs import CostsPart
-from .value_types import Built, Part, optional, required, with_types
-from .variables import ChoicePart, VariablesPart, choice_with
+from .value_types import Built, Part, optional_entry, required_entry, with_entry_types
+from .variables import ChoicePart, VariablesPart, choice_type_with_constraints
 
 EXAMPLE = {
     "option": [
@@ -50,7 +50,7 @@ class _MethodName:
     """The name of a method; the schema lists all methods."""
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> CoreSchema:
-        return core_schema.literal_schema(list(methods()))
+        return core_schema.literal_schema(list(methods_by_name()))
 
 
 class OptimiserPart(Built[Settings]):
@@ -58,22 +58,22 @@ class OptimiserPart(Built[Settings]):
 
     makes = Settings
 
-    method: Annotated[str, _MethodName()] = optional(
+    method: Annotated[str, _MethodName()] = optional_entry(
         "search method: the default finds the front of any number of objectives and polishes every design; the others "
         "return unpolished designs",
         "auto",
         default="auto",
     )
-    designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = optional(
+    designs: Annotated[int, Field(strict=True, ge=1, le=10_000)] = optional_entry(
         "maximum number of designs on the front", 100, default=100
     )
-    samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = optional(
+    samples: Annotated[int, Field(strict=True, ge=1, le=10_000_000)] | None = optional_entry(
         "designs evaluated per round of the search; default chosen by the method", 20_000
     )
-    evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = optional(
+    evaluations: Annotated[int, Field(strict=True, ge=1, le=100_000_000)] | None = optional_entry(
         "maximum number of designs that a method other than auto evaluates; default chosen by the method", 50_000
     )
-    seed: Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)] = optional(
+    seed: Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)] = optional_entry(
         "random seed: the same job with the same seed gives the same front", 1, default=1
     )
 
@@ -95,95 +95,95 @@ def _require_objective(objectives: ObjectivesPart) -> ObjectivesPart:
 class Job(Part):
     """A slider-crank to be sized: what is fixed, what may vary, what must hold, and the objectives."""
 
-    name: Annotated[str, Field(max_length=80), AfterValidator(require_one_line)] = required(
+    name: Annotated[str, Field(max_length=80), AfterValidator(require_one_line)] = required_entry(
         "name of the job and of its run", "Vibrating sieve"
     )
-    description: Annotated[str, Field(max_length=4000), AfterValidator(_require_printable)] | None = optional(
+    description: Annotated[str, Field(max_length=4000), AfterValidator(_require_printable)] | None = optional_entry(
         "any text to store with the results", "Second draft"
     )
-    mechanism: MechanismPart = required(
+    mechanism: MechanismPart = required_entry(
         "speed, masses and gravity of the machine", {"speed": "300 rpm", "slider": {"mass": "0.8 kg"}}
     )
-    motion: MotionPart = optional(
+    motion: MotionPart = optional_entry(
         "motion of the crank: it rotates fully, or swings between two angles, driven at the crank or at the slider",
         {"kind": "turn"},
         default=MotionPart(),
     )
-    cylinder: CylinderPart | None = optional(
+    cylinder: CylinderPart | None = optional_entry(
         'cylinder of inversion = "turning cylinder": its size, pressure, friction and masses',
         {"bore": "40 mm", "rod": "25 mm", "supply_pressure": "160 bar"},
     )
-    arm: ArmPart | None = optional(
+    arm: ArmPart | None = optional_entry(
         'arm that the crank of inversion = "turning cylinder" turns about the cylinder\'s pivot: masses, torque, ram',
         {"inertia": "0.5 kg m^2", "ram": "500 mm", "ram_force": "2 kN"},
     )
-    spring: SpringPart | None = optional(
+    spring: SpringPart | None = optional_entry(
         'gas or coil spring on the lever of inversion = "turning cylinder"',
         {"frame": "500 mm", "frame_angle": "-90 deg", "lever": "300 mm", "force": "600 N", "length": "450 mm"},
     )
-    load: tuple[Load, ...] = optional(
+    load: tuple[Load, ...] = optional_entry(
         "loads on the slider along its line, or on the crank; several add up",
         [{"force": "200 N", "opposes": "outward stroke"}],
         default=(),
         max_length=50,
     )
-    drive: DrivePart | None = optional(
+    drive: DrivePart | None = optional_entry(
         "motor, gearbox and flywheel, for analyses that compute the speed",
         {"motor": {"torque": "20 N m"}, "flywheel": "0.5 kg m^2"},
     )
-    friction: FrictionPart = optional(
+    friction: FrictionPart = optional_entry(
         "Coulomb friction in the guide and in the three pins; default: none",
         {"guide": 0.1, "crank_pin": {"radius": "10 mm", "coefficient": 0.08}},
         default=FrictionPart(),
     )
-    tolerances: TolerancesPart = optional(
+    tolerances: TolerancesPart = optional_entry(
         "tolerances of dimensions and crank angle",
         {"crank": "0.05 mm", "crank_angle": "0.1 deg"},
         default=TolerancesPart(),
     )
-    clearance: ClearancePart | None = optional(
+    clearance: ClearancePart | None = optional_entry(
         "a joint with clearance, for the simulation of its impacts; designs are sized with ideal joints",
         {"joint": "crank pin", "radial_clearance": "1 mm", "journal_radius": "10 mm"},
     )
-    costs: CostsPart | None = optional(
+    costs: CostsPart | None = optional_entry(
         "costs of tolerances, for their allocation",
         {"crank": {"cost": 8.0, "at": "0.05 mm"}, "crank_angle": {"cost": 10.0, "at": "0.1 deg"}},
     )
-    target_motion: TargetMotionPart | None = optional(
+    target_motion: TargetMotionPart | None = optional_entry(
         "target slider motion, from which motion_deviation and motion_deviation_rms are measured",
         {"crank_angles": ["0 deg", "90 deg", "180 deg"], "positions": ["240 mm", "200 mm", "160 mm"]},
     )
     quantity: Annotated[
         dict[str, QuantityPart], Field(max_length=MOST_QUANTITIES), AfterValidator(require_usable_names)
-    ] = optional(
+    ] = optional_entry(
         "custom formulas and functions as quantities, by name",
         {"clearance": {"formula": "offset - crank"}},
         {"least_jerk": {"function": "mymodule:greatest_jerk", "unit": "m/s^3"}},
         default={},
     )
-    variables: VariablesPart = required(
+    variables: VariablesPart = required_entry(
         "ranges of the three dimensions and of any other number of the job",
         {"crank": ["20 mm", "200 mm"], "rod": ["60 mm", "600 mm"], "offset": ["0 mm", "200 mm"]},
     )
-    choice: tuple[ChoicePart, ...] = optional(
+    choice: tuple[ChoicePart, ...] = optional_entry(
         "choices between options that each set several numbers; every combination is tried",
         [{"name": "gearmotor", "option": EXAMPLE["option"]}],
         default=(),
         max_length=10,
     )
-    constraints: ConstraintsPart = optional(
+    constraints: ConstraintsPart = optional_entry(
         "requirements that every design must meet", EXAMPLE["constraints"], default=ConstraintsPart()
     )
-    objectives: Annotated[ObjectivesPart, AfterValidator(_require_objective)] = required(
+    objectives: Annotated[ObjectivesPart, AfterValidator(_require_objective)] = required_entry(
         "objectives: the front shows the best compromises", EXAMPLE["objectives"]
     )
-    robust: RobustPart | None = optional(
+    robust: RobustPart | None = optional_entry(
         "objectives and constraints within the tolerances", {"kind": "percentile", "share": 0.99}
     )
-    sections: SectionsPart | None = optional(
+    sections: SectionsPart | None = optional_entry(
         "material, pins and safety of crank and rod, for stress and safety and the sizing of sections", SECTIONS
     )
-    optimiser: OptimiserPart = optional("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
+    optimiser: OptimiserPart = optional_entry("how to search", {"designs": 200, "seed": 1}, default=OptimiserPart())
 
     def swing(self) -> Swing | None:
         """Return the swing of its crank or lever; None for a crank that rotates fully."""
@@ -217,7 +217,7 @@ class Job(Part):
         )
 
 
-def job_with(declared: Declared) -> type[Job]:
+def job_type_with_quantities(declared: Declared) -> type[Job]:
     """Return the job type whose [objectives] and [constraints], also those of options, may name custom quantities."""
     if not declared.tables and not declared.formulas:
         return Job
@@ -228,6 +228,6 @@ def job_with(declared: Declared) -> type[Job]:
 @lru_cache(maxsize=16)
 def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str, ...]) -> type[Job]:
     constraints, objectives = constraint_and_objective_tables(dict(custom_facts), formulas)
-    choice: Any = choice_with(constraints)
+    choice: Any = choice_type_with_constraints(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]
-    return with_types(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)
+    return with_entry_types(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)

@@ -19,10 +19,10 @@ from ...objectives.lever_geometry import LEVER_TRANSMISSION_ANGLE
 from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
 from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
-from ...objectives.tables.swing_columns import reason_undefined_for_swing, swing_facts
+from ...objectives.tables.swing_columns import reason_undefined_for_swing, swing_quantity_facts
 from ..problem.requirements import Constraint
 from .crank_speed import SPEED_KEYS, CrankSpeedPart
-from .value_types import Angle, Checked, Clearance, Length, Part, PositiveTime, optional
+from .value_types import Angle, Checked, Clearance, Length, Part, PositiveTime, optional_entry
 
 _TURN, _SWING = "turn", "swing"
 _MARGIN = ANGLE.metric.factor * (SWING_TRANSMISSION_ANGLE.floor or 0.0)
@@ -154,20 +154,28 @@ _Shares = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1.0)], ...], Field(m
 _ENTRIES: dict[str, Any] = {
     "kind": (
         Literal["turn", "swing"],
-        optional("turn: full rotation at the speed in [mechanism]; swing: between two angles", _SWING, default=_TURN),
+        optional_entry(
+            "turn: full rotation at the speed in [mechanism]; swing: between two angles", _SWING, default=_TURN
+        ),
     ),
-    "from": (Angle | None, optional("crank angle at the start of the forward stroke", "11 deg")),
-    "to": (Angle | None, optional("crank angle at its end; smaller than at the start means clockwise", "101 deg")),
-    "swing": (Angle | None, optional("instead of to: angle of the swing; below 0 means clockwise", "90 deg")),
+    "from": (Angle | None, optional_entry("crank angle at the start of the forward stroke", "11 deg")),
+    "to": (
+        Angle | None,
+        optional_entry("crank angle at its end; smaller than at the start means clockwise", "101 deg"),
+    ),
+    "swing": (Angle | None, optional_entry("instead of to: angle of the swing; below 0 means clockwise", "90 deg")),
     "slider_from": (
         Length | None,
-        optional("instead of crank angles: slider position at the start of the forward stroke", "3.1 m"),
+        optional_entry("instead of crank angles: slider position at the start of the forward stroke", "3.1 m"),
     ),
-    "slider_to": (Length | None, optional("slider position at its end", "0.8 m")),
-    "slider_travel": (Length | None, optional("instead of slider_to: travel; below 0 means towards -x", "-2.3 m")),
+    "slider_to": (Length | None, optional_entry("slider position at its end", "0.8 m")),
+    "slider_travel": (
+        Length | None,
+        optional_entry("instead of slider_to: travel; below 0 means towards -x", "-2.3 m"),
+    ),
     "crank_side": (
         Side,
-        optional(
+        optional_entry(
             "with slider positions: the side of the crank pin, looking along the line from crank pivot to slider pin",
             "right",
             default="left",
@@ -175,27 +183,29 @@ _ENTRIES: dict[str, Any] = {
     ),
     "driver": (
         Driver,
-        optional(
+        optional_entry(
             "driven body: the crank by a torque, or the slider by a force along its line", "slider", default="crank"
         ),
     ),
-    "law": (Law, optional("motion law of the driver; slow ignores inertia", "polynomial", default="slow")),
-    "duration": (PositiveTime | None, optional("of one stroke, for a law other than slow", "30 s")),
+    "law": (Law, optional_entry("motion law of the driver; slow ignores inertia", "polynomial", default="slow")),
+    "duration": (PositiveTime | None, optional_entry("of one stroke, for a law other than slow", "30 s")),
     "law_times": (
         _Shares,
-        optional("for the law table: fractions of the time of one stroke", [0, 0.3, 0.7, 1], default=()),
+        optional_entry("for the law table: fractions of the time of one stroke", [0, 0.3, 0.7, 1], default=()),
     ),
     "law_shares": (
         _Shares,
-        optional("for the law table: fractions of the travel at these times", [0, 0.2, 0.8, 1], default=()),
+        optional_entry("for the law table: fractions of the travel at these times", [0, 0.2, 0.8, 1], default=()),
     ),
     "actuator_tolerance": (
         Clearance,
-        optional("position tolerance of the driven slider; adds to the error of the crank angle", "1 mm", default=0.0),
+        optional_entry(
+            "position tolerance of the driven slider; adds to the error of the crank angle", "1 mm", default=0.0
+        ),
     ),
     "margin": (
         Angle | None,
-        optional(
+        optional_entry(
             "least transmission angle of the driven side, the distance from dead points and from opening; default "
             f"{_MARGIN:g} deg; same as a min of constraints.{SWING_TRANSMISSION_ANGLE.name}",
             "20 deg",
@@ -211,7 +221,7 @@ else:  # a class cannot have a field named "from"
 def require_swing_motion(swing: Swing | None, objectives: Part, constraints: Part) -> None:
     """Raise JobError if a job requires a quantity of a swing that its motion does not have."""
     for table, part in (("objectives", objectives), ("constraints", constraints)):
-        for quantity in swing_facts():
+        for quantity in swing_quantity_facts():
             reason = (
                 reason_undefined_for_swing(quantity.name, swing) if getattr(part, quantity.name) is not None else None
             )
@@ -228,7 +238,7 @@ def require_constant_swing_speed(varying: Iterable[str]) -> None:
             )
 
 
-def require_speed(
+def require_crank_speed(
     mechanism: CrankSpeedPart, machine: Mechanism, quantities: Iterable[Quantity], slow_stroke: bool
 ) -> None:
     """Raise JobError if a fully rotating crank has no speed but a requirement or objective depends on it.
@@ -241,7 +251,9 @@ def require_speed(
     dependents = [*dependent_keys, *(["slow_stroke"] if slow_stroke else [])]
     lacking = ((quantity, quantity.undefined_because([machine])) for quantity in quantities)
     dependents += [
-        quantity.name for quantity, why in lacking if (SPEED.missing in why if why else quantity.follows_speed(machine))
+        quantity.name
+        for quantity, why in lacking
+        if (SPEED.missing in why if why else quantity.depends_on_speed(machine))
     ][:1]
     if dependents:
         raise JobError(
@@ -271,7 +283,7 @@ def require_only_start_varies(varying: Mapping[str, bool]) -> None:
             )
 
 
-def require_one_sided_starts(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
+def require_starts_on_one_side_of_end(motion: Swing | None, varying: tuple[Varying, ...]) -> None:
     """Raise JobError if starts may lie on both sides of a fixed end, because the best swing would vanish."""
     if motion is None or motion.follows:
         return

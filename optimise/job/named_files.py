@@ -8,7 +8,7 @@ from pathlib import Path, PurePath
 from ...model.errors import InputError, JobError
 from ...model.file_name_encoding import path_from_text
 from ...objectives.units import quote
-from .text_table import TableFile, bytes_of, read_table, text_of
+from .text_table import TableFile, decode_file_text, read_file_bytes, read_table
 
 Files = Path | Mapping[str, str | bytes]
 """The folder that contains the files, or their contents by name."""
@@ -31,12 +31,12 @@ def read_named_text(files: Files, key: str, file: str) -> str:
     if PurePath(file).is_absolute() or ".." in PurePath(file).parts:
         raise JobError(f"{key}: must be in the folder of the job file; got {quote(file)}; copy it there")
     if isinstance(files, Path):
-        return text_of(bytes_of(files / path_from_text(file), name, LARGEST), name)
+        return decode_file_text(read_file_bytes(files / path_from_text(file), name, LARGEST), name)
     if file not in files:
         sent = f" ({', '.join(files)})" if files else ""
         raise JobError(f"{name} not found among the files sent with the job{sent}; send it too")
     content = files[file]
-    return content if isinstance(content, str) else text_of(content, name)
+    return content if isinstance(content, str) else decode_file_text(content, name)
 
 
 def unread_file_error(file: str, instead: str) -> InputError:

@@ -8,12 +8,12 @@ from typing import Any
 from ...model.machine.loads.load import StrokePart
 from ...model.machine.raw_numbers_of_designs import DRIVE
 from ...objectives.formula.formulas import ROOTS
-from ...objectives.units import closest
+from ...objectives.units import closest_word
 from .crank_speed import SPEED_KEYS
 from .value_types import Part
 
 
-def with_number(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[str, Any]:
+def with_value_at_path(job: Part | Mapping[str, Any], path: str, value: Any) -> dict[str, Any]:
     """Return a job, or its tables, with a value set at a path; parts along the path stay as read.
 
     Raises `LookupError` if the job states no number or text there.
@@ -45,7 +45,7 @@ def unknown_path_message(path: str, tables: Mapping[str, Any]) -> str:
         return several
     is_number_of_drive = table == "drive" and key in DRIVE
     known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_settable_value(value)]
-    near = None if is_number_of_drive else closest(path, known_paths)
+    near = None if is_number_of_drive else closest_word(path, known_paths)
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )
@@ -67,7 +67,7 @@ def _not_one_value_message(path: str, tables: Mapping[str, Any]) -> str:
     return ""
 
 
-def stated_values(part: Any) -> dict[str, Any]:
+def stated_values_of_part(part: Any) -> dict[str, Any]:
     """Return the values that a part of a job states, by key; nested parts stay as read."""
     return dict(part) if isinstance(part, Mapping) else {name: getattr(part, name) for name in part.model_fields_set}
 
@@ -95,7 +95,7 @@ def _replace_at(part: Any, steps: list[str], value: Any) -> Any:
         if place is None or not rest:
             raise LookupError(step)
     elif isinstance(part, Part | Mapping):
-        table, place = stated_values(part), step
+        table, place = stated_values_of_part(part), step
     else:
         raise LookupError(step)
     if rest:

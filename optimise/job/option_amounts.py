@@ -10,10 +10,10 @@ from pydantic_core import CoreSchema
 
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.catalogue_amount import Amount, amount_of, kind_of_amount
+from ...objectives.catalogue_amount import Amount, kind_of_amount, number_and_unit_of_amount
 from ...objectives.formula.expression import ARGUMENTS
 from ...objectives.kinds import RATIO, Kind
-from ...objectives.own.quantity import require_name
+from ...objectives.own.quantity import require_column_name
 from ...objectives.registry import FACTS
 from ...objectives.units import quote, to_si
 from .constraints_and_objectives import SLOW_STROKE
@@ -28,7 +28,11 @@ class _AmountMarker(Physical):
     """Marks an amount: a number with any unit, or a plain number."""
 
     def read(self, value: object) -> Any:
-        amount = None if isinstance(value, bool) or not isinstance(value, str | int | float) else amount_of(value)
+        amount = (
+            None
+            if isinstance(value, bool) or not isinstance(value, str | int | float)
+            else number_and_unit_of_amount(value)
+        )
         if amount is None or not abs(amount[0]) <= _MOST:
             raise InputError(f'must be a number with its unit, such as "310 EUR", or a number; got {quote(value)}')
         return value
@@ -41,7 +45,7 @@ def _amounts_by_name(amounts: dict[str, Any]) -> dict[str, Any]:
     for name in amounts:
         if name in FACTS or name in (SLOW_STROKE, *DIMENSIONS, *ARGUMENTS):
             raise InputError(f"an amount must have a unique name; got {name}; choose another name")
-        require_name(name)
+        require_column_name(name)
     return amounts
 
 
@@ -54,18 +58,22 @@ def kinds_of_amounts(options: Iterable[Mapping[str, Any]]) -> dict[str, Kind]:
     kinds: dict[str, Kind] = {}
     for amounts in options:
         for name, value in amounts.items():
-            amount = amount_of(value) if name not in kinds and isinstance(value, str | int | float) else None
+            amount = (
+                number_and_unit_of_amount(value) if name not in kinds and isinstance(value, str | int | float) else None
+            )
             if amount is not None:
                 kinds[name] = kind_of_amount(amount[1])
     return kinds
 
 
-def amounts_in(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
+def readable_amounts(tables: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
     """Return the amounts of a job's options, as far as they can be read."""
     return (table_in(option, "amounts") for option in options_in(tables))
 
 
-def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Collection[str]) -> tuple[Amount, ...]:
+def amounts_of_choices(
+    choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Collection[str]
+) -> tuple[Amount, ...]:
     """Return the amounts that options of choices have, as quantities without values.
 
     choices: amounts of each choice's options, by name. custom_names: names of the job's custom quantities. Raises
@@ -88,7 +96,7 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Col
                 source="this job",
                 choice=choice,
                 signed=any(
-                    (amount_of(option_amounts[name]) or (0.0,))[0] < 0.0
+                    (number_and_unit_of_amount(option_amounts[name]) or (0.0,))[0] < 0.0
                     for option_amounts in options
                     if name in option_amounts
                 ),
@@ -96,12 +104,12 @@ def amounts_of(choices: Mapping[str, list[Mapping[str, Any]]], custom_names: Col
     return tuple(amounts.values())
 
 
-def excluded_in_words(name: str, value: object, word: str, bound: object) -> str:
+def excess_amount_text(name: str, value: object, word: str, bound: object) -> str:
     """Describe an amount beyond a bound: "price 450 EUR, more than the 400 EUR allowed"."""
     return f"{name.replace('_', ' ')} {value}, {_TOO[word].format(bound)}"
 
 
-def values_of(
+def amount_values(
     amounts: Mapping[str, Any], quantities: Mapping[str, Amount], option_name: str
 ) -> tuple[tuple[str, float], ...]:
     """Return an option's amounts, SI. Raises JobError.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ...model.errors import InputError
-from ...objectives.units import closest, quote
+from ...objectives.units import closest_word, quote
 from .value_types import Part
 
 _FEW = 4  # kinds that a table may lack one key for, in a message
@@ -35,7 +35,7 @@ class Kinds:
         keys_present = [key for key in self.parts if key in value]
         if not keys_present:
             keys = ", ".join(quote(key).strip('"') for key in list(value)[:6]) or "no keys"
-            near = [self.synonyms.get(key) or closest(key, self.parts) for key in value if isinstance(key, str)]
+            near = [self.synonyms.get(key) or closest_word(key, self.parts) for key in value if isinstance(key, str)]
             hint = next((f"; did you mean {key}?" for key in near if key), "")
             lacking = [key for key, kind in self.parts.items() if value.keys() <= kind.model_fields.keys()]
             if value and 0 < len(lacking) <= min(_FEW, len(self.parts) - 1):

@@ -16,10 +16,10 @@ from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from ..problem.job_remark import Change, Remark
 from ..problem.problem import Problem
-from .mistake_messages import key_of, keys_of, toml_text
-from .number_paths import with_number
+from .mistake_messages import key_of_location, keys_of_location, toml_text
+from .number_paths import with_value_at_path
 from .value_types import PLAIN, Part, Table, flatten_values, plain_numbers_in
-from .variables import leaves_of, stated_variables
+from .variables import stated_variables, table_leaves
 
 _LONGEST = 60  # maximum length of a value that a warning repeats
 
@@ -84,7 +84,7 @@ class PlainNumbers:
             return None
         return [f"{number:g} {unit}" if number else number for number in numbers]
 
-    def concerns(self, key: str) -> bool:
+    def is_at_key(self, key: str) -> bool:
         """Return whether the value is at a key of the job, within it, or in a table that contains it."""
         return any(f"{inner}.".startswith(f"{outer}.") for inner, outer in ((self.key, key), (key, self.key)))
 
@@ -121,12 +121,12 @@ def read_and_note_plain_numbers(
     return read, [*placed.values(), *further]
 
 
-def plain_values(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
+def numbers_without_unit(job: type[Part], data: Mapping[str, Any]) -> list[PlainNumbers]:
     """Return the numbers without a unit in the tables of a job that may be invalid."""
     return [PlainNumbers(key, value, kind) for _, key, value, kind in _tables_as_read(job, data)[1]]
 
 
-def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
+def formula_bounds_without_unit(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNumbers]:
     """Yield formulas' bounds and targets without a unit; their kinds come from the job's problem."""
     for table in ("constraints", "objectives"):
         for name, bounds in data.get(table, {}).items():
@@ -134,7 +134,7 @@ def plain_bounds(problem: Problem, data: Mapping[str, Any]) -> Iterator[PlainNum
                 kind = problem.quantity(name).kind
                 for word, value in bounds.items():
                     if plain_numbers_in(value) and kind.unit and not kind.amount:
-                        yield PlainNumbers(key_of([table, name, word]), value, kind)
+                        yield PlainNumbers(key_of_location([table, name, word]), value, kind)
 
 
 def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | None, list[tuple[str, str, Any, Kind]]]:
@@ -148,11 +148,11 @@ def _tables_as_read(job: type[Table], data: Mapping[str, Any]) -> tuple[Table | 
     except ValidationError as error:
         for details in error.errors(include_url=False):
             if details["type"] == PLAIN:
-                keys = keys_of(details["loc"])
+                keys = keys_of_location(details["loc"])
                 keys = keys[:-1] if isinstance(keys[-1], int) else keys  # report a list as a whole
                 value = reduce(getitem, keys, data)
                 path = ".".join(str(key + 1) if isinstance(key, int) else key for key in keys)
-                placed.append((path.removeprefix("variables."), key_of(keys), value, details["ctx"]["kind"]))
+                placed.append((path.removeprefix("variables."), key_of_location(keys), value, details["ctx"]["kind"]))
     return None, placed
 
 
@@ -162,11 +162,11 @@ def _varying_values(data: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]]:
         yield f"variables.{path}", path, value
     for part in data.get("choice", ()):
         for option in part.get("option", ()):
-            for path, value in leaves_of(option.get("values", {}), ""):
+            for path, value in table_leaves(option.get("values", {}), ""):
                 yield f"choice {quote(part['name'])}, option {quote(option['name'])}: {path}", path, value
 
 
 def _with_number_at(data: Mapping[str, Any], path: str, number: float) -> dict[str, Any]:
     if path in DIMENSIONS:
         return {**data, "variables": {**data["variables"], path: number}}
-    return with_number(data, path, number)
+    return with_value_at_path(data, path, number)

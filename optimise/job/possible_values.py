@@ -18,7 +18,7 @@ from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, time_ratio_o
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Range
-from .mistake_messages import key_of
+from .mistake_messages import key_of_location
 
 if TYPE_CHECKING:
     from ..feasibility.relaxation import Relaxation
@@ -72,10 +72,10 @@ def require_reachable(problem: Problem) -> None:
     constraints = {constraint.quantity: constraint for constraint in problem.constraints}
     if ROD_TO_OFFSET.name in constraints:
         box = _narrow_by_rod_to_offset(box, constraints[ROD_TO_OFFSET.name], problem)
-    formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.of_dimensions)
+    formulas = (of for of in problem.own if isinstance(of, FormulaQuantity) and of.depends_only_on_dimensions)
     for of in (ROD_TO_CRANK, STROKE, *STROKE_RATIOS, TRANSMISSION_ANGLE, *formulas):
         if of.name in constraints:
-            _require_within(of, constraints[of.name], box, problem)
+            _require_overlap(of, constraints[of.name], box, problem)
     for of in STROKE_RATIOS:
         wrong = ratio_and_angle_conflict(problem, of, box.share)
         if wrong:
@@ -89,7 +89,7 @@ def _narrow_by_rod_to_offset(box: Box, constraint: Constraint, problem: Problem)
             f"constraints.{ROD_TO_OFFSET.name}: needs an offset; the offset is fixed at 0; give variables.offset a "
             "range"
         )
-    _require_within(ROD_TO_OFFSET, constraint, box, problem)
+    _require_overlap(ROD_TO_OFFSET, constraint, box, problem)
     least, greatest = constraint.lower or 0.0, constraint.upper or math.inf
     l0, l1 = box.rod.lower, box.rod.upper
     a0, a1 = box.offset.lower, box.offset.upper
@@ -110,9 +110,9 @@ def _narrow_by_rod_to_offset(box: Box, constraint: Constraint, problem: Problem)
     return narrowed
 
 
-def _require_within(quantity: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
+def _require_overlap(quantity: Quantity, constraint: Constraint, box: Box, problem: Problem) -> None:
     """Raise InfeasibleError unless the constraint overlaps the possible values."""
-    key, bounds = key_of(["constraints", quantity.name]), problem.common_bounds(quantity)
+    key, bounds = key_of_location(["constraints", quantity.name]), problem.common_bounds(quantity)
     if bounds is None:
         return
     least, greatest = box.possible(quantity)

@@ -14,7 +14,7 @@ from ...objectives.own.call_function import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem
-from . import parse_job, warn_about, with_files
+from . import parse_job, warn_of_problem, with_file_contents
 
 
 def problem(
@@ -54,11 +54,11 @@ def problem(
                 functions[name] = part["function"]
                 part["function"] = "given:function"  # a placeholder name for the validation
     stated_problem = parse_job(
-        with_files(data, Path() if folder is None else Path(folder)),
+        with_file_contents(data, Path() if folder is None else Path(folder)),
         folder=None if folder is None else Path(folder),
         require_feasible=require_feasible,
     )
-    warn_about(stated_problem)
+    warn_of_problem(stated_problem)
     return (
         replace(stated_problem, own=tuple(_with_functions(item, functions) for item in stated_problem.own))
         if functions
@@ -69,7 +69,7 @@ def problem(
 def _with_functions(item: Quantity, functions: Mapping[str, Function]) -> Quantity:
     if isinstance(item, OwnQuantity) and item.name in functions:
         return replace(item, function=functions[item.name])
-    return item.with_parts(tuple(_with_functions(part, functions) for part in item.made_of))
+    return item.with_parts(tuple(_with_functions(part, functions) for part in item.component_quantities))
 
 
 def _plain_copy(value: object) -> object:

@@ -20,31 +20,31 @@ from ..methods.registry import require_supported_settings
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.contradictory_problems import no_option_error
 from ..problem.problem import Problem, Variant
-from ..problem.requirements import Constraint, merged
+from ..problem.requirements import Constraint, merge_constraints
 from .constraints_and_objectives import constraints_of, objectives_of, slow_stroke_of
-from .contradictions import require_consistent
-from .custom_quantities import formulas_of, functions_of
+from .contradictions import require_no_contradiction
+from .custom_quantities import function_quantities, named_formulas
 from .lever import require_parts_of_lever
-from .mistake_messages import key_of
+from .mistake_messages import key_of_location
 from .model import Job
 from .motion import (
     require_constant_swing_speed,
-    require_one_sided_starts,
+    require_crank_speed,
     require_only_start_varies,
-    require_speed,
+    require_starts_on_one_side_of_end,
     require_swing_motion,
     with_swing_margin,
 )
-from .option_amounts import amounts_of, excluded_in_words
+from .option_amounts import amounts_of_choices, excess_amount_text
 from .robust import make_robust
 from .target_motion import require_target
 from .variables_and_variants import (
+    choices_and_variants,
     dimension_ranges,
     discrete_variables,
-    ends_of,
     is_choice,
     machine_with_variables,
-    variants_of,
+    range_of_dimension,
 )
 
 
@@ -60,16 +60,18 @@ def problem_of(
     require_parts_of_lever(job.mechanism, costs=job.costs, target_motion=job.target_motion)
     variables, motion = job.variables, job.swing()
     machine = _machine_of(job, motion)
-    amounts = amounts_of({part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity)
+    amounts = amounts_of_choices(
+        {part.name: [option.amounts for option in part.option] for part in job.choice}, job.quantity
+    )
     custom = (
         *amounts,
         *(() if job.target_motion is None else motion_deviations(job.target_motion.build())),
-        *functions_of(job.quantity, folder),
+        *function_quantities(job.quantity, folder),
         *installed,
         *(() if motion is None else swing_quantities(motion)),
     )
-    formulas = Formulas(custom, machine, dimension_ranges(job), formulas_of(job.quantity), turning=motion is None)
-    choices, variants, catalogue = variants_of(job, formulas, {of.name: of for of in amounts})
+    formulas = Formulas(custom, machine, dimension_ranges(job), named_formulas(job.quantity), turning=motion is None)
+    choices, variants, catalogue = choices_and_variants(job, formulas, {of.name: of for of in amounts})
     objectives = tuple(objectives_of(job.objectives, formulas))
     constraints = with_swing_margin(
         _join_by_formula(constraints_of(job.constraints, formulas), formulas),
@@ -89,13 +91,13 @@ def problem_of(
     named = {*named_quantities, *(item.quantity for item in limits)}
     if motion is None:
         slow = bool(slow_stroke_of(job.constraints) or any(variant.slow_stroke for variant in variants))
-        require_speed(job.mechanism, machine, [quantities[name] for name in sorted(named)], slow)
+        require_crank_speed(job.mechanism, machine, [quantities[name] for name in sorted(named)], slow)
     problem = Problem(
         name=job.name,
         mechanism=machine,
-        crank=ends_of(variables.crank),
-        rod=ends_of(variables.rod),
-        offset=ends_of(variables.offset),
+        crank=range_of_dimension(variables.crank),
+        rod=range_of_dimension(variables.rod),
+        offset=range_of_dimension(variables.offset),
         choices=choices,
         variants=variants,
         left_out=left_out,
@@ -119,7 +121,7 @@ def problem_of(
     )
     _require_tolerances_below_lengths(problem)
     try:
-        require_consistent(problem)
+        require_no_contradiction(problem)
         require_meetable(problem)
     except InfeasibleError as error:
         if require_feasible:
@@ -140,7 +142,7 @@ def _machine_of(job: Job, motion: Swing | None) -> Mechanism:
     require_only_start_varies({path: path in chosen for path in {**paths, **dict.fromkeys(chosen)}})
     require_swing_motion(motion, job.objectives, job.constraints)
     machine = machine_with_variables(job)
-    require_one_sided_starts(motion, machine.varying)
+    require_starts_on_one_side_of_end(motion, machine.varying)
     return machine
 
 
@@ -165,11 +167,12 @@ def _join_by_formula(constraints: Iterable[Constraint], formulas: Formulas) -> t
     for constraint in constraints:
         name = constraint.quantity
         try:
-            (joined[name],) = merged((joined.get(name, constraint), constraint))
+            (joined[name],) = merge_constraints((joined.get(name, constraint), constraint))
         except InputError:
             bounds_text = _bounds_text((joined[name], constraint), formulas.formula_quantities[name])
             raise InfeasibleError(
-                f"{key_of(['constraints', name])}: the requirements on one formula must not contradict each other; "
+                f"{key_of_location(['constraints', name])}: the requirements on one formula must not contradict each "
+                "other; "
                 f"got {bounds_text}; leave out one of them"
             ) from None
     return tuple(joined.values())
@@ -218,12 +221,12 @@ def _contradiction_of(
                 if (value < bound and word != "max") or (value > bound and word != "min")
             )
             texts = [f"{number * unit.factor:.6g} {unit.symbol}".rstrip() for number in (value, bound)]
-            return excluded_in_words(quantities[name].title, texts[0], word, texts[1])
+            return excess_amount_text(quantities[name].title, texts[0], word, texts[1])
     for limit in variant.limits:
         name = limit.quantity
         pair = (constraint_by_name[name], limit) if name in constraint_by_name else (limit,)
         try:
-            (constraint_by_name[name],) = merged(pair)
+            (constraint_by_name[name],) = merge_constraints(pair)
         except InputError:
             return f"{quantities[name].title} {_bounds_text(pair, quantities[name])}, which exclude each other"
     return None

@@ -13,8 +13,8 @@ from ...objectives.robust.quantity import SAMPLES, Case
 from ...objectives.robust.tolerance_box_points import toleranced_columns
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
-from ..problem.robust_problem import Robust, robust
-from .value_types import Checked, optional
+from ..problem.robust_problem import Robust, robust_problem
+from .value_types import Checked, optional_entry
 
 
 class RobustPart(Checked[Robust]):
@@ -23,27 +23,27 @@ class RobustPart(Checked[Robust]):
     makes = Robust
     renamed: ClassVar = {"spread": "shape"}
 
-    kind: Case = optional(
+    kind: Case = optional_entry(
         "percentile: value met by a percentage of all machines; worst case: value met by all machines within the "
         "limits",
         "percentile",
         default="percentile",
     )
-    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = optional(
+    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = optional_entry(
         "percentage of the machines, for a percentile", 0.99, default=0.99
     )
-    order: Literal[1, 2] = optional(
+    order: Literal[1, 2] = optional_entry(
         "order of a worst case. 1: linear in the errors; 2: exact at the worst corner", 2, default=2
     )
-    spread: Shape = optional(
+    spread: Shape = optional_entry(
         "of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
         "normal",
         default="normal",
     )
-    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = optional(
+    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = optional_entry(
         "machines drawn for a percentile, the same for all designs", SAMPLES, default=SAMPLES
     )
-    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional(
+    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional_entry(
         "objectives and constraints to make robust; default: all for which this is possible",
         [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name],
     )
@@ -61,6 +61,6 @@ def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
             'of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
         )
     try:
-        return robust(problem, part.build())
+        return robust_problem(problem, part.build())
     except InputError as error:
         raise JobError(f"robust: {error}") from None

@@ -17,8 +17,8 @@ from .value_types import (
     PositiveRange,
     PositiveRatio,
     WearCoefficient,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 EXAMPLE = {
@@ -86,42 +86,44 @@ class MaterialPart(Checked[Material]):
 
     makes = Material
 
-    density: Density = required("of the material", "7850 kg/m^3")
-    elasticity: _Elasticity = required("Young's modulus", "207 GPa")
-    yield_strength: _Strength = required("in tension and compression", "350 MPa")
-    ultimate_strength: _Strength = required("in tension", "520 MPa")
-    endurance: _Strength = required("fully reversed strength of the finished bar, without eye_concentration", "150 MPa")
-    bearing_pressure: _Bearing = required("permissible at the pins, on their projected area", "20 MPa")
+    density: Density = required_entry("of the material", "7850 kg/m^3")
+    elasticity: _Elasticity = required_entry("Young's modulus", "207 GPa")
+    yield_strength: _Strength = required_entry("in tension and compression", "350 MPa")
+    ultimate_strength: _Strength = required_entry("in tension", "520 MPa")
+    endurance: _Strength = required_entry(
+        "fully reversed strength of the finished bar, without eye_concentration", "150 MPa"
+    )
+    bearing_pressure: _Bearing = required_entry("permissible at the pins, on their projected area", "20 MPa")
 
 
 class PinsPart(Part):
     """Diameters of the three pins. Half the bar's width is a usual start."""
 
-    crank_pivot: PositiveLength = required("between frame and crank", "15 mm")
-    crank_pin: PositiveLength = required("between crank and connecting rod", "15 mm")
-    slider_pin: PositiveLength = required("between connecting rod and slider", "15 mm")
+    crank_pivot: PositiveLength = required_entry("between frame and crank", "15 mm")
+    crank_pin: PositiveLength = required_entry("between crank and connecting rod", "15 mm")
+    slider_pin: PositiveLength = required_entry("between connecting rod and slider", "15 mm")
 
 
 class SectionsPart(Checked[SectionLimits]):
     """Material, pins, available sizes and safety factors of crank and rod as rectangular bars."""
 
-    material: MaterialPart = required("of crank and rod", EXAMPLE["material"])
-    pins: PinsPart = required("diameters, usually about half the width of the bar", EXAMPLE["pins"])
-    width: PositiveRange = optional(
+    material: MaterialPart = required_entry("of crank and rod", EXAMPLE["material"])
+    pins: PinsPart = required_entry("diameters, usually about half the width of the bar", EXAMPLE["pins"])
+    width: PositiveRange = optional_entry(
         "in the plane of motion: range that can be made", ["10 mm", "80 mm"], default=(5e-3, 0.2)
     )
-    depth: PositiveRange = optional("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
-    static_safety: _Safety = optional("against yield", 2.0, default=2.0)
-    fatigue_safety: _Safety = optional("against fatigue", 1.5, default=1.5)
-    buckling_safety: _Safety = optional("against Euler's load", 3.0, default=3.0)
-    criterion: Criterion = optional("fatigue criterion for mean stresses", "goodman", default="goodman")
-    eye_concentration: _Raised = optional(
+    depth: PositiveRange = optional_entry("normal to the plane", ["5 mm", "40 mm"], default=(3e-3, 0.1))
+    static_safety: _Safety = optional_entry("against yield", 2.0, default=2.0)
+    fatigue_safety: _Safety = optional_entry("against fatigue", 1.5, default=1.5)
+    buckling_safety: _Safety = optional_entry("against Euler's load", 3.0, default=3.0)
+    criterion: Criterion = optional_entry("fatigue criterion for mean stresses", "goodman", default="goodman")
+    eye_concentration: _Raised = optional_entry(
         "greatest divided by mean stress in the net section of an eye; see a chart such as Shigley's fig. A-15-12",
         2.5,
         default=1.0,
     )
 
-    wear_coefficient: WearCoefficient | None = optional(
+    wear_coefficient: WearCoefficient | None = optional_entry(
         "wear coefficient: worn volume per force and sliding distance, for the softer of pin and bearing",
         "1e-9 mm^2/N",
     )

@@ -13,15 +13,15 @@ from ...model.errors import InputError
 from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import value_of_one_si_unit_in
-from .curve_file import Curve, curve_in, drop_closing_point
+from .curve_file import Curve, curve_of_table, drop_closing_point
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
-from .value_types import Angle, AngularSpeed, Checked, Number, Source, optional, summary_entry
+from .value_types import Angle, AngularSpeed, Checked, Number, Source, optional_entry, summary_entry
 
 _TOLERANCE = 1e-3  # relative tolerance for a table's mean against the speed, and for the end of a turn against 360 deg
 
 
-def _profile(**given: Any) -> Profile:
+def _build_profile(**given: Any) -> Profile:
     if given.get("file") is not None:
         raise unread_file_error(given["file"], "points")
     table = {name: given[name] for name in ("crank_angles", "speeds") if given.get(name) is not None}
@@ -39,23 +39,25 @@ def _profile(**given: Any) -> Profile:
 class SpeedProfilePart(Checked[Profile]):
     """Crank speed over the crank angle; `speed` is its mean, or a cycle time scales it."""
 
-    makes = staticmethod(_profile)
+    makes = staticmethod(_build_profile)
 
-    cosines: tuple[Number, ...] | None = optional(
+    cosines: tuple[Number, ...] | None = optional_entry(
         "fraction of the mean in cos(k crank angle), k = 1, 2, ...", [0.0, 0.05], max_length=100
     )
-    sines: tuple[Number, ...] | None = optional("fraction of the mean in sin(k crank angle)", [0.02], max_length=100)
-    crank_angles: tuple[Angle, ...] | None = optional(
+    sines: tuple[Number, ...] | None = optional_entry(
+        "fraction of the mean in sin(k crank angle)", [0.02], max_length=100
+    )
+    crank_angles: tuple[Angle, ...] | None = optional_entry(
         "crank angles of points, increasing, spanning less than 360 deg; a periodic cubic spline joins them",
         ["0 deg", "90 deg", "180 deg", "270 deg"],
         max_length=MOST_POINTS,
     )
-    speeds: tuple[AngularSpeed, ...] | None = optional(
+    speeds: tuple[AngularSpeed, ...] | None = optional_entry(
         "speed at each point, with the sign of the direction; only the shape counts if a cycle time is given",
         ["300 rpm", "290 rpm", "310 rpm", "300 rpm"],
         max_length=MOST_POINTS,
     )
-    file: Annotated[str, Field(max_length=200)] | None = optional(
+    file: Annotated[str, Field(max_length=200)] | None = optional_entry(
         "instead of points: a table beside the job file, of speed_rpm over crank_angle_deg, or over time_s from crank "
         "angle 0 on",
         "speed.csv",
@@ -73,19 +75,21 @@ class SpeedProfilePart(Checked[Profile]):
             )
 
 
-def speeds_file(data: Mapping[str, Any]) -> str | None:
+def speed_profile_file(data: Mapping[str, Any]) -> str | None:
     """Return the file that a job's speed profile consists of; None if it names none."""
     part = table_in(table_in(data, "mechanism"), "speed_profile")
     file = part.get("file") if len(part) == 1 else None
     return file if isinstance(file, str) else None
 
 
-def with_speeds(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
+def with_speed_points(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     """Return a job with its speed profile's file replaced by the points in it. Raises `InputError`."""
-    file, job = speeds_file(data), dict(data)
+    file, job = speed_profile_file(data), dict(data)
     if file is None:
         return job
-    curve = curve_in(read_named_table(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,))
+    curve = curve_of_table(
+        read_named_table(files, "mechanism.speed_profile.file", file), (ANGLE, TIME), (ANGULAR_SPEED,)
+    )
     curve = drop_closing_point(_convert_time_to_turn_angle(curve) if curve.argument_head.kind is TIME else curve)
     require_point_count(len(curve.arguments), curve.name, 4)
     angles, speeds = curve.texts()

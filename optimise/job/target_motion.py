@@ -11,12 +11,12 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
-from .curve_file import convert_time_to_angle, curve_in, drop_closing_point
+from .curve_file import convert_time_to_angle, curve_of_table, drop_closing_point
 from .loads import require_increasing
 from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
 from .raw_tables import table_in
 from .stated_speed import stated_speed
-from .value_types import Angle, Checked, Length, Part, Source, optional, summary_entry
+from .value_types import Angle, Checked, Length, Part, Source, optional_entry, summary_entry
 
 
 class TargetMotionPart(Checked[TargetMotion]):
@@ -24,26 +24,26 @@ class TargetMotionPart(Checked[TargetMotion]):
 
     makes = TargetMotion
 
-    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(require_increasing)] | None = optional(
+    crank_angles: Annotated[tuple[Angle, ...], WrapValidator(require_increasing)] | None = optional_entry(
         "crank angles of the points, increasing, spanning less than 360 deg",
         ["0 deg", "90 deg", "180 deg"],
         min_length=3,
         max_length=MOST_POINTS,
     )
-    positions: tuple[Length, ...] | None = optional(
+    positions: tuple[Length, ...] | None = optional_entry(
         "slider position at each point, from the crank pivot outward",
         ["240 mm", "200 mm", "160 mm"],
         min_length=3,
         max_length=MOST_POINTS,
     )
-    file: Annotated[str, Field(max_length=200)] | None = optional(
+    file: Annotated[str, Field(max_length=200)] | None = optional_entry(
         "instead of the two: a table beside the job file, of position_mm over crank_angle_deg or time_s", "motion.csv"
     )
     source: Source = summary_entry()
-    phase: Freedom = optional(
+    phase: Freedom = optional_entry(
         "whether the crank may be mounted on its shaft at any angle; the best one is used", "free", default="fixed"
     )
-    shift: Freedom = optional(
+    shift: Freedom = optional_entry(
         "whether positions may be measured from any point on the slider line; the best one is used",
         "free",
         default="fixed",
@@ -80,7 +80,7 @@ def with_target_motion(data: Mapping[str, Any], files: Files) -> dict[str, Any]:
     file, job = target_motion_file(data), dict(data)
     if file is None or {"crank_angles", "positions"} & set(job["target_motion"]):
         return job
-    curve = curve_in(read_named_table(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
+    curve = curve_of_table(read_named_table(files, "target_motion.file", file), (ANGLE, TIME), (LENGTH,))
     curve = drop_closing_point(
         convert_time_to_angle(curve, stated_speed(data, curve.name)) if curve.argument_head.kind is TIME else curve
     )

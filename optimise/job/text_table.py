@@ -21,24 +21,24 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.count_text import counted
-from ...objectives.units import is_value, number_and_unit, printable_name, quote
+from ...objectives.count_text import count_with_noun
+from ...objectives.units import is_value, number_and_unit, quote, quoted_if_unprintable
 from .text_table_layout import (
     EXPONENT,
     MISSING,
     SAMPLE,
     SEPARATORS,
     are_numbers,
-    are_units,
+    are_only_units,
+    column_names_in_comment,
+    column_names_in_line,
     content_lines,
-    names_in_comment,
-    names_in_line,
+    names_with_units,
     normalise_number_signs,
     separator_of,
-    split,
+    split_cells,
     stated_separator,
-    title_lines,
-    with_units,
+    title_line_count,
 )
 
 _MOST_COLUMNS = 1000
@@ -57,7 +57,7 @@ _BREAK = re.compile(r"\s*[\r\n]+\s*")  # within a quoted cell
 _NUMBER = re.compile(rf"[+-]?(?:\d+\.?\d*|\.\d+){EXPONENT}", re.ASCII)
 
 
-def bytes_of(path: Path, name: str, limit: int) -> bytes:
+def read_file_bytes(path: Path, name: str, limit: int) -> bytes:
     """Return the content of a file of at most `limit` bytes.
 
     Raises `InputError`; name: name of the file in messages.
@@ -79,7 +79,7 @@ def bytes_of(path: Path, name: str, limit: int) -> bytes:
     return content
 
 
-def text_of(content: bytes, name: str) -> str:
+def decode_file_text(content: bytes, name: str) -> str:
     """Return a file's text: in the encoding of its byte order mark, otherwise UTF-8, otherwise Windows' Latin-1."""
     if content[:4].decode("cp1252", "replace") in _BINARY:
         raise _binary_file_error(name)
@@ -137,7 +137,7 @@ class TableFile:
 
     def summary_text(self, places: Sequence[int]) -> str:
         """Return a summary of the table: rows, first columns, first and last row, decimal sign."""
-        left_over = f" and {counted(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
+        left_over = f" and {count_with_noun(len(places) - _NAMED, 'column')} more" if len(places) > _NAMED else ""
         places = places[:_NAMED]
         ends = ((self.portions[0], 0), (self.portions[-1], -1))
         first, last = (
@@ -145,7 +145,7 @@ class TableFile:
             for portion, n in ends
         )
         names = (self.heads[place] for place in places)
-        heads = ", ".join(map(printable_name, names))
+        heads = ", ".join(map(quoted_if_unprintable, names))
         rows = f"{len(self):,} row{'s' if len(self) > 1 else ''}"
         return "; ".join([f"{rows} of {heads}{left_over}", f"first {first}", f"last {last}", *self.notes])
 
@@ -172,7 +172,9 @@ class TableFile:
             return []
         parts = self._with_decimal_points(places)
         return [
-            np.concatenate([self._floats(n, portion, cells[n], missing=n in missing) for portion, cells in parts])
+            np.concatenate(
+                [self._column_floats(n, portion, cells[n], missing=n in missing) for portion, cells in parts]
+            )
             for n in places
         ]
 
@@ -238,7 +240,7 @@ class TableFile:
             )
         return (".", ",") if comma is None else (",", ".")
 
-    def _floats(self, place: int, portion: _Portion, text: str, *, missing: bool) -> Array:
+    def _column_floats(self, place: int, portion: _Portion, text: str, *, missing: bool) -> Array:
         """Return the numbers in cells with decimal points, by a fast path if all are numbers."""
         cells = text.split("\n")
         try:
@@ -310,16 +312,16 @@ def read_table(text: str, name: str, *, ragged: bool = False) -> TableFile:
 
 def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
     separator = separator_of(text)
-    lines = split(content_lines(text), separator)
+    lines = split_cells(content_lines(text), separator)
     leading = list(itertools.islice(lines, SAMPLE))
-    titles = title_lines([cells for _, cells in leading])
+    titles = title_line_count([cells for _, cells in leading])
     lines = itertools.chain(leading[titles:], lines)
     head = next(lines, None)
     if head is None:
         raise InputError(f"{name} must begin with a line of column names; got an empty file; fill it")
     heads = [cell.strip() for cell in head[1]]
     first = next(lines, None)
-    units = first[1] if first is not None and are_units(first[1]) else None
+    units = first[1] if first is not None and are_only_units(first[1]) else None
     if units is not None:
         first = next(lines, None)
     elif len(heads) == 1 and stated_separator(text) and any(sign in heads[0] for sign in SEPARATORS if sign != " "):
@@ -331,11 +333,11 @@ def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
     rows = lines if first is None else itertools.chain([first], lines)
     if are_numbers(heads):
         rows = itertools.chain([head], rows)
-        heads = names_in_comment(text, separator, len(heads)) or heads
+        heads = column_names_in_comment(text, separator, len(heads)) or heads
     elif len(heads) != width:
         line = next(line for line in content_lines(text) if line.strip())
-        heads = names_in_line(line, separator, width) or heads
-    heads = with_units(heads, units or [])
+        heads = column_names_in_line(line, separator, width) or heads
+    heads = names_with_units(heads, units or [])
     if are_numbers(heads):
         raise InputError(
             f"{name} must begin with a line of column names with units; got {', '.join(heads)[:60]!r}; add one "
@@ -349,7 +351,7 @@ def _read_table(text: str, name: str, *, ragged: bool) -> TableFile:
     if not portions:
         raise InputError(f"{name} must have rows below the column names; got none; add them")
     notes = [f"separated by {SEPARATORS.get(separator, quote(separator))}"] if len(heads) > 1 else []
-    notes += [f"{counted(titles, 'title line')} above the column names skipped"] if titles else []
+    notes += [f"{count_with_noun(titles, 'title line')} above the column names skipped"] if titles else []
     return TableFile(name, tuple(heads), notes, separator, portions)
 
 

@@ -39,7 +39,7 @@ def content_lines(text: str) -> Iterator[str]:
         has_content = has_content or not empty
 
 
-def split(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+def split_cells(lines: Iterable[str], separator: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the cells of each line with content."""
     if separator == " ":
         lines = (line.replace("\t", " ") for line in lines)
@@ -61,25 +61,25 @@ def separator_of(text: str) -> str:
     best, separator = 0.0, ","
     for sign in SEPARATORS:
         try:
-            every = [cells for _, cells in split(sample, sign)]
+            every = [cells for _, cells in split_cells(sample, sign)]
         except csv.Error:
             continue
-        rows = every[title_lines(every) :]
+        rows = every[title_line_count(every) :]
         widths = [len(row) for row in rows]
         width = Counter(widths[1:] or widths).most_common(1)[0][0] if widths else 1
         if sign != " ":
             width = widths[0] if widths else 1
-        elif not all(are_numbers(row) for row in rows[1 + (len(rows) > 1 and are_units(rows[1])) :]):
+        elif not all(are_numbers(row) for row in rows[1 + (len(rows) > 1 and are_only_units(rows[1])) :]):
             continue
         alike = widths.count(width) / len(every) if width > 1 else 0.0
-        if alike and are_numbers(rows[0]) and names_in_comment(text, sign, width):
+        if alike and are_numbers(rows[0]) and column_names_in_comment(text, sign, width):
             alike += 1.0  # as many names as numbers
         if alike > best:
             best, separator = alike, sign
     return separator
 
 
-def title_lines(rows: Sequence[Sequence[str]]) -> int:
+def title_line_count(rows: Sequence[Sequence[str]]) -> int:
     """Return the number of rows above the column names, such as the title and date of a measurement.
 
     0 if uncertain. The names are the last row of text above rows that contain only numbers, with one name for each
@@ -88,7 +88,7 @@ def title_lines(rows: Sequence[Sequence[str]]) -> int:
     """
     first = next((n for n, row in enumerate(rows) if all(map(_is_number, row))), len(rows))
     if first < len(rows):
-        names = max(first - 1 - (first > 0 and are_units(rows[first - 1])), 0)
+        names = max(first - 1 - (first > 0 and are_only_units(rows[first - 1])), 0)
         certain = len(rows[names]) == len(rows[first]) and all(_is_number(cell) for row in rows[first:] for cell in row)
     else:
         widths = [len(row) for row in rows]
@@ -115,21 +115,24 @@ def stated_separator(text: str) -> str:
     return "" if statement is None else statement[1].replace("\\t", "\t")
 
 
-def are_units(cells: Sequence[str]) -> bool:
+def are_only_units(cells: Sequence[str]) -> bool:
     """Whether a line has only units, at least two, as loggers write them below the names."""
-    units = [_unit(cell) for cell in cells if _unit(cell)]
+    units = [_unit_without_brackets(cell) for cell in cells if _unit_without_brackets(cell)]
     return len(units) > 1 and all(is_value(f"1 {unit}") for unit in units)
 
 
-def _unit(cell: str) -> str:
+def _unit_without_brackets(cell: str) -> str:
     return cell.strip().strip("[]()-")
 
 
-def with_units(heads: list[str], units: Sequence[str]) -> list[str]:
+def names_with_units(heads: list[str], units: Sequence[str]) -> list[str]:
     """Return the column names with the units from a line below them, if it has as many cells."""
     if len(units) != len(heads):
         return heads
-    return [f"{head} ({_unit(unit)})" if _unit(unit) else head for head, unit in zip(heads, units, strict=True)]
+    return [
+        f"{head} ({_unit_without_brackets(unit)})" if _unit_without_brackets(unit) else head
+        for head, unit in zip(heads, units, strict=True)
+    ]
 
 
 def are_numbers(cells: Sequence[str]) -> bool:
@@ -137,22 +140,22 @@ def are_numbers(cells: Sequence[str]) -> bool:
     return any(cells) and all(_LIKE_A_NUMBER.fullmatch(normalise_number_signs(cell.strip())) for cell in cells if cell)
 
 
-def names_in_comment(text: str, separator: str, width: int) -> list[str] | None:
+def column_names_in_comment(text: str, separator: str, width: int) -> list[str] | None:
     """Return the column names in the last comment before the numbers that has as many; None if there is none."""
     names = None
     for line in io.StringIO(text):
         comment = _COMMENT.match(line)
         if comment:
-            named = names_in_line(line[comment.end() :], separator, width)
-            names = with_units(names, named) if names and named and are_units(named) else named or names
+            named = column_names_in_line(line[comment.end() :], separator, width)
+            names = names_with_units(names, named) if names and named and are_only_units(named) else named or names
         elif line.strip() and not _SAID.fullmatch(line):
             break
     return names
 
 
-def names_in_line(line: str, separator: str, width: int) -> list[str] | None:
+def column_names_in_line(line: str, separator: str, width: int) -> list[str] | None:
     """Return the names of `width` columns in a line; names may have several words. None if there are none."""
-    ways = [[cell.strip() for _, cells in split([line], separator) for cell in cells]]
+    ways = [[cell.strip() for _, cells in split_cells([line], separator) for cell in cells]]
     if separator == " ":
         ways += [re.split(pattern, line.strip()) for pattern in (r"\s{2,}|\t", r"(?<=[)\]])\s+")]
     return next((heads for heads in ways if len(heads) == width and not are_numbers(heads)), None)

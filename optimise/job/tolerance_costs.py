@@ -19,8 +19,8 @@ from .value_types import (
     PositiveLength,
     PositiveRatio,
     Radius,
-    optional,
-    required,
+    optional_entry,
+    required_entry,
 )
 
 PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
@@ -35,25 +35,27 @@ class _CostPart(Checked[Cost]):
     makes = Cost
     renamed: ClassVar = {"min": "least", "max": "greatest"}
 
-    cost: PositiveRatio = required("of the part that depends on the tolerance, at the tolerance `at`", 8.0)
-    fixed: Fraction = optional("the rest of the cost", 5.0, default=0.0)
-    exponent: _Exponent = optional("k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0)
+    cost: PositiveRatio = required_entry("of the part that depends on the tolerance, at the tolerance `at`", 8.0)
+    fixed: Fraction = optional_entry("the rest of the cost", 5.0, default=0.0)
+    exponent: _Exponent = optional_entry(
+        "k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0
+    )
 
 
 class LengthCostPart(_CostPart):
     """Cost of the tolerance of a length: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveLength = required("the tolerance at which `cost` applies", "0.05 mm")
-    min: Radius = optional("smallest tolerance that can be made", "0.005 mm", default=0.0)
-    max: PositiveLength | None = optional("greatest permissible tolerance", "0.2 mm")
+    at: PositiveLength = required_entry("the tolerance at which `cost` applies", "0.05 mm")
+    min: Radius = optional_entry("smallest tolerance that can be made", "0.005 mm", default=0.0)
+    max: PositiveLength | None = optional_entry("greatest permissible tolerance", "0.2 mm")
 
 
 class AngleCostPart(_CostPart):
     """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
 
-    at: PositiveAngle = required("the tolerance at which `cost` applies", "0.1 deg")
-    min: AngleTolerance = optional("smallest tolerance that can be made", "0.01 deg", default=0.0)
-    max: PositiveAngle | None = optional("greatest permissible tolerance", "1 deg")
+    at: PositiveAngle = required_entry("the tolerance at which `cost` applies", "0.1 deg")
+    min: AngleTolerance = optional_entry("smallest tolerance that can be made", "0.01 deg", default=0.0)
+    max: PositiveAngle | None = optional_entry("greatest permissible tolerance", "1 deg")
 
 
 class CostsPart(Built[Costs]):
@@ -61,10 +63,12 @@ class CostsPart(Built[Costs]):
 
     makes = Costs
 
-    crank: LengthCostPart | None = optional("of the crank", {"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"})
-    rod: LengthCostPart | None = optional("of the rod", {"cost": 6.0, "at": "0.05 mm", "fixed": 2.0})
-    offset: LengthCostPart | None = optional("of the offset", {"cost": 4.0, "at": "0.1 mm", "exponent": 2.0})
-    crank_angle: AngleCostPart | None = optional("of the crank angle", {"cost": 10.0, "at": "0.1 deg", "max": "1 deg"})
+    crank: LengthCostPart | None = optional_entry("of the crank", {"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"})
+    rod: LengthCostPart | None = optional_entry("of the rod", {"cost": 6.0, "at": "0.05 mm", "fixed": 2.0})
+    offset: LengthCostPart | None = optional_entry("of the offset", {"cost": 4.0, "at": "0.1 mm", "exponent": 2.0})
+    crank_angle: AngleCostPart | None = optional_entry(
+        "of the crank angle", {"cost": 10.0, "at": "0.1 deg", "max": "1 deg"}
+    )
 
     @model_validator(mode="after")
     def _require_any_cost(self) -> CostsPart:

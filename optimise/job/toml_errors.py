@@ -17,7 +17,16 @@ from itertools import takewhile
 from pydantic import ValidationError
 
 from ...objectives.units import SPACES, number_and_unit
-from .mistake_messages import SEVERAL, SINGLE, example_of, headings, key_of, keys_of, nodes_at, sentence_of
+from .mistake_messages import (
+    SEVERAL,
+    SINGLE,
+    example_of_key,
+    headings_with_keys,
+    key_of_location,
+    keys_of_location,
+    mistake_sentence,
+    schema_nodes_at,
+)
 from .mistake_order import key_above
 from .model import Job
 from .schema import schema_of
@@ -145,7 +154,7 @@ def explain_toml_error(text: str, error: str) -> str:
     number = next((n for n in range(number, 0, -1) if lines[n - 1].strip()), 1)
     begins = _begins_entry(lines[number - 1])
     start = next((n for n in range(number - 1, 0, -1) if _begins_entry(lines[n - 1])), number)
-    code = _code_of(lines[number - 1])
+    code = _without_comment(lines[number - 1])
     if (twice := _TWICE.search(error)) and (begins or _bracket_heading(code)[1] == code):
         return _repeated_key_message(lines[: number if begins else start], twice[1])
     opened = [n for n, line in enumerate(lines, start=1) for _ in re.findall("\"\"\"|'''", line)]
@@ -156,17 +165,21 @@ def explain_toml_error(text: str, error: str) -> str:
         first = start if in_list else number
         if _unread_length(lines[first - 1 : number - begins * in_list]) < 0:
             return _unclosed_message(lines[:first], f"line {number}" if place else "the end of the file")
-    path = _path_of(lines[: start if in_list else number]) or _path_of([*lines[: number - 1], f"{code} ="])
-    like = example_of(schema_of(Job), path)
+    path = _path_of_last_line(lines[: start if in_list else number]) or _path_of_last_line(
+        [*lines[: number - 1], f"{code} ="]
+    )
+    like = example_of_key(schema_of(Job), path)
     before = _LIST if in_list else ""
     if like and _BARE.fullmatch(code) and _bracket_heading(code)[1] == code:
         rules, edited = ["there must be = and a value after a key"], like
     elif in_list and _unread_length([before + code]) <= 0:
-        number = max(n for n in range(start, number) if _code_of(lines[n - 1]).strip())
-        code = _code_of(lines[number - 1])
+        number = max(n for n in range(start, number) if _without_comment(lines[n - 1]).strip())
+        code = _without_comment(lines[number - 1])
         rules, edited = ["a line of a list must end with a comma"], f"{code},"
     else:
-        joined = [" ".join(map(_code_of, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)]
+        joined = [
+            " ".join(map(_without_comment, lines[number - 1 : n])) for n in range(number + 1, number + _MOST_JOINED)
+        ]
         few = not in_list and len(joined[-1]) <= _LONGEST
         last = next((number + n for n, one in enumerate(joined, start=1) if few and not _unread_length([one])), 0)
         if last:
@@ -175,7 +188,7 @@ def explain_toml_error(text: str, error: str) -> str:
         rules, edited = _correct_line(before + code, path)
     if rules:
         edited = edited.removeprefix(before)
-        path = path if in_list else _path_of([*lines[: number - 1], edited])
+        path = path if in_list else _path_of_last_line([*lines[: number - 1], edited])
         if set(rules) <= {_TEXT_QUOTED, _VALUE_QUOTED} and (refused := _mistake_in_value(lines[: number - 1], edited)):
             return f"line {number}, {refused}"
         same = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(code, edited, strict=False)))
@@ -189,11 +202,11 @@ def explain_toml_error(text: str, error: str) -> str:
     )
 
 
-def with_lines(message: str, text: str) -> str:
+def with_line_numbers(message: str, text: str) -> str:
     """Return a message on the tables of a TOML text, with mistakes in line order."""
     keys = list(_paths_of_lines(text.split("\n")))
-    lines = {key_of(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
-    lines |= {key_of(path): number for number, path, _ in keys}
+    lines = {key_of_location(path[:-1]): number for number, path, brackets in reversed(keys) if brackets == "[["}
+    lines |= {key_of_location(path): number for number, path, _ in keys}
 
     def with_line_number(match: re.Match[str]) -> str:
         key = match[2]
@@ -211,7 +224,7 @@ def with_lines(message: str, text: str) -> str:
     return "\n".join([heading, *sorted(problems, key=place)])
 
 
-def _code_of(line: str) -> str:
+def _without_comment(line: str) -> str:
     """Return a line without its comment."""
     return line[: next((comment.start() for comment in _COMMENT.finditer(line[:_LONGEST]) if comment[1]), None)]
 
@@ -219,14 +232,14 @@ def _code_of(line: str) -> str:
 def _mistake_in_value(lines_above: Sequence[str], line: str) -> str:
     """Return key and mistake for the value in a line with valid syntax; "" if it has none."""
     lines = [*(line_above for line_above in lines_above if _HEADER.fullmatch(line_above[:_LONGEST])), line]
-    path = _path_of(lines)
+    path = _path_of_last_line(lines)
     try:
         Job.model_validate(tomllib.loads("\n".join(lines)))
     except ValidationError as error:
         for details in error.errors(include_url=False):
-            place = keys_of(details["loc"])
+            place = keys_of_location(details["loc"])
             if path and tuple(place[: len(path)]) == path and details["type"] not in ("missing", "extra_forbidden"):
-                return f"{key_of(place)}: {sentence_of(details, schema_of(Job))}"
+                return f"{key_of_location(place)}: {mistake_sentence(details, schema_of(Job))}"
     except ValueError:  # duplicate headings
         pass
     return ""
@@ -301,15 +314,17 @@ def _correct_value(token: str, path: Path) -> tuple[str, str]:
     number = f"{sign}{integer_part.lstrip('0') or '0'}{f'.{part or 0}' if separator else ''}{power}"
     plain = "a number must have digits before and after its point" if separator else "a number must not begin with 0"
     rules = rules or [plain]
-    unit = _unit_of(path)
+    unit = _example_unit(path)
     if not unit:
         return rules[0], number
     return f"{rules[0]}, and a unit ({unit}, if that is meant)", f'"{number} {unit}"'
 
 
-def _unit_of(path: Path) -> str:
+def _example_unit(path: Path) -> str:
     """Return the unit in a key's example; "" if it has none."""
-    example = next((node["examples"][0] for node in nodes_at(schema_of(Job), path) if node.get("examples")), None)
+    example = next(
+        (node["examples"][0] for node in schema_nodes_at(schema_of(Job), path) if node.get("examples")), None
+    )
     first = example[0] if isinstance(example, list) and example else example
     parts = number_and_unit(first) if isinstance(first, str) else None
     return parts[1] if parts else ""
@@ -336,12 +351,14 @@ def _bracket_heading(line: str) -> tuple[str, str]:
     tried = [words if len(words) < 3 else ["_".join(words)], ["_".join(words)], ["".join(words)]]
     count = min(len(opening) or len(closing), 2) if len(words) == 1 + name.count(".") else 0
     bracketed = f"{'[' * count}{name}{']' * count}" if count else line
-    return rule, next((heading for candidate in tried for heading in headings(candidate, schema_of(Job))), bracketed)
+    return rule, next(
+        (heading for candidate in tried for heading in headings_with_keys(candidate, schema_of(Job))), bracketed
+    )
 
 
 def _unclosed_message(lines: Sequence[str], end: str) -> str:
     """Return the message on a list or text that begins in the last of the lines. end: where it is still open."""
-    line = _code_of(lines[-1])
+    line = _without_comment(lines[-1])
     three = next((three for three in ('"""', "'''") if three in line), "")
     if three:
         rule = f"text that begins with {three} must end with {three}; on one line, use a single quote at each end"
@@ -353,7 +370,9 @@ def _unclosed_message(lines: Sequence[str], end: str) -> str:
         (f"write {_quote_line(candidate)}" for candidate in tried if not _unread_length([candidate])),
         f"add {three or ']'} where it ends",
     )
-    return f"{_line_prefix(len(lines), _path_of(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"
+    return (
+        f"{_line_prefix(len(lines), _path_of_last_line(lines))}{rule}; got {_quote_line(line)}, open at {end}; {write}"
+    )
 
 
 def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
@@ -366,7 +385,7 @@ def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
     shared = min(path, other, key=len)
     if brackets and opened and brackets != opened:
         name = ".".join(map(str, shared))
-        write = next(iter(headings(name.split("."), schema_of(Job))), f"[{name}]")
+        write = next(iter(headings_with_keys(name.split("."), schema_of(Job))), f"[{name}]")
         rule, wrong = (SEVERAL, f"[{name}]") if write.startswith("[[") else (SINGLE, f"[[{name}]]")
         number = first if wrong.startswith(f"{opened}{name[0]}") else last
         return f"{_line_prefix(number, shared)}{rule.format(name)}; got {wrong}; write {write}"
@@ -376,13 +395,16 @@ def _repeated_key_message(lines: Sequence[str], inner: str | None) -> str:
     elif path == other:
         header = next((one.split("#")[0].strip() for one in reversed(lines) if _HEADER.fullmatch(one[:_LONGEST])), "")
         moved = [n for n in range(first + 1, last + 1) if _mistake_in_value([header], lines[n - 1])]
-        known = [item for name in schema_of(Job)["properties"] for item in headings([name], schema_of(Job)).items()]
+        known = [
+            item for name in schema_of(Job)["properties"] for item in headings_with_keys([name], schema_of(Job)).items()
+        ]
         fits = [one for one, keys in known if path[-1] in keys and not _mistake_in_value([one], lines[-1])]
         if moved and fits:
             rule = f"this value belongs below the heading {fits[0]}"
             return f"{_line_prefix(last, path)}{rule}; got it below {header}; write {fits[0]} above line {moved[0]}"
         remedy = f"remove one, or begin another with {header} above it" if header.startswith("[[") else "remove one"
-    return f"{_line_prefix(last, path)}may be given only once; got {key_of(other)} in line {first} already; {remedy}"
+    rule = "may be given only once"
+    return f"{_line_prefix(last, path)}{rule}; got {key_of_location(other)} in line {first} already; {remedy}"
 
 
 def _paths_of_lines(lines: Sequence[str]) -> Iterator[tuple[int, Path, str]]:
@@ -404,7 +426,7 @@ def _words_of_path(path: str) -> Path:
     return tuple(word.strip("\"'") for word in re.findall(_WORD, path))
 
 
-def _path_of(lines: Sequence[str]) -> Path:
+def _path_of_last_line(lines: Sequence[str]) -> Path:
     """Return the key that the last of the lines starts; an empty one if it starts none."""
     *_, (number, path, brackets) = ((0, (), ""), *_paths_of_lines(lines))
     return path if number == len(lines) and not brackets else ()
@@ -412,7 +434,7 @@ def _path_of(lines: Sequence[str]) -> Path:
 
 def _line_prefix(number: int, path: Path) -> str:
     """Return the prefix of a message on a line and its key."""
-    return f"line {number}, {key_of(path)}: " if path else f"line {number}: "
+    return f"line {number}, {key_of_location(path)}: " if path else f"line {number}: "
 
 
 def _quote_line(line: str, place: int = 0) -> str:

@@ -53,7 +53,7 @@ def crossed_ends_remedy(lower: object, upper: object) -> str:
     return f"give {plain[0]:g} its unit" if mixed else "swap the two"
 
 
-def states_values(value: object) -> bool:
+def states_value_grid(value: object) -> bool:
     """Return whether a value in a job contains a key that is used in a table of values."""
     return isinstance(value, Mapping) and not KEYS.isdisjoint(value)
 

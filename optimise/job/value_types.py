@@ -29,7 +29,7 @@ from ...objectives import kinds, units
 from ...objectives.kinds import Kind
 from ...objectives.units import Sign, plus_minus_ends, quote, to_si
 from .named_files import SOURCE
-from .value_grids import Grid, crossed_ends_remedy, grid_schema, read_grid, states_values
+from .value_grids import Grid, crossed_ends_remedy, grid_schema, read_grid, states_value_grid
 
 SHORTEST = 1e-9
 """m; a shorter link has a mistaken unit."""
@@ -41,14 +41,14 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
-def required(description: str, *examples: object, default: Any = ..., **rules: Any) -> Any:
+def required_entry(description: str, *examples: object, default: Any = ..., **rules: Any) -> Any:
     """Return a required entry of a table. rules: further arguments for pydantic's `Field`."""
     return Field(default, description=description, examples=list(examples), **rules)
 
 
-def optional(description: str, *examples: object, default: Any = None, **rules: Any) -> Any:
+def optional_entry(description: str, *examples: object, default: Any = None, **rules: Any) -> Any:
     """Return an optional entry of a table; if omitted, it is `default`."""
-    return required(description, *examples, default=default, **rules)
+    return required_entry(description, *examples, default=default, **rules)
 
 
 Source = Annotated[str, Field(max_length=2000)] | None
@@ -57,7 +57,7 @@ Source = Annotated[str, Field(max_length=2000)] | None
 
 def summary_entry() -> Any:
     """Return the entry for the summary of a file whose content a table holds; the problem ignores it."""
-    return optional("what was read from the file that the values come from", "motion.csv: 360 rows")
+    return optional_entry("what was read from the file that the values come from", "motion.csv: 360 rows")
 
 
 Made = TypeVar("Made")
@@ -90,7 +90,7 @@ class Checked(Built[Made], Generic[Made]):
         return self
 
 
-def with_types(part: type[Table], **types: Any) -> type[Table]:
+def with_entry_types(part: type[Table], **types: Any) -> type[Table]:
     """Return a table with other types for some of its entries."""
     fields: Any = {name: (new_type, part.model_fields[name]) for name, new_type in types.items()}
     return cast(type[Table], create_model(part.__name__, __base__=part, **fields))
@@ -291,10 +291,10 @@ class RangeOf(_ValueMarker):
         """Return the lower and upper end, m, or the possible values; raises InputError."""
         if isinstance(value, Choices | Grid):
             return value
-        if isinstance(value, Mapping) and states_values(value):
-            return read_grid(value, self._length)
+        if isinstance(value, Mapping) and states_value_grid(value):
+            return read_grid(value, self._read_length)
         if isinstance(value, Mapping) and set(value) == {"choices"}:
-            return self._choices(value["choices"])
+            return self._read_choices(value["choices"])
         ends = value if isinstance(value, list | tuple) else plus_minus_ends(value) or (value, value)
         text = value[0] if isinstance(value, list | tuple) and len(value) == 1 else value
         if isinstance(text, str) and (two := _ENDS.fullmatch(text)):
@@ -307,7 +307,7 @@ class RangeOf(_ValueMarker):
                 write = f"for a range with steps write {{ {', '.join(keys)} }}"
             raise InputError(f"must be one value or a range [lower, upper]; got {quote(value)}; {write}")
         try:
-            lower, upper = (self._length(end) for end in ends)
+            lower, upper = (self._read_length(end) for end in ends)
         except InputError as error:
             raise (error if isinstance(value, list | tuple) else plus_minus_error(value, ends, error)) from None
         if lower > upper:
@@ -317,16 +317,16 @@ class RangeOf(_ValueMarker):
             )
         return lower, upper
 
-    def _length(self, value: object) -> float:
+    def _read_length(self, value: object) -> float:
         length = to_si(value, kinds.LENGTH, sign=self.sign)
         if self.sign == "positive" and length < SHORTEST:
             raise InputError(f"must be at least {SHORTEST:g} m; got {quote(value)}; check the unit")
         return length
 
-    def _choices(self, values: object) -> Choices:
+    def _read_choices(self, values: object) -> Choices:
         if not isinstance(values, list | tuple) or len(values) < 2:
             raise InputError(f'choices must be at least two lengths, like ["100 mm", "125 mm"]; got {quote(values)}')
-        lengths = sorted(self._length(value) for value in values)
+        lengths = sorted(self._read_length(value) for value in values)
         if len(set(lengths)) < len(lengths):
             raise InputError(f"choices must differ; got {quote(values)}; leave out the second")
         return Choices(tuple(lengths))

@@ -15,14 +15,14 @@ from pydantic import AfterValidator, Field, model_validator
 
 from ...model.errors import InputError
 from ...objectives.formula.formulas import ROOTS
-from ...objectives.units import printable_name, quote
+from ...objectives.units import quote, quoted_if_unprintable
 from .constraints_and_objectives import ConstraintsPart
 from .mistake_messages import DEEPEST
 from .named_files import LARGEST, unread_file_error
 from .option_amounts import Amounts
 from .raw_tables import options_in, table_in
-from .value_grids import states_values
-from .value_types import AnyRange, Part, PositiveRange, optional, required, with_types
+from .value_grids import states_value_grid
+from .value_types import AnyRange, Part, PositiveRange, optional_entry, required_entry, with_entry_types
 
 Table = dict[str, Any]
 EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
@@ -30,7 +30,7 @@ EXAMPLE = {"peak_torque": {"max": "40 N m"}, "rms_torque": {"max": "22 N m"}}
 
 
 def _variable_table(table_name: str, example: dict[str, Any]) -> Any:
-    return optional(f"numbers of {table_name} that may vary, by their keys in that table", example, default={})
+    return optional_entry(f"numbers of {table_name} that may vary, by their keys in that table", example, default={})
 
 
 class VariablesPart(Part):
@@ -39,9 +39,9 @@ class VariablesPart(Part):
     Also their values, { min, max, step }, { min, max, series = "R20" } or { values = [...] }.
     """
 
-    crank: PositiveRange = required("crank pivot to crank pin", ["20 mm", "200 mm"])
-    rod: PositiveRange = required("crank pin to slider pin", ["60 mm", "600 mm"])
-    offset: AnyRange = required(
+    crank: PositiveRange = required_entry("crank pivot to crank pin", ["20 mm", "200 mm"])
+    rod: PositiveRange = required_entry("crank pin to slider pin", ["60 mm", "600 mm"])
+    offset: AnyRange = required_entry(
         "of the slider line from the crank pivot, along +y: positive to the left of the outward direction "
         "on the open branch, to its right on the crossed one",
         ["0 mm", "200 mm"],
@@ -74,35 +74,35 @@ class VariablesPart(Part):
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that vary besides the dimensions, as stated, by path."""
-        return {path: leaf for root in ROOTS for path, leaf in leaves_of(getattr(self, root), root)}
+        return {path: leaf for root in ROOTS for path, leaf in table_leaves(getattr(self, root), root)}
 
 
 class OptionPart(Part):
     """One option of a choice."""
 
-    name: Annotated[str, Field(min_length=1, max_length=60)] = required(
+    name: Annotated[str, Field(min_length=1, max_length=60)] = required_entry(
         "name of the option, as in the table of designs", "bar 30 x 10"
     )
-    values: Table = optional(
+    values: Table = optional_entry(
         "numbers of the job that the option sets, by their paths; also crank, rod and offset",
         {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"},
         default={},
     )
-    constraints: ConstraintsPart = optional(
+    constraints: ConstraintsPart = optional_entry(
         "constraints of the option in addition to those of the job, as in [constraints]",
         EXAMPLE,
         default=ConstraintsPart(),
     )
 
-    amounts: Amounts = optional(
+    amounts: Amounts = optional_entry(
         "numbers that limit nothing, such as a price, in any unit; their names may be objectives and constraints",
         {"price": "310 EUR"},
         default={},
     )
-    notes: dict[str, Annotated[str, Field(max_length=200)]] = optional(
+    notes: dict[str, Annotated[str, Field(max_length=200)]] = optional_entry(
         "texts to store with designs, such as a manufacturer", {"maker": "Example Motors"}, default={}
     )
-    searched: bool = optional(
+    searched: bool = optional_entry(
         "whether the search uses it; otherwise it is only named where it is the smallest sufficient option",
         False,
         default=True,
@@ -111,7 +111,7 @@ class OptionPart(Part):
     @property
     def paths(self) -> dict[str, Any]:
         """The numbers that the option sets: path and value."""
-        return dict(leaves_of(self.values, ""))
+        return dict(table_leaves(self.values, ""))
 
 
 def _require_distinct_names(options: tuple[OptionPart, ...]) -> tuple[OptionPart, ...]:
@@ -125,10 +125,10 @@ def _require_distinct_names(options: tuple[OptionPart, ...]) -> tuple[OptionPart
 class ChoicePart(Part):
     """A choice between options that each set several numbers, such as sections or gearmotors from a catalogue."""
 
-    name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required(
+    name: Annotated[str, Field(min_length=1, max_length=40, pattern=r"^[A-Za-z][A-Za-z0-9_ -]*$")] = required_entry(
         "name of the choice; its column in the table of designs is choice_<name>", "rod section"
     )
-    option: Annotated[tuple[OptionPart, ...], AfterValidator(_require_distinct_names)] = optional(
+    option: Annotated[tuple[OptionPart, ...], AfterValidator(_require_distinct_names)] = optional_entry(
         "options to choose from, unless they are in a file",
         [
             {"name": "30 x 10", "values": {"mechanism.rod.width": "30 mm", "mechanism.rod.depth": "10 mm"}},
@@ -136,15 +136,15 @@ class ChoicePart(Part):
         ],
         default=(),
     )
-    file: Annotated[str, Field(max_length=200)] | None = optional(
+    file: Annotated[str, Field(max_length=200)] | None = optional_entry(
         "instead of options: a CSV file beside the job file, one row per option, units in the header", "gearmotors.csv"
     )
-    table: str | None = optional(
+    table: str | None = optional_entry(
         "instead of options: the text of such a file",
         "name,peak_torque max (N m),price (EUR)\nGM 40,40,310\nGM 200,200,840\n",
         max_length=LARGEST,
     )
-    rows: Annotated[int, Field(strict=True, ge=1)] | None = optional(
+    rows: Annotated[int, Field(strict=True, ge=1)] | None = optional_entry(
         "rows of the file from which the options were screened", 5000
     )
 
@@ -159,10 +159,10 @@ class ChoicePart(Part):
         return self
 
 
-def choice_with(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
+def choice_type_with_constraints(constraints: type[ConstraintsPart]) -> type[ChoicePart]:
     """Return the type of a choice whose options may also constrain custom quantities."""
-    option: Any = with_types(OptionPart, constraints=constraints)
-    return with_types(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
+    option: Any = with_entry_types(OptionPart, constraints=constraints)
+    return with_entry_types(ChoicePart, option=Annotated[tuple[option, ...], AfterValidator(_require_distinct_names)])
 
 
 def stated_variables(tables: Mapping[str, Any]) -> dict[str, Any]:
@@ -170,7 +170,7 @@ def stated_variables(tables: Mapping[str, Any]) -> dict[str, Any]:
     varying: dict[str, Any] = {}
     for key, value in table_in(tables, "variables").items():
         if isinstance(key, str) and key.partition(".")[0] in ROOTS:
-            varying |= dict(leaves_of({key: value}, ""))
+            varying |= dict(table_leaves({key: value}, ""))
     return varying
 
 
@@ -197,12 +197,12 @@ def _put_value(table: dict[str, Any], steps: list[str], value: Any, key: str) ->
         table[steps[-1]] = value
 
 
-def leaves_of(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
+def table_leaves(table: Mapping[str, Any], root: str) -> Iterator[tuple[str, Any]]:
     """Yield path and value of each entry in nested tables that is not a table. { choices } counts as a value."""
     for key, value in table.items():
-        name = printable_name(str(key))  # no path has this name: it is for a message
+        name = quoted_if_unprintable(str(key))  # no path has this name: it is for a message
         path = f"{root}.{name}" if root else name
-        if isinstance(value, Mapping) and set(value) != {"choices"} and value and not states_values(value):
-            yield from leaves_of(value, path)
+        if isinstance(value, Mapping) and set(value) != {"choices"} and value and not states_value_grid(value):
+            yield from table_leaves(value, path)
         else:
             yield path, value

@@ -31,12 +31,12 @@ from ..problem.problem import Variant
 from ..problem.requirements import Constraint, Range
 from .constraints_and_objectives import constraints_of, slow_stroke_of
 from .crank_speed import TIME_KEYS
-from .mistake_messages import explain
+from .mistake_messages import sentences_on_mistakes
 from .model import Job
-from .number_paths import stated_values, unknown_path_message, with_number
-from .option_amounts import values_of
+from .number_paths import stated_values_of_part, unknown_path_message, with_value_at_path
+from .option_amounts import amount_values
 from .schema import schema_of
-from .value_grids import Grid, crossed_ends_remedy, read_grid, states_values
+from .value_grids import Grid, crossed_ends_remedy, read_grid, states_value_grid
 from .value_types import Choices, RangeOf, ToleranceOf
 
 MOST = 200
@@ -73,7 +73,7 @@ def machine_with_variables(job: Job, key: str = "variables") -> Mechanism:
         raise JobError(f"{key}: {error}") from None
 
 
-def variants_of(
+def choices_and_variants(
     job: Job, formulas: Formulas, amounts: Mapping[str, Amount]
 ) -> tuple[tuple[str, ...], tuple[Variant, ...], tuple[Variant, ...]]:
     """Return the names of a job's choices, every combination of their options, and the combinations in the catalogue.
@@ -131,7 +131,7 @@ def discrete_variables(job: Job) -> tuple[Discrete, ...]:
                     )
             discrete.append(Discrete(name=name, values=stated.values, rule=stated.rule))
     for path, stated in job.variables.paths.items():
-        if states_values(stated):
+        if states_value_grid(stated):
             grid = _read_grid(job, f"variables.{path}", path, stated)
             discrete.append(Discrete(name=path, values=grid.values, rule=grid.rule))
     return tuple(discrete)
@@ -140,13 +140,13 @@ def discrete_variables(job: Job) -> tuple[Discrete, ...]:
 def _read_grid(job: Job, key: str, path: str, table: Mapping[str, Any]) -> Grid:
     """Return the values of a number that varies, read by the rules of its own key."""
     try:
-        return read_grid(table, lambda value: _number_at(with_values(job, {path: value}, key), path, key))
+        return read_grid(table, lambda value: _number_at(with_values_at_paths(job, {path: value}, key), path, key))
     except InputError as error:
         text = str(error)
         raise JobError(text if text.startswith(key) else f"{key}: {text}") from None
 
 
-def ends_of(stated: tuple[float, float] | Choices | Grid) -> Range:
+def range_of_dimension(stated: tuple[float, float] | Choices | Grid) -> Range:
     """Return the range of a dimension; for choices and discrete values, from the least to the greatest."""
     if isinstance(stated, Grid):
         return Range(lower=stated.values[0], upper=stated.values[-1])
@@ -165,7 +165,7 @@ def dimension_ranges(job: Job) -> dict[str, Range]:
             for option in part.option
             if name in option.paths
         ]
-        ranges = [ends_of(getattr(job.variables, name)), *map(ends_of, options)]
+        ranges = [range_of_dimension(getattr(job.variables, name)), *map(range_of_dimension, options)]
         ranges_by_name[name] = Range(lower=min(ends.lower for ends in ranges), upper=max(ends.upper for ends in ranges))
     return ranges_by_name
 
@@ -200,7 +200,7 @@ def _choice_axes(job: Job, formulas: Formulas, amounts: Mapping[str, Amount]) ->
                     o.paths,
                     tuple(constraints_of(o.constraints, formulas, f"{option_name}: ")),
                     slow_stroke_of(o.constraints),
-                    values_of(o.amounts, amounts, option_name),
+                    amount_values(o.amounts, amounts, option_name),
                     tuple((part.name, head, text) for head, text in o.notes.items()),
                     o.searched,
                     0 if part.table is None else rank,
@@ -221,18 +221,20 @@ def _variant_of_options(job: Job, names: list[str], chosen: tuple[_Option, ...])
         if name in values:
             ranges[name] = _read_length_range(name, values.pop(name), "choice")
     try:
-        other = with_values(job, values, "choice") if values else job
+        other = with_values_at_paths(job, values, "choice") if values else job
     except JobError:
         for name, option in zip(names, chosen, strict=True):  # report the one that is invalid by itself
             single = next(iter(_path_of_choice(name, option)), None)
             name_of_part = f"variables.{single}" if single else f"choice {quote(name)}, option {quote(option.label)}"
-            with_values(job, {path: value for path, value in option.values.items() if path in values}, name_of_part)
+            with_values_at_paths(
+                job, {path: value for path, value in option.values.items() if path in values}, name_of_part
+            )
         raise
     return Variant(
         mechanism=machine_with_variables(other),
-        crank=ends_of(ranges["crank"]),
-        rod=ends_of(ranges["rod"]),
-        offset=ends_of(ranges["offset"]),
+        crank=range_of_dimension(ranges["crank"]),
+        rod=range_of_dimension(ranges["rod"]),
+        offset=range_of_dimension(ranges["offset"]),
         **_variant_parts(names, chosen),
     )
 
@@ -243,14 +245,14 @@ def _variant_parts(names: list[str], chosen: tuple[_Option, ...]) -> dict[str, A
     return {
         "labels": tuple(option.label for option in labelled),
         "limits": tuple(limit for option in chosen for limit in option.limits),
-        "slow_stroke": _slow_stroke(chosen),
+        "slow_stroke": _required_slow_stroke(chosen),
         "amounts": tuple(amount for option in chosen for amount in option.amounts),
         "notes": tuple(note for option in chosen for note in option.notes),
         "ranks": tuple(option.rank for option in labelled),
     }
 
 
-def _slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
+def _required_slow_stroke(chosen: tuple[_Option, ...]) -> SlowStroke | None:
     """Return which stroke the options require to be slow. Raises JobError if they differ."""
     stroke_labels = {option.slow_stroke: option.label for option in chosen if option.slow_stroke is not None}
     if len(stroke_labels) > 1:
@@ -281,7 +283,7 @@ def _read_length_range(name: str, value: Any, key: str) -> tuple[float, float] |
 
 def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
     """Return the extra variable for a path."""
-    if states_values(given):
+    if states_value_grid(given):
         grid = _read_grid(job, key, path, given)
         if len(grid.values) < 2:
             raise JobError(
@@ -294,7 +296,7 @@ def _varying_number(job: Job, key: str, path: str, given: Any) -> Varying:
             f"{key}: must be a range [lower, upper], {{ choices = [...] }}, or values; got {quote(given)}; "
             "give a fixed value in its own place only"
         )
-    jobs = [with_values(job, {path: end}, key) for end in given]
+    jobs = [with_values_at_paths(job, {path: end}, key) for end in given]
     _require_fixed_time_keys(path, key, jobs)
     lower, upper = (_number_at(other, path, key) for other in jobs)
     if not lower < upper:
@@ -343,22 +345,22 @@ def _require_differentiable(path: str, places: list[str]) -> None:
         ) from None
 
 
-def with_values(job: Job, values: Mapping[str, Any], key: str) -> Job:
+def with_values_at_paths(job: Job, values: Mapping[str, Any], key: str) -> Job:
     """Return the job, without its [[choice]], with values set at paths, read by the rules of their own keys.
 
     key: source of the values, for messages. Raises JobError.
     """
-    data: dict[str, Any] = stated_values(job)
+    data: dict[str, Any] = stated_values_of_part(job)
     for path, value in values.items():
         try:
-            data = with_number(data, path, value)
+            data = with_value_at_path(data, path, value)
         except LookupError:
             raise JobError(f"{key}: {unknown_path_message(path, job.model_dump(exclude_unset=True))}") from None
     data["choice"] = ()
     try:
         return type(job).model_validate(data)
     except ValidationError as error:
-        sentence = explain(error, schema_of(type(job)))[0]
+        sentence = sentences_on_mistakes(error, schema_of(type(job)))[0]
         for path in values:
             sentence = sentence.removeprefix(f"{path}: ") if key.endswith(path) else sentence
         raise JobError(f"{key}: {sentence}") from None

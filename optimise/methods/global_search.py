@@ -10,12 +10,12 @@ import numpy as np
 from ...model.arrays import Array
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..search.assemble_front import span_of
+from ..search.assemble_front import objective_ranges
 from ..search.evaluation import Evaluator
 from ..search.sample_and_zoom import Archive, Run
-from ..search.sampling import generator
+from ..search.sampling import random_generator
 from .local import archive_optimum, by_slsqp
-from .registry import Method, budget
+from .registry import Method, evaluation_budget
 from .scalar_objective import Form, Programme
 
 _POPULATION = 20  # members per unknown, in differential evolution
@@ -100,7 +100,7 @@ def _evolve_branch(
     evaluator = evaluators[index]
     k, count = evaluator.dimension, 0
     members = 1 << (_POPULATION * k - 1).bit_length()  # SciPy generates Sobol points in powers of two
-    generations = max(1, budget(problem) // (len(evaluators) * members) - 1)
+    generations = max(1, evaluation_budget(problem) // (len(evaluators) * members) - 1)
     run.plan_rounds(1 + generations // _REPORT_EVERY)
     exact = _ExactEvaluation(index, evaluator, improvements)
 
@@ -126,7 +126,7 @@ def _evolve_branch(
         popsize=_POPULATION,
         tol=_CONVERGED,
         init="sobol",
-        rng=generator(problem.settings.seed, _STREAM, index),
+        rng=random_generator(problem.settings.seed, _STREAM, index),
         polish=False,
         updating="deferred",
         vectorized=True,
@@ -159,7 +159,7 @@ def _search_basins(
 
     evaluator = evaluators[index]
     exact = _ExactEvaluation(index, evaluator, improvements)
-    points = max(16, min(_SAMPLED, budget(problem) // (4 * len(evaluators))))
+    points = max(16, min(_SAMPLED, evaluation_budget(problem) // (4 * len(evaluators))))
     searched: Any = homology
     optima = searched(
         lambda u: float(exact.objective(u[None])[0]),
@@ -176,7 +176,7 @@ def _search_basins(
     if not len(basins):
         return
     values = evaluator.screen(basins, band=np.inf)[1]
-    ideal, span = np.nanmin(values, axis=0), span_of(problem, values)
+    ideal, span = np.nanmin(values, axis=0), objective_ranges(problem, values)
     for start in basins:
         archive_optimum(by_slsqp, Programme(evaluator, Form.single(1, 0), ideal, span), start, archive, index)
 

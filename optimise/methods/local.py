@@ -12,12 +12,12 @@ import numpy as np
 from ...model.arrays import Array
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from ..search.assemble_front import span_of
+from ..search.assemble_front import objective_ranges
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
 from ..search.sample_and_zoom import BANDS, Archive, Run
 from ..search.sampling import first_samples
-from .registry import Method, budget
+from .registry import Method, evaluation_budget
 from .scalar_objective import Form, Programme
 
 SAMPLES = 16384
@@ -69,7 +69,7 @@ def search_from_starts(
     if not len(sampled):
         run.report_round("sampling", evaluators, archive)
         return archive
-    ideal, span = sampled.values.min(axis=0), span_of(problem, sampled.values)
+    ideal, span = sampled.values.min(axis=0), objective_ranges(problem, sampled.values)
     rows = sampled.leading_rows(0, starts)
     run.rounds = 1 + len(rows)
     run.report_round("sampling", evaluators, archive)
@@ -85,7 +85,7 @@ def search_from_starts(
 
 def is_budget_spent(problem: Problem, evaluators: list[Evaluator]) -> bool:
     """Whether the evaluation budget is used up."""
-    return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= budget(problem))
+    return bool(np.sum([evaluator.evaluations for evaluator in evaluators]) >= evaluation_budget(problem))
 
 
 def archive_optimum(solve: Local, programme: Programme, u: Array, archive: Archive, index: int) -> Array | None:

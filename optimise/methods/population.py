@@ -18,7 +18,7 @@ from ..problem.problem import Problem
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
 from ..search.sample_and_zoom import Archive, Run
-from .registry import budget
+from .registry import evaluation_budget
 
 Rows = IntArray
 
@@ -66,7 +66,7 @@ def generation_seed(seed: int, generation: int) -> int:
 
 def generation_size(problem: Problem, usual: int) -> int:
     """Return the number of designs in a generation, at most the whole budget. usual: default number."""
-    return min(problem.settings.samples or usual, budget(problem))
+    return min(problem.settings.samples or usual, evaluation_budget(problem))
 
 
 Breed = Callable[[Sequence[Generation]], Brood]
@@ -78,7 +78,7 @@ def evolve(problem: Problem, evaluators: list[Evaluator], run: Run, breed: Breed
 
     size: size of a generation, for progress reports.
     """
-    allowed = budget(problem)
+    allowed = evaluation_budget(problem)
     run.rounds = max(1, allowed // size)
     archive, evaluations = Archive.empty(len(problem.objectives)), _Evaluations()
     past: list[Generation] = []
@@ -117,7 +117,7 @@ def _evaluate_brood(
         fresh_points = [(key, row) for key, row in fresh.items() if key[0] == index]
         if fresh_points:
             u = brood.u[[row for _, row in fresh_points], : evaluator.dimension]
-            values, violation = screen_points(evaluator, u, BAND if evaluator.loose else 0.0)
+            values, violation = objectives_and_violations(evaluator, u, BAND if evaluator.loose else 0.0)
             evaluations.update({key: (values[i], violation[i]) for i, (key, _) in enumerate(fresh_points)})
             good = violation <= FEASIBLE
             feasible = np.full(int(good.sum()), not evaluator.loose)
@@ -128,7 +128,7 @@ def _evaluate_brood(
     return Generation(brood.branch, brood.u, values, violation, parents=brood.parents)
 
 
-def screen_points(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
+def objectives_and_violations(evaluator: Evaluator, u: Array, band: float = 0.0) -> tuple[Array, Array]:
     """Return objectives (n, m) and violation beyond a band (n,) for points.
 
     Infeasible points have NaN objectives, and points with a non-finite objective count as infinitely violated.

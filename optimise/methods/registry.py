@@ -67,7 +67,7 @@ class Method:
 
 
 @cache
-def methods() -> dict[str, Method]:
+def methods_by_name() -> dict[str, Method]:
     """Return all methods by name, family by family; see `FAMILIES`."""
     package = import_module(__package__)
     modules = sorted(module.name for module in pkgutil.walk_packages(package.__path__, f"{__package__}."))
@@ -79,17 +79,17 @@ def methods() -> dict[str, Method]:
     return by_name
 
 
-def method_of(problem: Problem) -> Method:
+def method_of_problem(problem: Problem) -> Method:
     """Return the method that a problem selects. Raises `InputError` for an unknown name."""
-    name, by_name = problem.settings.method, methods()
+    name, by_name = problem.settings.method, methods_by_name()
     if name not in by_name:
         raise InputError(f"the method must be one of {', '.join(by_name)}; got {name!r}; choose one of these")
     return by_name[name]
 
 
-def budget(problem: Problem) -> int:
+def evaluation_budget(problem: Problem) -> int:
     """Return the evaluation budget of the problem's method. Raises `InputError` if it has no budget."""
-    default = method_of(problem).budget
+    default = method_of_problem(problem).budget
     if default is None:
         raise InputError(f"the method {problem.settings.method} has no budget of evaluations; name another method")
     return problem.settings.evaluations or default
@@ -97,7 +97,7 @@ def budget(problem: Problem) -> int:
 
 def require_supported_settings(problem: Problem) -> None:
     """Raise `InputError` for an unsupported number of objectives, or for a budget that the method does not use."""
-    method, count = method_of(problem), len(problem.objectives)
+    method, count = method_of_problem(problem), len(problem.objectives)
     evaluations = problem.settings.evaluations
     if evaluations is not None and method.budget is None:
         raise InputError(
@@ -105,7 +105,9 @@ def require_supported_settings(problem: Problem) -> None:
         )
     if method.supports_objective_count(count):
         return
-    fitting = ", ".join(name for name, candidate in methods().items() if candidate.supports_objective_count(count))
+    fitting = ", ".join(
+        name for name, candidate in methods_by_name().items() if candidate.supports_objective_count(count)
+    )
     objectives = ", ".join(objective.quantity for objective in problem.objectives)
     takes = "one objective" if method.objectives == "one" else "several objectives"
     raise InputError(f"the method {method.name} needs {takes}; got {count} ({objectives}); use one of {fitting}")
@@ -113,7 +115,7 @@ def require_supported_settings(problem: Problem) -> None:
 
 def require_supported_equalities(problem: Problem, evaluators: list[Evaluator]) -> None:
     """Raise `InputError` if the method cannot meet an equality that remains after elimination."""
-    method = method_of(problem)
+    method = method_of_problem(problem)
     if method.equalities:
         return
     for evaluator in evaluators:
@@ -133,12 +135,12 @@ def require_gradients(problem: Problem, caller: str | None = None) -> None:
     lacking = problem.without_gradient()
     if not lacking:
         return
-    method = method_of(problem)
+    method = method_of_problem(problem)
     if caller is not None or method.gradients:
         count = len(problem.objectives)
         fitting = [
             name
-            for name, candidate in methods().items()
+            for name, candidate in methods_by_name().items()
             if not candidate.gradients and candidate.supports_objective_count(count)
         ]
         instead = "" if caller else f"use one of {', '.join(fitting)}, or "

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ..front.dominance import nondominated
-from ..front.hypervolume import scaling
+from ..front.hypervolume import ideal_and_range
 from ..problem.problem import Problem
 from ..search.candidates import Candidates
 from ..search.evaluation import Evaluator
@@ -57,7 +57,7 @@ def epsilon_constraint(front: _Front) -> Aims:
     ceilings = np.zeros((0, m - 1))
     parts = 2
     while len(ceilings) < _aims_per_round(front.problem) and parts ** (m - 1) <= _CELLS:
-        cells = grid(np.zeros(m - 1), np.ones(m - 1), parts)
+        cells = grid_points(np.zeros(m - 1), np.ones(m - 1), parts)
         # Only non-dominated designs decide which ceilings can be met.
         edge = scaled[nondominated(scaled[:, 1:]), 1:] if m > 2 else scaled[:, 1:].min(keepdims=True)
         ceilings = cells[[bool((edge <= row + _SLACK).all(axis=1).any()) for row in cells]]
@@ -202,7 +202,7 @@ def simplex_weights(objectives: int, least: int) -> Array:
     return np.asarray((np.diff(ends, axis=1) - 1) / parts)
 
 
-def grid(lower: Array, upper: Array, parts: int) -> Array:
+def grid_points(lower: Array, upper: Array, parts: int) -> Array:
     """Return the (parts^m, m) points at the upper ends of equal intervals between bounds (m,) each."""
     steps = np.arange(1, parts + 1) / parts
     places = np.array(list(itertools.product(steps, repeat=len(lower))))
@@ -237,7 +237,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
     if not len(sampled):
         run.report_round("sampling", evaluators, front)
         return None
-    ideal, span = scaling(sampled.values[nondominated(sampled.values)])
+    ideal, span = ideal_and_range(sampled.values[nondominated(sampled.values)])
     shared = _Front(problem, evaluators, run, sampled, front, ideal, span, np.zeros((m, m)), np.zeros((0, m)))
     run.rounds = 1 + m
     run.report_round("sampling", evaluators, front)
@@ -251,7 +251,7 @@ def _payoff_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> _F
             return None
         shared.payoff[column] = best
         run.report_round("finding the best design for each objective", evaluators, front)
-    shared.ideal, shared.span = scaling(shared.payoff)
+    shared.ideal, shared.span = ideal_and_range(shared.payoff)
     return shared
 
 

@@ -172,7 +172,7 @@ class _Cone:
         self.rules += [self.momentum, self.places >= of.low.ravel(), self.places[bounded] <= high[bounded]]
         self._root: Any = None
 
-    def _product(self, first: Any, second: Any, factor: Any) -> Any:
+    def _product_at_least_square(self, first: Any, second: Any, factor: Any) -> Any:
         """Return the rule first second >= factor^2, with first + second >= 0, element by element."""
         return self.cp.SOC(first + second, self.cp.vstack([2.0 * factor, first - second]), axis=0)
 
@@ -181,13 +181,13 @@ class _Cone:
         """An unknown that is at most the root of K."""
         if self._root is None:
             self._root = self.cp.Variable(len(self.ones))
-            self.rules.append(self._product(self.places, self.ones, self._root))
+            self.rules.append(self._product_at_least_square(self.places, self.ones, self._root))
         return self._root
 
     def time(self) -> Any:
         """Return an upper bound on the time of the turn."""
         inverse = self.cp.Variable(len(self.ones))
-        self.rules.append(self._product(self.energy_root, inverse, self.ones))
+        self.rules.append(self._product_at_least_square(self.energy_root, inverse, self.ones))
         return self.programme.slowness @ inverse
 
     def limit_time(self, needs: Requirement) -> list[tuple[float, Any]]:
@@ -237,5 +237,5 @@ class _Cone:
         if aim == "long cycle":
             return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`reachable_energies`)
         square = self.cp.Variable(len(self.ones))
-        self.rules.append(self._product(square, self.energy_root, self.torques))
+        self.rules.append(self._product_at_least_square(square, self.energy_root, self.torques))
         return slowness @ square

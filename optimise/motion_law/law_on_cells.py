@@ -101,16 +101,16 @@ class _Search:
         """Return the best law, and a faster one to combine with it if a least time is active; or None."""
         request = self.limits.request
         if request.objective == "cycle time":
-            only = self._prove("cycle time", Requirement(torque_limit=request.torque_limit))
+            only = self._solve_and_record("cycle time", Requirement(torque_limit=request.torque_limit))
             return None if only is None else (only, None)
         needs = Requirement(torque_limit=request.torque_limit, longest=self.cycle_time)
-        fast = self._prove(request.objective, needs)
+        fast = self._solve_and_record(request.objective, needs)
         if fast is None:
             return None
         if request.objective == "rms torque":
             if not self._too_fast(fast):
                 return fast, None
-            self._prove("rms torque", replace(needs, longest=None, least=self.cycle_time))
+            self._solve_and_record("rms torque", replace(needs, longest=None, least=self.cycle_time))
             slow = self._solve_by_tangents("rms torque", needs, self._reference_energies(None), prove=True)
             return None if slow is None else (slow, fast)
         peak, reference = fast.value, fast.energies
@@ -151,7 +151,7 @@ class _Search:
             return False
         return self.programme.time(solution.energies) < self.cycle_time * (1.0 - _EQUAL)
 
-    def _prove(self, aim: Aim, needs: Requirement) -> Solution | None:
+    def _solve_and_record(self, aim: Aim, needs: Requirement) -> Solution | None:
         solution = self.programme.solve(aim, needs)
         if solution is not None:
             self.proofs.append((aim, needs, solution.multipliers))

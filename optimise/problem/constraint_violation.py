@@ -20,8 +20,8 @@ from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from .problem import Problem
-from .requirements import Constraint, Objective, merged
-from .restatement import restate
+from .requirements import Constraint, Objective, merge_constraints
+from .restatement import restate_constraint
 
 FEASIBLE = 1e-9
 """Relative violation of a constraint that counts as rounding."""
@@ -36,7 +36,7 @@ Side = tuple[float, float, float]
 """One side of a requirement: 1 for an upper or -1 for a lower bound, the bound, and the scale of an excess."""
 
 
-def constraints_of(problem: Problem) -> tuple[Constraint, ...]:
+def constraints_with_floors(problem: Problem) -> tuple[Constraint, ...]:
     """Return a problem's constraints, with default floors where none is set.
 
     Floors apply to the transmission angle; with friction, also to the self-locking margin; if a compressor may deliver
@@ -73,19 +73,19 @@ def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> 
     found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found
-    restated = (restate(problem, item) for item in found)
+    restated = (restate_constraint(problem, item) for item in found)
     least = max(c.lower for c in restated if c.quantity == TIME_RATIO.name and c.lower is not None)
     assert problem.slow_stroke is not None
     name = STROKE_TIME_RATIOS[problem.slow_stroke].name
     upper = next((c.upper for c in constraints if c.quantity == name and c.upper is not None), None)
     if upper is not None:
         least = min(least, 1.0 + 0.5 * (upper - 1.0))
-    return merged((*constraints, Constraint(quantity=name, lower=least)))
+    return merge_constraints((*constraints, Constraint(quantity=name, lower=least)))
 
 
 def restated_constraints(problem: Problem) -> tuple[Constraint, ...]:
     """Return the constraints with their floors, and formulas restated on known quantities."""
-    return tuple(restate(problem, item) for item in constraints_of(problem))
+    return tuple(restate_constraint(problem, item) for item in constraints_with_floors(problem))
 
 
 def _with_floor(
@@ -100,7 +100,9 @@ def _with_floor(
     forms = (problem.quantity(c.quantity) for c in constraints if c.lower is not None and above is None)
     if any(isinstance(form, RobustQuantity) and form.inner.name == of.name for form in forms):
         return constraints
-    bounds_of_quantity = [c for c in (restate(problem, item) for item in constraints) if c.quantity == of.name]
+    bounds_of_quantity = [
+        c for c in (restate_constraint(problem, item) for item in constraints) if c.quantity == of.name
+    ]
     if any(c.lower is not None and (above is None or c.lower > above) for c in bounds_of_quantity):
         return constraints
     upper, least = min((c.upper for c in bounds_of_quantity if c.upper is not None), default=None), above or 0.0
@@ -109,7 +111,7 @@ def _with_floor(
     return (*other_constraints, Constraint(quantity=of.name, lower=float(lower), upper=upper))
 
 
-def minimised(objective: Objective, values: Array) -> Array:
+def minimised_values(objective: Objective, values: Array) -> Array:
     """Return an objective's values as minimised: negated if maximised, a distance if it has a target."""
     if objective.sense == "maximise":
         return -values
@@ -118,14 +120,14 @@ def minimised(objective: Objective, values: Array) -> Array:
     return values
 
 
-def all_minimised(problem: Problem, values: Array) -> Array:
+def minimised_objectives(problem: Problem, values: Array) -> Array:
     """Return the objectives (n, m) of a problem as minimised."""
     return np.stack(
-        [minimised(quantity, values[:, column]) for column, quantity in enumerate(problem.objectives)], axis=1
+        [minimised_values(quantity, values[:, column]) for column, quantity in enumerate(problem.objectives)], axis=1
     )
 
 
-def sides(constraint: Constraint) -> list[Side]:
+def closed_sides(constraint: Constraint) -> list[Side]:
     """Return the closed sides of a constraint."""
     bounds = ((1.0, constraint.upper), (-1.0, constraint.lower))
     return [(side, bound, abs(bound) or 1.0) for side, bound in bounds if bound is not None]
@@ -137,8 +139,8 @@ def relative_violation(constraint: Constraint, values: Array, *, allowed: float 
     allowed: allowed excess over a bound, SI.
     """
     violation = np.full(len(values), -np.inf)
-    for side, bound, scale in sides(constraint):
-        violation = np.maximum(violation, excess(values, side, bound, scale) - allowed / scale)
+    for side, bound, scale in closed_sides(constraint):
+        violation = np.maximum(violation, scaled_excess(values, side, bound, scale) - allowed / scale)
     return np.where(np.isnan(values), np.inf, violation)
 
 
@@ -167,11 +169,11 @@ def rotates_beyond_rounding(designs: Array) -> Mask:
     return np.asarray((crank > 0.0) & (rod - crank - np.abs(offset) > FEASIBLE * rod))
 
 
-def excess(values: Array, side: float, bound: float, scale: float) -> Array:
+def scaled_excess(values: Array, side: float, bound: float, scale: float) -> Array:
     """Return the excess of values over one side of a requirement, in units of its scale."""
     return (values - bound if side > 0.0 else bound - values) / scale
 
 
 def needs_cycle(quantity: Quantity) -> bool:
     """Return whether a quantity has no closed form, so that a cycle must be computed."""
-    return not quantity.of_dimensions
+    return not quantity.depends_only_on_dimensions

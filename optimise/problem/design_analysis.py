@@ -34,9 +34,9 @@ from ...objectives.tables.design_input import (
     short_text,
     warn_of_lengths,
 )
-from ...objectives.tables.measured_curves import measured_from
+from ...objectives.tables.measured_curves import measured_samples
 from ...objectives.tables.missing_value_reasons import missing_value_reason
-from ...objectives.tables.swing_columns import quantities_for_swing, require_in_motion, require_motion
+from ...objectives.tables.swing_columns import quantities_for_swing, require_motion, require_quantities_of_motion
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
 from ...objectives.tables.violations import violations
 
@@ -77,7 +77,7 @@ class Analysis(Mapping[str, float]):
             return self.quantity_values[name]
         if name in self.undefined:
             raise InputError(f"{name} is not defined here: {self.undefined[name]}")
-        require_in_motion([name], self.quantities, self.swing)
+        require_quantities_of_motion([name], self.quantities, self.swing)
         (known,) = resolve_quantities([name], self.mechanism, self.quantities, turning=self.swing is None)
         if isinstance(known, FormulaQuantity) and known.name not in self.quantity_values:
             return self._formula_value(known)
@@ -91,7 +91,7 @@ class Analysis(Mapping[str, float]):
     def _formula_value(self, formula: FormulaQuantity) -> float:
         sizes = [float(getattr(self.linkage, name)) for name in DIMENSIONS]
         parts = {part.name: Values(np.array([self[part.name]]), None) for part in formula.parts}
-        return float(formula.combined(parts, self.mechanism, np.array([sizes]), gradients=False).values[0])
+        return float(formula.combine_parts(parts, self.mechanism, np.array([sizes]), gradients=False).values[0])
 
     @overload
     def get(self, name: str, /) -> float | None: ...
@@ -171,7 +171,7 @@ class Analysis(Mapping[str, float]):
             )
         import pandas as pd
 
-        given = measured_from(measured, self.mechanism, self.linkage)
+        given = measured_samples(measured, self.mechanism, self.linkage)
         rows = {}
         for found in deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
             fit = (found.fit.crank_angle, found.fit.value, found.fit.rms) if found.fit else (np.nan,) * 3

@@ -22,21 +22,21 @@ from ...objectives.bounds_over_ranges import QuantityBounds
 from ...objectives.catalogue_amount import Amount, substitute_amounts
 from ...objectives.formula.resolve_names import is_formula, resolve_quantities
 from ...objectives.quantity import Array, Quantity
-from ...objectives.registry import QUANTITIES, listed
+from ...objectives.registry import QUANTITIES, first_names_text
 from ...objectives.tables.design_input import designs_as_array, names_of_design_numbers, warn_of_lengths
 from ...objectives.tables.evaluate_quantities import evaluated_as_array
 from ...objectives.tables.swing_columns import (
     reason_undefined_for_swing,
-    require_in_motion,
-    require_loads,
-    require_of_swing,
+    require_loads_for_swing,
+    require_quantities_of_motion,
     require_same_driver,
+    require_swing_quantity,
     swing_quantities,
 )
 from .design_analysis import Analysis, analyse_machine, machine_and_design_row
 from .discrete_values import Discrete, require_distinct_numbers
-from .question_registry import question_to
-from .requirements import Constraint, Objective, Range, Word, merged
+from .question_registry import question_about
+from .requirements import Constraint, Objective, Range, Word, merge_constraints
 from .section_limits import SectionLimits
 from .table_columns import (
     choice_field,
@@ -131,14 +131,14 @@ class Problem:
     names of the discrete choices. variants: every combination of them; empty if there are no choices. left_out:
     combinations whose limits the constraints exclude, label and reason, to be reported. With variants, use the
     mechanism and ranges of `parts`: those here belong to no particular variant. catalogue: combinations that may be the
-    least sufficient option for a design, see `search.cheapest_sufficient`; some are not searched. costs: costs of the
-    tolerances, for their allocation. sections: limits within which bars are sized, in the material of the mechanism.
-    own: quantities besides those that every problem has; objectives and constraints may name them too. slow_stroke: the
-    stroke that must be slow, if one is required. The time ratio is then above 1, see `violation.constraints_of`, and
-    the offset has only one sign, see `slow_side`, unless the speed follows a profile. discrete: the numbers of a design
-    with discrete values; their ranges are the hulls of these. motion: a swing of the crank, which then need not rotate
-    fully. Its quantities are among the own ones; quantities of a rotating crank raise an error. warnings: sentences on
-    statements in the job that are probably not intended.
+    least sufficient option for a design, see `search.cheapest_sufficient_option`; some are not searched. costs: costs
+    of the tolerances, for their allocation. sections: limits within which bars are sized, in the material of the
+    mechanism. own: quantities besides those that every problem has; objectives and constraints may name them too.
+    slow_stroke: the stroke that must be slow, if one is required. The time ratio is then above 1, see
+    `constraints_with_floors`, and the offset has only one sign, see `slow_side`, unless the speed follows a profile.
+    discrete: the numbers of a design with discrete values; their ranges are the hulls of these. motion: a swing of the
+    crank, which then need not rotate fully. Its quantities are among the own ones; quantities of a rotating crank raise
+    an error. warnings: sentences on statements in the job that are probably not intended.
     """
 
     name: str
@@ -186,7 +186,7 @@ class Problem:
             if [x.name for x in variant.mechanism.varying] != [x.name for x in self.mechanism.varying]:
                 raise InputError("the same numbers must vary in all variants of a problem")
         if not self.objectives:
-            raise InputError(f"a problem needs at least one objective; choose from {listed(QUANTITIES)}")
+            raise InputError(f"a problem needs at least one objective; choose from {first_names_text(QUANTITIES)}")
         names = [objective.quantity for objective in self.objectives]
         machines = self.machines
         keys = [("objectives", name) for name in names]
@@ -221,13 +221,13 @@ class Problem:
                 f"constraints.slow_stroke: needs a rotating crank; got {self.slow_stroke} with a swing; leave it out"
             )
         for variant in self.variants or (self,):
-            require_loads(variant.mechanism)
+            require_loads_for_swing(variant.mechanism)
         tables = {item.quantity: "objectives" for item in self.objectives}
         for name, table in ({item.quantity: "constraints" for item in self.every_constraint} | tables).items():
             reason = reason_undefined_for_swing(name, swing)
             if reason is not None:
                 raise InputError(f"{table}.{name}: {reason}")
-            require_of_swing(f"{table}.{name}", self.quantity(name), swing)
+            require_swing_quantity(f"{table}.{name}", self.quantity(name), swing)
 
     def _add_formulas(self) -> None:
         """Add the formulas that objectives and constraints name."""
@@ -268,7 +268,7 @@ class Problem:
 
         Raises `InputError` with the nearest names, or with the error in the formula.
         """
-        require_in_motion([name], self.own, self.motion)
+        require_quantities_of_motion([name], self.own, self.motion)
         lengths = {name: getattr(self, name) for name in DIMENSIONS}
         (found,) = resolve_quantities([name], self.mechanism, self.own, ranges=lengths, turning=self.motion is None)
         return found
@@ -322,11 +322,11 @@ class Problem:
         """
         self._require_no_choices()
         if design is None:
-            return dict(question_to("job", question).answer_of(self, None, inputs))
+            return dict(question_about("job", question).answer_of(self, None, inputs))
         machine, sizes = machine_and_design_row(self.mechanism, design)
         warn_of_lengths(self, sizes, self._greatest_dimensions)
         linkage = Linkage(sizes[0], sizes[1], sizes[2], machine.branch)
-        return dict(question_to("design", question).answer(machine, linkage, self, inputs))
+        return dict(question_about("design", question).answer(machine, linkage, self, inputs))
 
     def swing(
         self,
@@ -445,7 +445,7 @@ class Problem:
         """Sign of the offset (+1 or -1) that gives the required slow stroke; None if none is required.
 
         The inward stroke is slow if e w s > 0, with s = +1 on the open branch and -1 on the crossed one. Also None
-        along a speed profile, where a constraint replaces the sign, see `violation.constraints_of`.
+        along a speed profile, where a constraint replaces the sign, see `constraints_with_floors`.
         """
         if self.slow_stroke is None or self.mechanism.speed_profile is not None:
             return None
@@ -469,7 +469,7 @@ class Problem:
             crank=chosen.crank,
             rod=chosen.rod,
             offset=chosen.offset,
-            constraints=merged((*self.constraints, *chosen.limits)),
+            constraints=merge_constraints((*self.constraints, *chosen.limits)),
             slow_stroke=_common_stroke(self.slow_stroke, chosen.slow_stroke),
             own=tuple(substitute_amounts(of, amounts) for of in self.own),
             choices=(),

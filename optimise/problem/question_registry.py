@@ -71,7 +71,7 @@ def questions() -> dict[str, Any]:
     return found
 
 
-def subject_of(name: str) -> str:
+def subject_of_question(name: str) -> str:
     """Return the subject of a question: "design", "front", "runs" or "job".
 
     Raises `InputError` with the nearest name, or all, for an unknown question.
@@ -85,9 +85,9 @@ def subject_of(name: str) -> str:
     return getattr(known[name], "subject", "design")
 
 
-def question_to(subject: str, name: str) -> Any:
-    """Return a question about a subject. Raises `InputError` as `subject_of` does, or if it has another subject."""
-    if (of := subject_of(name)) != subject:
+def question_about(subject: str, name: str) -> Any:
+    """Return a question about a subject. Raises `InputError` as `subject_of_question`, or for another subject."""
+    if (of := subject_of_question(name)) != subject:
         if of == "design":
             raise InputError(
                 f"the question {name} needs one design; got none; name one, as a row of a front or lengths"

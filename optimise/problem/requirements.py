@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...model.input_warning import reading_in_both_units, warn_user
 from ...objectives.kinds import ANGLE
 from ...objectives.peak_torque import PEAK_TORQUE
-from ...objectives.registry import FACTS, QUANTITIES, listed
+from ...objectives.registry import FACTS, QUANTITIES, first_names_text
 
 Sense = Literal["minimise", "maximise", "target"]
 SENSES: dict[str, Sense] = {
@@ -30,7 +30,7 @@ RELATIONS: dict[Word, str] = {"min": "at least", "max": "at most", "equals": "ex
 """The words as relations, in messages."""
 _TURN = 2.0 * math.pi
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
-# A `Problem` requires the spelling of `expression.text_of`.
+# A `Problem` requires the spelling of `expression.formula_text`.
 _FORMULA = re.compile(r".* - .*|-.*|.*[+*/(].*|[a-z_]+\..*")
 
 
@@ -120,7 +120,7 @@ class Objective:
         _warn_of_units(self.quantity, {"target": self.target})
 
 
-def merged(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
+def merge_constraints(constraints: Iterable[Constraint]) -> tuple[Constraint, ...]:
     """Return constraints with those on the same quantity merged. Raises `InputError` if these contradict each other."""
     merged_constraints: dict[str, Constraint] = {}
     for constraint in constraints:
@@ -137,7 +137,8 @@ def _require_name(name: object) -> None:
     if not isinstance(name, str) or not (_NAME.fullmatch(name) or _FORMULA.fullmatch(name)):
         raise InputError(
             "the name of a quantity may only have lower-case letters, digits and underscores, such as "
-            f"{PEAK_TORQUE.name!r}; got {name!r}; choose from {listed(QUANTITIES)}, or a custom quantity of the problem"
+            f"{PEAK_TORQUE.name!r}; got {name!r}; choose from {first_names_text(QUANTITIES)}, or a custom quantity "
+            "of the problem"
         )
 
 

@@ -72,7 +72,7 @@ _FORMS: tuple[tuple[Quantity, Callable[[Array], Array], RealFunction, bool], ...
 """Closed forms, functions of them, the inverses of these functions, and whether they increase."""
 
 
-def restate(problem: Problem, constraint: Constraint) -> Constraint:
+def restate_constraint(problem: Problem, constraint: Constraint) -> Constraint:
     """Return a constraint of a problem without choices, restated on its formula's quantity if there is one."""
     if constraint.quantity in QUANTITIES:
         return constraint
@@ -108,7 +108,7 @@ def _restatement(
     names = {part.name for part in _known_parts(of)}
     if linear is not None and len(linear.factors) == 1 and linear.names[0] in names:
         return Restatement(linear.names[0], float(linear.factors[0][1]), float(linear.constant))
-    if not of.of_dimensions or not _is_analytic(of):
+    if not of.depends_only_on_dimensions or not _is_analytic(of):
         return None
     machine = Mechanism(speed=1.0, branch=branch)
     designs = _random_designs(crank, rod, offset)

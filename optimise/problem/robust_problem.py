@@ -9,7 +9,7 @@ from ...model.errors import InputError
 from ...model.tolerance.error_distributions import Shape
 from ...objectives.robust.quantity import SAMPLES, Case, RobustQuantity, Side, require_robust_options_in_range
 from .problem import Problem
-from .requirements import Constraint, Objective, merged
+from .requirements import Constraint, Objective, merge_constraints
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class Robust:
         require_robust_options_in_range(self.kind, self.order, self.share, self.samples, self.shape)
 
 
-def robust(problem: Problem, plan: Robust) -> Problem:
+def robust_problem(problem: Problem, plan: Robust) -> Problem:
     """Return a problem whose objectives and constraints are robust, under separate names.
 
     A quantity that is minimised or has a maximum is taken at its high side; one that is maximised or has a minimum, at
@@ -173,4 +173,4 @@ def _robust_constraints(
 
 def _nominal_constraints(constraints: tuple[Constraint, ...], inner: dict[str, str]) -> tuple[Constraint, ...]:
     """Return constraints on the nominal quantities, with their two sides joined again."""
-    return merged(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)
+    return merge_constraints(replace(item, quantity=inner.get(item.quantity, item.quantity)) for item in constraints)

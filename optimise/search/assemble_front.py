@@ -10,19 +10,19 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ...model.kinematics.negligible_offset import offset_without_rounding
 from ...objectives.catalogue_amount import Amount
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
-from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ignore_progress, scaling
+from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ideal_and_range, ignore_progress
 from ..front.slack import slack_of
-from ..front.stationarity import STATIONARY, multipliers
-from ..problem.constraint_violation import constraints_of
+from ..front.stationarity import STATIONARY, optimality_multipliers
+from ..problem.constraint_violation import constraints_with_floors
 from ..problem.problem import Problem
 from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from .candidates import FrontCandidates
-from .cheapest_sufficient_option import cheapest_sufficient
+from .cheapest_sufficient_option import cheapest_sufficient_options
 from .evaluation import Evaluator
-from .fingerprint import versions
+from .fingerprint import software_versions
 from .piece_rows import ACTIVE
 from .sample_and_zoom import Run
 
@@ -32,7 +32,7 @@ _BATCH = 100  # designs to analyse between two polls for cancellation
 _GLIMPSE = 40  # designs per round in the history of a cancelled search, because all would take seconds
 
 
-def assemble(
+def assemble_front(
     problem: Problem,
     evaluators: list[Evaluator],
     candidates: FrontCandidates,
@@ -48,11 +48,11 @@ def assemble(
     best = best[np.lexsort(best.values.T[::-1])]
     values, dimensions = best.values, best.dimensions(evaluators)
     dimensions[:, 2] = offset_without_rounding(dimensions[:, 1], dimensions[:, 2])
-    span = span_of(problem, values) if len(best) > 1 else best.span
+    span = objective_ranges(problem, values) if len(best) > 1 else best.span
     goals, active = list(best.goals), list(best.active)
     residual = np.array(
         [
-            multipliers(slopes * (best.span / span)[owner.astype(int)][:, None], edges)[0]
+            optimality_multipliers(slopes * (best.span / span)[owner.astype(int)][:, None], edges)[0]
             for (owner, slopes), edges in zip(goals, active, strict=True)
         ]
     )
@@ -62,12 +62,12 @@ def assemble(
         active = [edges[:, :0] for edges in active]
     variants = np.array([evaluators[index].branch.variant for index in best.branch], dtype=np.int64)
     finishing = run.stage_reporter(FINISHING)
-    columns = columns_of(problem, variants, dimensions, finishing)
+    columns = columns_of_designs(problem, variants, dimensions, finishing)
     columns[RESIDUAL] = residual
     proven = (residual <= STATIONARY) & ~_on_partly_described_kink(problem, variants, dimensions)
     columns[STATUS] = np.where(proven, "stationary", "best found")
     evaluated = sum(evaluator.evaluations for evaluator in evaluators)
-    message = f"{counted(len(best), 'design')}, {evaluated} evaluated"
+    message = f"{count_with_noun(len(best), 'design')}, {evaluated} evaluated"
     if status == "cancelled":
         message = f"cancelled: {message}, the front may be incomplete"
     ideal = values.min(axis=0)
@@ -117,7 +117,7 @@ def _rows_to_deliver(problem: Problem, candidates: FrontCandidates, report: Repo
     return rows[choose_designs(candidates.values[rows], problem.settings.designs, always=best, report=report)]
 
 
-def columns_of(
+def columns_of_designs(
     problem: Problem, variants: IntArray, dimensions: Array, report: ReportProgress = ignore_progress
 ) -> Columns:
     """Return all quantities of designs, their chosen options, and the slacks of their constraints.
@@ -168,7 +168,7 @@ def _choice_columns(problem: Problem, variants: IntArray, dimensions: Array) -> 
         choice_field(name): np.array([variant.labels[place] for variant in chosen])
         for place, name in enumerate(problem.choices)
     }
-    columns |= cheapest_sufficient(problem, variants, dimensions)
+    columns |= cheapest_sufficient_options(problem, variants, dimensions)
     for name in problem.choices:
         for head in problem.heads(name):
             columns[note_field(name, head)] = np.array([variant.note(name, head) for variant in chosen])
@@ -177,7 +177,7 @@ def _choice_columns(problem: Problem, variants: IntArray, dimensions: Array) -> 
 
 def _slack_columns(problem: Problem, dimensions: Array) -> Columns:
     slacks: Columns = {}
-    for constraint in constraints_of(problem):
+    for constraint in constraints_with_floors(problem):
         quantity = problem.quantity(constraint.quantity)
         values = quantity.evaluate(problem.mechanism, dimensions).values
         slacks[slack_field(quantity)] = slack_of(constraint, values) * quantity.unit.factor + 0.0  # no -0
@@ -201,13 +201,13 @@ def empty_front(problem: Problem, evaluators: list[Evaluator], run: Run, status:
         evaluations=sum(evaluator.evaluations for evaluator in evaluators),
         seconds=run.checkpoints.seconds,
         seed=problem.settings.seed,
-        versions=versions(),
+        versions=software_versions(),
     )
 
 
-def span_of(problem: Problem, values: Array) -> Array:
+def objective_ranges(problem: Problem, values: Array) -> Array:
     """Return the ranges (m,) that scale the objectives (n, m); for a single objective, its magnitude."""
-    _, span = scaling(values)
+    _, span = ideal_and_range(values)
     sizes = np.array([abs(objective.target or 0.0) for objective in problem.objectives])
     if values.shape[1] == 1:
         best = np.abs(values.min(axis=0))

@@ -10,12 +10,12 @@ import numpy as np
 
 from ...model.machine.mechanism import Mechanism
 from ...objectives.cycle_peak import CyclePeak, screen_peaks
-from ...objectives.formula.quantity import leaves_of, values_with_formulas
+from ...objectives.formula.quantity import basic_quantities, values_with_formulas
 from ...objectives.quantity import Array, Pieces, Quantity, Values
 from ...objectives.robust.quantity import RobustQuantity
 
 
-class Judged(Protocol):
+class QuantitySource(Protocol):
     """A problem, or an evaluator of one."""
 
     @property
@@ -28,10 +28,10 @@ class Judged(Protocol):
         ...
 
 
-def screen_quantities(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Array]:
+def screen_quantities(problem: QuantitySource, names: tuple[str, ...], dimensions: Array) -> list[Array]:
     """Return quantities (n,) of designs; peaks are screened, robust quantities estimated."""
     quantities = [problem.quantity(name) for name in names]
-    leaves = leaves_of(quantities)
+    leaves = basic_quantities(quantities)
     peaks = [quantity for quantity in leaves if isinstance(quantity, CyclePeak)]
     screened = dict(zip((peak.name for peak in peaks), screen_peaks(peaks, problem.mechanism, dimensions), strict=True))
     values_by_leaf = {
@@ -53,7 +53,7 @@ def _estimate_robust(quantity: RobustQuantity, mechanism: Mechanism, dimensions:
     return quantity.estimate(mechanism, dimensions, values)
 
 
-def evaluate_pieces(problem: Judged, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
+def evaluate_pieces(problem: QuantitySource, names: tuple[str, ...], dimensions: Array) -> list[Pieces]:
     """Return the pieces of quantities for designs."""
     return [problem.quantity(name).pieces(problem.mechanism, dimensions) for name in names]
 

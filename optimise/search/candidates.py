@@ -33,19 +33,21 @@ class Table:
     """Arrays of equal length as fields of a dataclass. Keyword-only fields are not split into rows."""
 
     @classmethod
-    def _columns(cls) -> list[str]:
+    def _row_fields(cls) -> list[str]:
         return [item.name for item in fields(cls) if not item.kw_only]
 
     def __len__(self) -> int:
-        return len(getattr(self, self._columns()[0]))
+        return len(getattr(self, self._row_fields()[0]))
 
     def __getitem__(self, rows: NDArray[Any] | slice) -> Self:
-        return replace(self, **{name: getattr(self, name)[rows] for name in self._columns()})
+        return replace(self, **{name: getattr(self, name)[rows] for name in self._row_fields()})
 
     def join(self, *tables: Table) -> Self:
         """Return these rows with those of other tables below; see `stack_rows`."""
         parts = (self, *tables)
-        return replace(self, **{name: stack_rows(*(getattr(part, name) for part in parts)) for name in self._columns()})
+        return replace(
+            self, **{name: stack_rows(*(getattr(part, name) for part in parts)) for name in self._row_fields()}
+        )
 
     def replace_content(self, other: Self) -> None:
         """Replace this table's content by that of another table of the same kind."""
@@ -189,7 +191,7 @@ class FrontCandidates(Candidates):
         least = proven.min(axis=1, initial=np.inf) - same  # the best in an objective is an end, proven or not
         for row in np.flatnonzero(doubtful).tolist():
             report(0, len(values))
-            deserves[row] = (values[row] < least).any() or not _as_good(proven, values[row], covered).any()
+            deserves[row] = (values[row] < least).any() or not _is_nearly_as_good(proven, values[row], covered).any()
         rows = np.flatnonzero(deserves)
         rows = rows[nondominated(values[rows])]
         chosen: list[int] = []
@@ -200,18 +202,18 @@ class FrontCandidates(Candidates):
         order = np.lexsort([scaled.sum(axis=1), ~leads, doubtful[rows]])
         for position, row in enumerate(rows[order].tolist()):
             report(position, len(rows))
-            if not _as_good(theirs[:, : len(chosen)], values[row], same if free[row] else equal).any():
+            if not _is_nearly_as_good(theirs[:, : len(chosen)], values[row], same if free[row] else equal).any():
                 theirs[:, len(chosen)] = values[row]
                 chosen.append(row)
         # No kept design is as good as an earlier one; a later one may be, if the earlier one is best only by rounding.
         theirs, alone = theirs[:, : len(chosen)], []
         for row in chosen:
             report(len(rows), len(rows))
-            if _as_good(theirs, values[row], equal).sum() == 1:
+            if _is_nearly_as_good(theirs, values[row], equal).sum() == 1:
                 alone.append(row)
         return np.array(sorted(alone), dtype=np.int64)
 
 
-def _as_good(values: Array, row: Array, tolerance: Array) -> Mask:
+def _is_nearly_as_good(values: Array, row: Array, tolerance: Array) -> Mask:
     """Return which designs with values (m, n) are worse than one (m,) by at most the tolerances in all objectives."""
     return np.asarray((values - row[:, None] <= tolerance[:, None]).all(axis=0))

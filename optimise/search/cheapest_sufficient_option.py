@@ -8,14 +8,14 @@ from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ...model.errors import InputError
 from ...objectives.quantity import Quantity
 from ..front.front import Columns
-from ..problem.constraint_violation import FEASIBLE, constraints_of, relative_violation
+from ..problem.constraint_violation import FEASIBLE, constraints_with_floors, relative_violation
 from ..problem.problem import Problem, Variant
 from ..problem.table_columns import note_field, sufficient_amount_field, sufficient_option_field
 
 _SAME = 1e-9  # relative tolerance for a dimension that an option sets
 
 
-def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
+def cheapest_sufficient_options(problem: Problem, variants: IntArray, dimensions: Array) -> Columns:
     """Return the least option (n,) of each catalogue that meets all requirements, all else equal, and its row.
 
     variants: (n,), variant of each design. dimensions: (n, 3 + v). An option that changes other numbers of a design,
@@ -30,7 +30,8 @@ def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array)
             rows = np.flatnonzero(variants == variant)
             serving, left = _Serving(problem, dimensions[rows]), np.ones(len(rows), np.bool_)
             for option in sorted(
-                _single_swaps(problem, labels, place), key=lambda variant_found: variant_found.ranks[place]
+                _variants_with_another_option(problem, labels, place),
+                key=lambda variant_found: variant_found.ranks[place],
             ):
                 served = left if option.labels == labels else left & serving(option)
                 for row in rows[served].tolist():
@@ -54,7 +55,7 @@ def cheapest_sufficient(problem: Problem, variants: IntArray, dimensions: Array)
     return columns
 
 
-def _single_swaps(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
+def _variants_with_another_option(problem: Problem, labels: tuple[str, ...], place: int) -> list[Variant]:
     """Return the combinations that differ from `labels` at most in the choice at `place`."""
 
     def without_place(all_labels: tuple[str, ...]) -> tuple[str, ...]:
@@ -86,7 +87,7 @@ class _Serving:
         side = part.slow_side()
         if side is not None:
             served &= side * designs[:, 2] > 0.0
-        for constraint in constraints_of(part):
+        for constraint in constraints_with_floors(part):
             quantity = part.quantity(constraint.quantity)
             key = id(option.mechanism), id(quantity)
             if key not in self._known:

@@ -155,14 +155,14 @@ class Checkpoints:
         arrays = compute()
         self._pending.append(_encode_step(_Step(key, counts.evaluations - before, arrays)))
         if time.perf_counter() - self._when >= PAUSE:
-            self._flush()
+            self._store_record()
         return arrays
 
     def end_round(self) -> bool:
         """Store the steps of a finished round; return whether the earlier run had not reported it."""
         self.rounds += 1
         unreported = self.rounds > self.earlier_rounds
-        self._flush(ends=unreported)
+        self._store_record(ends=unreported)
         return unreported
 
     def _count_replayed(self, past: Sequence[Record]) -> Iterator[Record]:
@@ -171,7 +171,7 @@ class Checkpoints:
             yield record
             self.repeated += 1
 
-    def _flush(self, *, ends: bool = False) -> None:
+    def _store_record(self, *, ends: bool = False) -> None:
         """Pass on the pending steps as a record.
 
         ends: whether a round ends, which makes a record even without steps.

@@ -26,10 +26,10 @@ from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO
 from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
-from ..problem.restatement import restate
+from ..problem.restatement import restate_constraint
 from .elimination_rule import Rule
 from .lever_rules import lever_rules
-from .linear_rules import NOTHING, Block, blocks, evaluate_linear_rule, linear_equations, solve_for_target
+from .linear_rules import NOTHING, Block, equation_blocks, evaluate_linear_rule, linear_equations, solve_for_target
 from .swing_rules import swing_rules
 
 _LINEAR = "linear: "
@@ -184,7 +184,7 @@ def _eliminate(problem: Problem, sign: float, offset: Range, *, eliminate: bool,
     fixed = tuple(name for name in DIMENSIONS if bounds[name].fixed)
     # Rod and offset first, because a crank computed from the stroke is the best-conditioned direction of that relation.
     loose = [name for name in ("rod", "offset", "crank") if name not in fixed]
-    solved = [block for block in blocks(equations, loose) if block.targets] or [NOTHING]
+    solved = [block for block in equation_blocks(equations, loose) if block.targets] or [NOTHING]
     extra = [*bounds][len(DIMENSIONS) :]
     best: tuple[tuple[int, int, bool, int], tuple[str, ...], tuple[Rule, ...], set[str]] | None = None
     for size in range(len(loose) + 1):
@@ -223,7 +223,7 @@ def _requested_values(problem: Problem) -> tuple[dict[str, float], dict[str, str
     restated: dict[str, str] = {}
     for constraint in problem.constraints:
         if constraint.quantity in equalities:
-            restated_constraint = restate(problem, constraint)
+            restated_constraint = restate_constraint(problem, constraint)
             value = (
                 equalities[constraint.quantity]
                 if restated_constraint.lower is None

@@ -16,16 +16,16 @@ from ..engine.engine import Engine, Serial
 from ..problem.constraint_violation import (
     FEASIBLE,
     Side,
-    constraints_of,
-    excess,
-    minimised,
+    closed_sides,
+    constraints_with_floors,
+    minimised_values,
     needs_cycle,
     relative_violation,
-    sides,
+    scaled_excess,
 )
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Objective, Range
-from ..problem.restatement import restate
+from ..problem.restatement import restate_constraint
 from .batch_quantities import evaluate_pieces, join_batches, screen_quantities
 from .checkpoints import Arrays, Checkpoints, Numbers
 from .elimination import EliminationBranch
@@ -62,11 +62,13 @@ class Evaluator:
         self.mechanism = problem.mechanism
         self.dimension = len(branch.free)
         remaining = [
-            self._move_off_excluded_end(restate(problem, c))
-            for c in constraints_of(problem)
+            self._move_off_excluded_end(restate_constraint(problem, c))
+            for c in constraints_with_floors(problem)
             if c.quantity not in branch.eliminated
         ]
-        self.eliminated = tuple(restate(problem, c) for c in problem.constraints if c.quantity in branch.eliminated)
+        self.eliminated = tuple(
+            restate_constraint(problem, c) for c in problem.constraints if c.quantity in branch.eliminated
+        )
         self.constraints = tuple(sorted(remaining, key=lambda c: needs_cycle(problem.quantity(c.quantity))))
         self.computed = tuple(name for name in DIMENSIONS if any(step.target == name for step in branch.steps))
         constant = [problem.quantity(objective.quantity).constant for objective in problem.objectives]
@@ -135,7 +137,7 @@ class Evaluator:
                 [objective.quantity for objective in self.problem.objectives], dimensions[rows]
             )
             for column, (objective, values) in enumerate(zip(self.problem.objectives, values_by_quantity, strict=True)):
-                objectives[:, column] = minimised(objective, values)
+                objectives[:, column] = minimised_values(objective, values)
         has_objectives = np.isfinite(objectives).all(axis=1)
         violation[rows[~has_objectives]] = np.inf
         return rows[has_objectives], objectives[has_objectives], violation
@@ -160,7 +162,7 @@ class Evaluator:
             # A linear rule may give an offset of the other sign, which belongs to the other branch.
             value = dimensions[:, DIMENSIONS.index(name)] * (self.branch.sign if name == "offset" else 1.0)
             for side in _range_sides(self.branch.bounds[name]):
-                violation = np.fmax(violation, excess(value, *side))
+                violation = np.fmax(violation, scaled_excess(value, *side))
         rows = np.flatnonzero(turns)
         for constraint in self.eliminated if len(rows) else ():
             values = self.quantity(constraint.quantity).evaluate(self.mechanism, dimensions[rows]).values
@@ -210,7 +212,8 @@ class Evaluator:
         for index, constraint in enumerate(self.constraints):
             quantity_pieces = pieces[constraint.quantity]
             parts += [
-                (index, _excess_pieces(_deciding_pieces(quantity_pieces, side[0]), *side)) for side in sides(constraint)
+                (index, _excess_pieces(_deciding_pieces(quantity_pieces, side[0]), *side))
+                for side in closed_sides(constraint)
             ]
         for index, name in enumerate(self.computed, len(self.constraints)):
             column = DIMENSIONS.index(name)
@@ -262,7 +265,7 @@ def _objective_rows(objective: Objective, pieces: Pieces) -> list[Pieces]:
 
 def _excess_pieces(pieces: Pieces, side: float, bound: float, scale: float = 1.0) -> Pieces:
     """Return the relative excess of pieces over one side of a requirement."""
-    return Pieces(excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
+    return Pieces(scaled_excess(pieces.values, side, bound, scale), side * pieces.gradients / scale, pieces.labels)
 
 
 def _deciding_pieces(pieces: Pieces, side: float) -> Pieces:

@@ -29,7 +29,7 @@ def version_of(name: str) -> str:
         return "unknown"
 
 
-def versions() -> dict[str, str]:
+def software_versions() -> dict[str, str]:
     """Return the versions of this software and of its numerical libraries."""
     return {"python": python_version(), **{name: version_of(name) for name in (*_COMPUTE, "pandas")}}
 

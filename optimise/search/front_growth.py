@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.arrays import Array, sorted_unique
 from ..front.dominance import nondominated
-from ..front.hypervolume import hypervolume, scaling
+from ..front.hypervolume import hypervolume, ideal_and_range
 
 _MOST = {1: 1, 2: 5000, 3: 5000, 4: 1000, 5: 600}
 """Designs whose volume is computed, by number of objectives: it takes 2 ms for these, and ten times as long for a few
@@ -47,7 +47,7 @@ class FrontVolume:
             return 0.0
         values = values[nondominated(values)]
         if self._box is None:
-            ideal, span = scaling(values)
+            ideal, span = ideal_and_range(values)
             self._box = (
                 ideal,
                 np.maximum(span, np.maximum(_LEAST_SIDE * np.abs(ideal), _OF_TARGET * np.abs(self._targets))),

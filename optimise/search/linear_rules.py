@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from ...objectives.formula.linear import SIZE, Linear, unknown
+from ...objectives.formula.linear import SIZE, Linear, linear_unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET
 from ...objectives.quantity import Quantity
@@ -59,11 +59,11 @@ def with_offset_size(row: Linear, sign: float) -> Linear:
         if name == "offset":
             rewritten = rewritten.plus(size, Fraction(int(sign)) * factor)
         else:
-            rewritten = rewritten.plus(size if name == SIZE else unknown(name), factor)
+            rewritten = rewritten.plus(size if name == SIZE else linear_unknown(name), factor)
     return rewritten
 
 
-def blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
+def equation_blocks(equations: Mapping[str, Linear], loose: Sequence[str]) -> Iterator[Block]:
     """Yield every way to solve equalities for loose unknowns; one without targets if there is none.
 
     Equalities that contradict earlier ones are omitted everywhere, because the check of the problem reports them.
@@ -110,7 +110,7 @@ def evaluate_linear_rule(*numbers: Any) -> Any:
 
 def _linear_proportion(quantity: Quantity, value: float) -> Linear | None:
     """Return a proportion as a linear equality; None for any other quantity."""
-    rod, crank, offset = unknown("rod"), unknown("crank"), unknown("offset")
+    rod, crank, offset = linear_unknown("rod"), linear_unknown("crank"), linear_unknown("offset")
     if quantity.name == ROD_TO_OFFSET.name:
         return rod.plus(offset, -Fraction(value))
     if quantity.name == ROD_TO_CRANK.name:

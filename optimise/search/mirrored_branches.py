@@ -17,10 +17,10 @@ from ...model.machine.cylinder_machines import is_treated_as_shaft
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ..problem.constraint_violation import constraints_of
+from ..problem.constraint_violation import constraints_with_floors
 from ..problem.problem import Problem
 from .elimination import EliminationBranch
-from .sampling import generator
+from .sampling import random_generator
 
 _TRIED = 512  # random designs; those that rotate fully count
 _COMPARED = 8
@@ -85,7 +85,7 @@ def _depends_on_offset_sign(part: Problem, branches: list[EliminationBranch]) ->
     if not len(designs):
         return True
     mirrored = designs * np.where(np.arange(designs.shape[1]) == 2, -1.0, 1.0)
-    names = {item.quantity for item in part.objectives} | {item.quantity for item in constraints_of(part)}
+    names = {item.quantity for item in part.objectives} | {item.quantity for item in constraints_with_floors(part)}
     return any(
         not np.allclose(
             part.quantity(name).evaluate(part.mechanism, designs).values,
@@ -114,5 +114,5 @@ def _random_designs(part: Problem, branch: EliminationBranch) -> Array:
     """Return random, fully rotating designs (n, 3 + v) within a branch's ranges, regardless of requirements."""
     ends = [branch.bounds[name] for name in branch.names]
     lower, upper = (np.array([getattr(item, end) for item in ends]) for end in ("lower", "upper"))
-    designs = lower + (upper - lower) * generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))
+    designs = lower + (upper - lower) * random_generator(part.settings.seed, _STREAM).random((_TRIED, len(ends)))
     return np.asarray(designs[designs[:, 1] > designs[:, 0] + designs[:, 2]][:_COMPARED])

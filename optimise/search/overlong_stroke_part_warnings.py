@@ -14,13 +14,13 @@ _ROUNDING = 1e-9
 """Relative: a part that is longer by less is the whole stroke, as intended."""
 
 
-def full_stroke_load_warnings(problem: Problem) -> list[str]:
+def overlong_part_warnings(problem: Problem) -> list[str]:
     """Return a warning for each force whose part of the stroke is longer than every sampled stroke.
 
     Does not apply to a swing, which need not have dead centres.
     """
     if problem.motion is not None or not any(
-        _length(load) for part in problem.parts() for load in part.mechanism.loads
+        _part_length(load) for part in problem.parts() for load in part.mechanism.loads
     ):
         return []
     machines, longest = [], 0.0
@@ -30,7 +30,7 @@ def full_stroke_load_warnings(problem: Problem) -> list[str]:
         longest = max([longest, *strokes[np.isfinite(strokes)].tolist()])
     warnings = []
     for k, load in enumerate(problem.mechanism.loads):
-        least = min(_length(machine.loads[k]) for machine in machines)
+        least = min(_part_length(machine.loads[k]) for machine in machines)
         if isinstance(load, PositionTable) and least > longest * (1.0 + _ROUNDING) > 0.0:
             place = "last" if (load.datum, load.during) in _LAST else "first"
             warnings.append(
@@ -44,7 +44,7 @@ def full_stroke_load_warnings(problem: Problem) -> list[str]:
 _LAST = {("outer dead centre", "outward stroke"), ("inner dead centre", "inward stroke")}
 
 
-def _length(load: Load) -> float:
+def _part_length(load: Load) -> float:
     """Return the length, m, over which a constant force acts in a stroke; 0 for any other load."""
     if not isinstance(load, PositionTable) or load.during == "cycle" or load.datum == "crank pivot":
         return 0.0

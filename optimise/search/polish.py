@@ -21,7 +21,7 @@ from typing import Protocol
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, row_norms
-from ..front.stationarity import multipliers, multipliers_with_positive_weights
+from ..front.stationarity import multipliers_with_positive_weights, optimality_multipliers
 from .candidates import Polished, object_array
 from .piece_rows import (
     ACTIVE,
@@ -64,7 +64,7 @@ class Evaluates(Protocol):
         ...
 
 
-def polish(
+def polish_designs(
     evaluator: Evaluates,
     start: Array,
     scale: Array,
@@ -87,7 +87,7 @@ def polish(
     if iterations != 0:
         batch.move_onto_constraints()
     for _ in range(iterations or 0):
-        if not batch.advance():
+        if not batch.take_step():
             break
     return batch.result()
 
@@ -125,11 +125,11 @@ class _Batch:
             outside = np.flatnonzero(self.open & ~self._feasible())
             if not len(outside):
                 break
-            steps = [self._programme(row, ()).move for row in outside.tolist()]
-            self._take_steps(outside, np.array(steps), (), correct=False)
+            steps = [self._solve_programme(row, ()).move for row in outside.tolist()]
+            self._try_steps(outside, np.array(steps), (), second_order=False)
         self._begin()
 
-    def advance(self) -> bool:
+    def take_step(self) -> bool:
         """Take one step with every open design; return whether any was open."""
         for row in np.flatnonzero(self.open & self.moved & self._feasible()).tolist():
             if self._benson_residual(row) < CONVERGED:
@@ -140,10 +140,10 @@ class _Batch:
         fresh = rows[self.moved[rows]]
         if len(fresh):
             # The multipliers that the Hessian needs hardly depend on it, so those from the previous programme suffice.
-            drafts = [self._programme(row, self.chosen) for row in fresh.tolist()]
+            drafts = [self._solve_programme(row, self.chosen) for row in fresh.tolist()]
             self.roots[fresh] = transposed_inverse_roots(self._hessians(fresh, drafts))
-        steps = [self._programme(row, self.chosen).move for row in rows.tolist()]
-        self._take_steps(rows, np.array(steps), self.chosen, correct=True)
+        steps = [self._solve_programme(row, self.chosen).move for row in rows.tolist()]
+        self._try_steps(rows, np.array(steps), self.chosen, second_order=True)
         self.open &= self.stalls < 2
         feasible = rows[self._feasible()[rows]]
         self.safe[feasible] = self.u[feasible]
@@ -168,7 +168,7 @@ class _Batch:
             pieces.append((design_goals.owner[columns].astype(np.float64), design_goals.gradients[columns]))
             active.append(np.concatenate([edge.gradients[edge.values > -ACTIVE], active_bound_normals(self.u[row])]))
             chosen_pieces = active_pieces(design_goals, chosen)
-            residual[row], _, _ = multipliers(design_goals.gradients[chosen_pieces], active[-1])
+            residual[row], _, _ = optimality_multipliers(design_goals.gradients[chosen_pieces], active[-1])
         violation = self.limits.values.max(axis=1, initial=0.0)
         return Polished(
             self.u, greatest_pieces(self.goals, m), violation, residual, object_array(pieces), object_array(active)
@@ -198,7 +198,7 @@ class _Batch:
             goals.gradients[pieces], goals.owner[pieces], edges, exactly=not self.hold
         )[0]
 
-    def _programme(self, row: int, chosen: tuple[int, ...]) -> Step:
+    def _solve_programme(self, row: int, chosen: tuple[int, ...]) -> Step:
         """Return a design's step towards its objectives, or the shortest one onto its constraints without them."""
         goals, limits = rows_of_designs(self.goals, row), rows_of_designs(self.limits, row)
         first = step = self._solve(row, goals, limits, chosen)
@@ -251,18 +251,18 @@ class _Batch:
         hessians = 0.5 * (hessians + hessians.transpose(0, 2, 1))
         return np.stack([make_convex(hessian, draft.normals) for hessian, draft in zip(hessians, drafts, strict=True)])
 
-    def _take_steps(self, rows: IntArray, steps: Array, chosen: tuple[int, ...], *, correct: bool) -> None:
+    def _try_steps(self, rows: IntArray, steps: Array, objectives: tuple[int, ...], *, second_order: bool) -> None:
         """Take the steps that lower the merit, corrected if necessary; shrink the radius for the others.
 
         The merit is the sum of the objectives, plus penalised losses and greatest violation.
         """
-        m, columns = len(self.scale), list(chosen)
+        m, columns = len(self.scale), list(objectives)
         before, limits_to_hold = greatest_pieces(self.goals, m)[:, columns], self.held[:, columns]
         violation = _zero_below_rounding(self.limits.values.max(axis=1, initial=0.0))
         self.moved[rows] = False
         pending = np.arange(len(rows))
         steps = steps.copy()
-        passes = (2 if self.hold else _PASSES) if correct else 1
+        passes = (2 if self.hold else _PASSES) if second_order else 1
         for left in range(passes, 0, -1):
             at = rows[pending]
             trial = np.clip(self.u[at] + steps[pending], 0.0, 1.0)
@@ -291,7 +291,7 @@ class _Batch:
             if left > 1:
                 for i in np.flatnonzero(~accepted & valid).tolist():
                     steps[pending[i]] = self._second_order_step(
-                        int(at[i]), steps[pending[i]], rows_of_designs(goals, i), rows_of_designs(limits, i), chosen
+                        int(at[i]), steps[pending[i]], rows_of_designs(goals, i), rows_of_designs(limits, i), objectives
                     )
             pending = pending[~accepted]
             if not len(pending):

@@ -12,7 +12,7 @@ from .candidates import Polished, object_array
 from .checkpoints import Numbers
 from .evaluation import Evaluator
 from .polish import ITERATIONS, Evaluates
-from .polish import polish as polish_here
+from .polish import polish_designs as polish_here
 
 Lengths = IntArray
 _PolishOptions = tuple[tuple[float, ...], tuple[int, ...] | None, int | None, bool]

@@ -22,7 +22,7 @@ from .evaluation import Evaluator
 from .front_growth import FrontVolume
 from .least_violation import least_violation
 from .recorded_polish import polish_recorded
-from .sampling import first_samples, generator, sample_near
+from .sampling import first_samples, random_generator, sample_near
 
 FIRST = 16384
 """Number of designs in the first round, everywhere."""
@@ -90,25 +90,27 @@ class Archive(Candidates):
     def add(self, *tables: Candidates) -> None:
         """Add designs of any branches."""
         together = self.join(*tables)
-        rows = _rows_to_keep(together)
+        rows = _candidate_rows_to_keep(together)
         as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())
         self.replace_content(together if as_they_are else together[rows])
 
 
-def _spread_sample(values: Array) -> Array:
+def _evenly_spread_values(values: Array) -> Array:
     return values[:: 1 + len(values) // _FRONT_SAMPLE]
 
 
-def _rows_to_keep(candidates: Candidates) -> IntArray:
+def _candidate_rows_to_keep(candidates: Candidates) -> IntArray:
     """Return the rows of candidates to keep; feasible ones are displaced only by feasible ones."""
-    rows = _best_rows(candidates.values)
+    rows = _nondominated_or_best_rows(candidates.values)
     if candidates.is_feasible.all():
         return rows
     feasible = np.flatnonzero(candidates.is_feasible)
-    return np.concatenate([feasible[_best_rows(candidates.values[feasible])], rows[~candidates.is_feasible[rows]]])
+    return np.concatenate(
+        [feasible[_nondominated_or_best_rows(candidates.values[feasible])], rows[~candidates.is_feasible[rows]]]
+    )
 
 
-def _best_rows(values: Array) -> IntArray:
+def _nondominated_or_best_rows(values: Array) -> IntArray:
     """Return the rows to keep: the non-dominated ones or, for a single objective, the `_BEST` best ones, best first."""
     alone = values.shape[1] == 1
     return np.argsort(values[:, 0], kind="stable")[:_BEST] if alone else nondominated(values)
@@ -182,7 +184,9 @@ class Run:
         )
         self.round_reports.append(entry)
         self.checkpoints.polled = None
-        self.fronts.append(_spread_sample(feasible).copy())  # a copy, because a view would keep all of them in memory
+        self.fronts.append(
+            _evenly_spread_values(feasible).copy()
+        )  # a copy, because a view would keep all of them in memory
         if self.checkpoints.end_round():
             self._report(entry, self.progress)
         else:
@@ -198,9 +202,9 @@ class Run:
         if len(self.candidates) or archive.is_feasible.any():
             archive = archive[archive.is_feasible]
         if not len(self.candidates):
-            return _spread_sample(archive.values)
+            return _evenly_spread_values(archive.values)
         values = np.concatenate([archive.values, self.candidates.values])
-        return _spread_sample(values[nondominated(values)])
+        return _evenly_spread_values(values[nondominated(values)])
 
     def stage_reporter(self, name: str) -> ReportProgress:
         """Return the callback for a long stage, which ends a cancelled search and reports progress."""
@@ -300,7 +304,7 @@ def zoom(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: R
     samples = problem.settings.samples or SAMPLES
     for step in range(len(WIDTHS)):
         run.begin_round("zooming")
-        random = generator(problem.settings.seed, 1000, step)
+        random = random_generator(problem.settings.seed, 1000, step)
         rows = random.choice(len(archive), _CROWD, replace=False) if len(archive) > _CROWD else slice(None)
         parents = archive[rows]
         archive.screen_all(

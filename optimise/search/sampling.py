@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...model.arrays import Array, IntArray
-from ..front.hypervolume import scaling
-from ..front.neighbours import neighbours
+from ..front.hypervolume import ideal_and_range
+from ..front.neighbours import nearest_neighbours
 from .sobol import sobol
 
 BOUNDARY_SHARE = 0.3
@@ -32,7 +32,7 @@ def distant_rows(merits: Array, points: Array, branch: IntArray, count: int) -> 
     return np.array(chosen, dtype=np.int64)
 
 
-def generator(seed: int, *stream: int) -> np.random.Generator:
+def random_generator(seed: int, *stream: int) -> np.random.Generator:
     """Return the random generator for one stream of a seed; streams are independent and never shared."""
     return np.random.default_rng(np.random.SeedSequence([seed, *stream]))
 
@@ -43,7 +43,7 @@ def first_samples(
     """Return about `count` points in the unit box (n, k), some of them on faces, edges and corners."""
     if dimension == 0:
         return np.zeros((1, 0))
-    random = generator(seed, stream, 0)
+    random = random_generator(seed, stream, 0)
     power = max(1, int(np.ceil(np.log2(max(2, count)))))
     points = sobol(power, dimension, random)[:count]
     snapped = random.random(points.shape) < boundary_share
@@ -56,11 +56,11 @@ def sample_near(parents: Array, values: Array, count: int, width: float, random:
     values: objectives of the parents (n, m). width: standard deviation in the unit box. A coordinate on a bound usually
     stays there.
     """
-    ideal, span = scaling(values)
+    ideal, span = ideal_and_range(values)
     scaled = (values - ideal) / span
     nearest = min(len(parents), values.shape[1] + 1)
     if nearest > 1:
-        distance, _ = neighbours(scaled, nearest)
+        distance, _ = nearest_neighbours(scaled, nearest)
         sparse = distance[:, 1:].mean(axis=1) + 1e-9
     else:
         sparse = np.ones(len(parents))

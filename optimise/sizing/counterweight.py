@@ -122,13 +122,13 @@ class Balance:
         """Mass of the counterweight at `radius`, kg."""
         return self.moment / self.radius
 
-    def hodograph(self, crank_angle: Array) -> tuple[ShakingCurves, ShakingCurves]:
+    def shaking_before_and_after(self, crank_angle: Array) -> tuple[ShakingCurves, ShakingCurves]:
         """Return the shaking before and after at crank angles (n,), rad; force_y over force_x is the hodograph."""
         before, after = (shaking_curves(each, self.linkage, crank_angle) for each in (self.original, self.balanced))
         return before, after
 
 
-def balance(
+def best_balance(
     mechanism: Mechanism,
     linkage: Linkage,
     *,

@@ -64,7 +64,7 @@ Above = Callable[[Any], Any]
 """Replaces an expression by a variable that is at least as large, which keeps a programme's expressions short."""
 
 
-def identity(expression: Any) -> Any:
+def unchanged_expression(expression: Any) -> Any:
     """Return the expression."""
     return expression
 
@@ -101,7 +101,7 @@ def limit_states(
     loads: BarLoads,
     material: Material,
     limits: SectionLimits,
-    above: Above = identity,
+    above: Above = unchanged_expression,
 ) -> dict[str, Any]:
     """Return the utilisation of each limit state (1 is the limit), by name.
 

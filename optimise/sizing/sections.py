@@ -29,7 +29,15 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.strength import Material
 from ...model.optional_packages import import_extra
 from ..problem.section_limits import SectionLimits
-from .limit_states import AMPLIFICATION, Above, crank_loads, identity, joint_load_terms, limit_states, rod_loads
+from .limit_states import (
+    AMPLIFICATION,
+    Above,
+    crank_loads,
+    joint_load_terms,
+    limit_states,
+    rod_loads,
+    unchanged_expression,
+)
 from .section_loads import Whip, greatest_rod_accelerations, joint_loads
 
 _ITERATIONS = 60
@@ -177,7 +185,7 @@ class _Task:
         return np.log(widths)
 
     def limit_states(
-        self, x: list[Any], z: list[Any], joints: dict[str, Any], above: Above = identity
+        self, x: list[Any], z: list[Any], joints: dict[str, Any], above: Above = unchanged_expression
     ) -> dict[str, Any]:
         """Return the limit states of widths and depths x, amplifications z and joint loads, by bar and name."""
         crank, rod = float(self.linkage.crank), float(self.linkage.rod)

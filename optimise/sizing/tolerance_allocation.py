@@ -94,7 +94,7 @@ class Allocation:
     converged: bool
 
 
-def allocate(
+def allocate_tolerances(
     linkage: Linkage,
     costs: Costs,
     limit: float,

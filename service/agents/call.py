@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InfeasibleError, InputError, NotFound
-from ...optimise.job import parse_job, read_job, with_files
+from ...optimise.job import parse_job, read_job, with_file_contents
 from ...optimise.job.job_file import require_plain_data, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
@@ -145,7 +145,7 @@ def tables_with_files(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
         job = jobs[job.strip()]
     tables = toml_tables(job) if isinstance(job, str) else job
     require_plain_data(tables)
-    return with_files(tables, files)
+    return with_file_contents(tables, files)
 
 
 def printed_text(show: Callable[[Console], None]) -> str:

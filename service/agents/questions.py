@@ -13,8 +13,8 @@ from pydantic import Field
 from ...model.errors import InputError, NotFound, RunError
 from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
-from ...objectives.units import closest
-from ...optimise.job.mistake_messages import nodes_at, toml_text
+from ...objectives.units import closest_word
+from ...optimise.job.mistake_messages import schema_nodes_at, toml_text
 from ...optimise.job.model import Job
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.problem import Problem
@@ -105,7 +105,7 @@ def describe(
         record["key"] = key = _job_key_record(word)
         lines += [f"key {word}: {key['description']}", *_job_key_lines(key)]
     if not record:
-        near = closest(word, [*facts, *QUESTIONS, *shipped_jobs()])
+        near = closest_word(word, [*facts, *QUESTIONS, *shipped_jobs()])
         remedy = f"did you mean {near}?" if near else "call `list` for all names"
         raise NotFound(f"a name must be that of a quantity, a topic, a job or a key of a job; got {word!r}; {remedy}")
     return ToolResult(record, "\n".join(lines))
@@ -258,12 +258,12 @@ def _job_key_record(name: str) -> dict[str, Any]:
     schema, path = schema_of(Job), list[str | int]()
     for part in [] if name == "job" else name.replace("[", "").replace("]", "").split("."):
         path.append(part)
-        if any("items" in node for node in nodes_at(schema, path)):
+        if any("items" in node for node in schema_nodes_at(schema, path)):
             path.append(0)
-    nodes = nodes_at(schema, path[:-1] if path and path[-1] == 0 else path)
+    nodes = schema_nodes_at(schema, path[:-1] if path and path[-1] == 0 else path)
     if not nodes:
         raise NotFound(f"there is no key {name!r}")
-    forms = [node for node in nodes_at(schema, path) if "properties" in node]
+    forms = [node for node in schema_nodes_at(schema, path) if "properties" in node]
     return {
         "description": next((node["description"] for node in nodes if "description" in node), ""),
         **{key: node[key] for node in reversed(nodes) for key in _OF_KEY[1:] if key in node},

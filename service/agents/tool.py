@@ -12,8 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 from pydantic.fields import FieldInfo
 
 from ...model.errors import InputError
-from ...objectives.units import closest, quote
-from ...optimise.job.mistake_messages import rule_of
+from ...objectives.units import closest_word, quote
+from ...optimise.job.mistake_messages import broken_rule
 from ...optimise.job.schema import schema_of
 from .call import Call, ToolResult
 
@@ -76,14 +76,14 @@ class Tool:
         """Return the error message for an input: rule, value, remedy."""
         name, accepted = str(details["loc"][0]), list(self.inputs.model_fields)
         if details["type"] == "extra_forbidden":
-            near = closest(name, accepted)
+            near = closest_word(name, accepted)
             remedy = f"did you mean {near}?" if near else "leave it out"
             rule = f"accepts only {', '.join(accepted)}" if accepted else "has no inputs"
             return f"{self.name} {rule}; got {quote(name)}; {remedy}"
         if details["type"] == "missing":
             return f"{self.name} needs {name}, which is missing; add it"
         path = ".".join(str(part) for part in details["loc"] if not str(part).startswith(("dict[", "str", "list[")))
-        return f"{path} {rule_of(details)}; got {quote(details['input'])}; correct it"
+        return f"{path} {broken_rule(details)}; got {quote(details['input'])}; correct it"
 
 
 def _field_default(item: Any) -> Any:

@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Query, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ...objectives.tables.variable_columns import varying_column
+from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.problem.table_columns import choice_field
 from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import all_columns
@@ -211,7 +211,7 @@ def _requested_design(stored_front: StoredFront, request: NewBookmark) -> Stored
             f"a design without a number needs all dimensions; got none for {', '.join(missing)}; give them"
         )
     design = design_of(stored_front.problem, {**row, **request.dimensions})
-    varying = {varying_column(item)[0] for item in design.part.mechanism.varying}
+    varying = {column_of_variable(item)[0] for item in design.part.mechanism.varying}
     values = {key: value for key, value in request.dimensions.items() if key in varying and isinstance(value, float)}
     return design_with_numbers(design, design.values[:3], values)
 
@@ -248,6 +248,6 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
 def _design_query(design: StoredDesign) -> dict[str, float | list[str]]:
     """Return the query that gives a reference design with the same choices the dimensions of this one."""
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
-    pairs = zip(map(varying_column, design.part.mechanism.varying), design.values[3:], strict=True)
+    pairs = zip(map(column_of_variable, design.part.mechanism.varying), design.values[3:], strict=True)
     values = [f"{column}={value * unit.factor!r}" for (column, unit), value in pairs]
     return {**lengths, **({"value": values} if values else {})}

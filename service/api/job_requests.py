@@ -152,7 +152,7 @@ def tables_of_toml(body: bytes, most_depth: int) -> dict[str, Any]:
 
 def insert_files(stated: Submission) -> dict[str, Any]:
     """Return the tables of a job with the contents of the sent files inserted. Raises `JobError`."""
-    from ...optimise.job import with_files
+    from ...optimise.job import with_file_contents
 
     contents: dict[str, str | bytes] = {}
     for name, content in stated.files.items():
@@ -161,7 +161,7 @@ def insert_files(stated: Submission) -> dict[str, Any]:
             contents[name] = b64decode(encoded, validate=True) if mark.startswith("data:") and encoded else content
         except ValueError:
             raise JobError(f"files.{name[:60]}: must be a text or base64; got a broken one; send it again") from None
-    return with_files(stated.job, contents)
+    return with_file_contents(stated.job, contents)
 
 
 def limits_within(requested: RequestedLimits, allowed: Limits) -> Limits:

@@ -145,13 +145,13 @@ def _allowed_methods(request: Request) -> list[str]:
 def validation_message(details: Mapping[str, Any]) -> str:
     """Return the message for an error from pydantic: rule, value, remedy."""
     from ...objectives.units import quote
-    from ...optimise.job.mistake_messages import rule_of
+    from ...optimise.job.mistake_messages import broken_rule
 
     if details["type"] == "missing":
         return "is missing, but required; add it"
     if details["type"] == "extra_forbidden":
         return f"unknown; got {quote(details['input'])}; leave it out"
-    rule = rule_of(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"
+    rule = broken_rule(details) if details["type"] not in _OBJECT else "must be a JSON object, in braces"
     return f"{rule}; got {quote(details['input'])}; correct it"
 
 

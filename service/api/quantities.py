@@ -152,7 +152,7 @@ class TopicList(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units for every kind, and the equivalents of API units in inches and pounds."""
-    from ...objectives.column_keys import split_unit
+    from ...objectives.column_keys import name_unit_and_factor_of_key
     from ...objectives.registry import FACTS
     from ...objectives.units import value_of_one_si_unit_in
 
@@ -177,7 +177,7 @@ def list_units() -> UnitTable:
         titles={
             quantity.field: quantity.title
             for quantity in FACTS.values()
-            if quantity.title != split_unit(quantity.field)[0].replace("_", " ")
+            if quantity.title != name_unit_and_factor_of_key(quantity.field)[0].replace("_", " ")
         },
     )
 

@@ -282,12 +282,12 @@ class Client(Designs):
 
 def tables_of(job: JobSource) -> Record:
     """Return the tables of a job file, including the contents of the files beside it. Raises `JobError`."""
-    from ...optimise.job import with_files
-    from ...optimise.job.job_file import read, toml_tables
+    from ...optimise.job import with_file_contents
+    from ...optimise.job.job_file import read_job_file, toml_tables
 
     if isinstance(job, Mapping):
         return dict(job)
     if isinstance(job, str) and "\n" in job:
         return toml_tables(job)
     file = path_from_text(job)
-    return with_files(read(file), file.parent)
+    return with_file_contents(read_job_file(file), file.parent)

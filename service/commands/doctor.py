@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import typer
 
 from ...model.errors import NotFound, SlidercrankError
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ..jobs.stores import Address, has_store, is_store_specified, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
@@ -182,7 +182,8 @@ def _check_workers(address: str, now: float) -> Iterator[Check]:
         text += f"; {silent} not heard from for more than {SILENT:g} s: stopped or disconnected"
     waiting = counts.get("queued", 0) + len(expired)
     if waiting and not active:
-        text += f"; {counted(waiting, 'job')} waiting without a worker; start slidercrank serve or slidercrank worker"
+        jobs = count_with_noun(waiting, "job")
+        text += f"; {jobs} waiting without a worker; start slidercrank serve or slidercrank worker"
     yield Check("workers", "problem" if waiting and not active else "note" if silent else "ok", text)
     names = ", ".join(str(job.id) for job in expired[:5])
     text = (

@@ -10,7 +10,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.column_keys import column_key_in_system
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import ANGLE
 from ..designs.columns import find_columns
 from ..designs.selection import no_match_message, numbered_rows, result_part
@@ -77,7 +77,9 @@ def front(
     elif chosen:
         screen = console()
         count = "" if len(chosen) == len(result.designs) else f"{len(chosen)} of "
-        screen.print(f"{result.name}: {count}{counted(len(result.designs), 'design')}", style="bold", soft_wrap=True)
+        screen.print(
+            f"{result.name}: {count}{count_with_noun(len(result.designs), 'design')}", style="bold", soft_wrap=True
+        )
         show_front(screen, result, chosen, columns=listed_columns, limit=rows)
     if not chosen:
         end_without_design(no_match_message(result, conditions or []))
@@ -180,7 +182,7 @@ def export(
             print_output(text)
         elif target is not None:
             write_file(Path(target), text)
-            print_message(f"{target}: {counted(len(chosen), 'design')}")
+            print_message(f"{target}: {count_with_noun(len(chosen), 'design')}")
     for file, content in contents.items():
         write_file(file, content)
         print_message(f"{file}: design {number}")

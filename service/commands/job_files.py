@@ -93,9 +93,9 @@ def quantities(
     facts = {item["name"]: item for item in facts_of_all()}
     for name in names or ():
         if name not in facts:
-            from ...objectives.units import closest
+            from ...objectives.units import closest_word
 
-            near = closest(name, facts)
+            near = closest_word(name, facts)
             remedy = f"did you mean {near}?" if near else "list all with `slidercrank quantities`"
             if name in TERMS:
                 remedy = f"{TERMS[name]}; see docs/glossary.md"

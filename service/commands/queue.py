@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
-from ...objectives.column_keys import split_unit
-from ...objectives.count_text import counted
+from ...objectives.column_keys import name_unit_and_factor_of_key
+from ...objectives.count_text import count_with_noun
 from ...optimise.front.progress import stage_text
 from ..jobs.stores import (
     Address,
@@ -114,9 +114,9 @@ def _progress_or_result(job: Job) -> str:
     if job.state in ("done", "cancelled") and job.summary is not None and job.summary["designs"]:
         best = []
         for column, value in job.summary["best"].items():
-            name, unit, _ = split_unit(column)  # titles of quantities would require slow imports
+            name, unit, _ = name_unit_and_factor_of_key(column)  # titles of quantities would require slow imports
             best.append(f"{name.replace('_', ' ')} {value:.4g} {unit}".rstrip())
-        return f"{counted(job.summary['designs'], 'design')}; best {', '.join(best)}"
+        return f"{count_with_noun(job.summary['designs'], 'design')}; best {', '.join(best)}"
     if job.state == "running" and job.progress is not None:
         return f"{stage_text(job.progress)}, {job.progress['feasible']:,} feasible"
     if job.state == "running":

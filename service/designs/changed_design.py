@@ -13,7 +13,7 @@ from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.tables.evaluate_quantities import can_move, evaluated_as_array
 from ...objectives.tables.swing_columns import require_motion
-from ...objectives.tables.variable_columns import varying_column
+from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of_columns
@@ -55,7 +55,7 @@ def design_with_numbers(
     Raises `InputError` for lengths that do not rotate fully, and for a number that is not variable or out of range.
     """
     numbers = list(design.values[3:])
-    columns = [varying_column(item) for item in design.part.mechanism.varying]
+    columns = [column_of_variable(item) for item in design.part.mechanism.varying]
     places = {column: place for place, (column, _) in enumerate(columns)}
     for column, value in (values or {}).items():
         if column not in places:
@@ -82,9 +82,9 @@ def judged_variation(design: StoredDesign, result: Result, minimised: Array) -> 
 
     minimised: result of `minimised_values(result)`, computed once for many designs.
     """
-    from ...optimise.search.assemble_front import columns_of
+    from ...optimise.search.assemble_front import columns_of_designs
 
-    columns = columns_of(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
+    columns = columns_of_designs(design.part, np.zeros(1, dtype=np.int64), np.array([design.values]))
     row = rows_of_columns(columns)[0]
     return Variation(
         row=row,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import column_key_in_system, metric_key, split_unit
+from ...objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
 from ...objectives.kinds import System
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     metric = metric_key(name)
     same = name if name in keys else next((key for key in keys if metric_key(key) == metric), None)
     key = _key_of_name(name, keys) if same is None else same
-    plain, unit, factor = split_unit(key)
+    plain, unit, factor = name_unit_and_factor_of_key(key)
     from ...objectives.quantity import Group
     from ...objectives.tables.variable_columns import number_in_words
 
@@ -61,7 +61,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
         f"slack of {title}" if slack else title,
         unit,
         factor,
-        factor / split_unit(name)[2] if same is not None else None if unit else 1.0,
+        factor / name_unit_and_factor_of_key(name)[2] if same is not None else None if unit else 1.0,
         Group.DIMENSIONS if key in choice_column_keys(keys) else _group_of(metric_key(key)),
     )
 
@@ -106,12 +106,16 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     system: System = "metric" if "crank_mm" in keys or "crank_in" not in keys else "inch"
     aliases = {dimension: column_key_in_system(f"{dimension}_mm", system)[0] for dimension in DIMENSIONS}
     aliases |= {quantity.name: column_key_in_system(quantity.field, system)[0] for quantity in QUANTITIES.values()}
-    for plain, key in ((split_unit(key)[0], key) for key in keys if "_robust" in key):
+    for plain, key in ((name_unit_and_factor_of_key(key)[0], key) for key in keys if "_robust" in key):
         for quantity in QUANTITIES.values():
-            stem = split_unit(quantity.field)[0]  # key and name of a robust quantity have the same ending
+            stem = name_unit_and_factor_of_key(quantity.field)[
+                0
+            ]  # key and name of a robust quantity have the same ending
             if plain.startswith(f"{stem}_robust"):
                 aliases[quantity.name + plain.removeprefix(stem)] = key
-    aliases |= {split_unit(key)[0]: key for key in keys if split_unit(key)[0] not in aliases}
+    aliases |= {
+        name_unit_and_factor_of_key(key)[0]: key for key in keys if name_unit_and_factor_of_key(key)[0] not in aliases
+    }
     aliases |= {f"slack_{alias}": f"slack_{key}" for alias, key in aliases.items()}
     names = {alias: key for alias, key in aliases.items() if key in keys}
     if name in names:
@@ -121,9 +125,9 @@ def _key_of_name(name: str, keys: Collection[str]) -> str:
     if len(longer) == 1:
         return longer[0]
 
-    from ...objectives.units import closest
+    from ...objectives.units import closest_word
 
-    near = closest(name, [*keys, *names]) if name else None
+    near = closest_word(name, [*keys, *names]) if name else None
     hint = f"did you mean {near}?" if near else f"choose from {_keys_text(keys)}"
     raise InputError(f"there is no quantity or column {name!r}; {hint}")
 

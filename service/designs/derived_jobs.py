@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.tables.variable_columns import varying_column
+from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.problem.problem import Problem
 from ..runs.result import Result
 from .columns import find_column
@@ -160,7 +160,7 @@ def _variable_ranges(part: Problem) -> list[tuple[str, str, str, str, float, flo
     """Return the variables: path in [variables], column, title, unit, and both bounds in that unit."""
     ranges = [(name, f"{name}_mm", name, "mm", getattr(part, name), 1e3) for name in DIMENSIONS]
     for item in part.mechanism.varying:
-        key, unit = varying_column(item)
+        key, unit = column_of_variable(item)
         ranges.append((item.name, key, find_column(key, [key]).title, unit.symbol, item, unit.factor))
     return [(path, *words, factor * ends.lower, factor * ends.upper) for path, *words, ends, factor in ranges]
 

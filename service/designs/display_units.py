@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
-from ...objectives.column_keys import column_key_in_system, split_unit
+from ...objectives.column_keys import column_key_in_system, name_unit_and_factor_of_key
 from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, Row, StoredObjective
 
@@ -84,7 +84,9 @@ def _knee_trade_offs(problem: Problem, result: Result, system: System) -> list[s
 
 def _scaled(value: Any, factor: float) -> Any:
     if isinstance(value, Mapping):  # a key without a unit, such as a vertex, has the unit of its record
-        return {key: item if split_unit(key)[1] else _scaled(item, factor) for key, item in value.items()}
+        return {
+            key: item if name_unit_and_factor_of_key(key)[1] else _scaled(item, factor) for key, item in value.items()
+        }
     if isinstance(value, list):
         return [_scaled(item, factor) for item in value]
     number = isinstance(value, int | float) and not isinstance(value, bool)

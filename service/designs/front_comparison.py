@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, StoredObjective
 from .design_selection_options import minimised_values
@@ -100,14 +100,14 @@ def _unmatched_sentence(
     if count == 0:
         return [f"{other_name} matches or beats every design of {name}, {_TO}"]
     if count == total:
-        return [f"{other_name} matches none of the {counted(total, 'design')} of {name}, {_TO}"]
+        return [f"{other_name} matches none of the {count_with_noun(total, 'design')} of {name}, {_TO}"]
     parts = [
         text
         for n, objective in enumerate(shared)
         if (text := _range_in_words(result, free, objective, front[:, n], system))
     ]
     place = f": where {', '.join(parts)}" if parts else ", spread over the whole front"
-    return [f"{name} has {count} of {counted(total, 'design')} that {other_name} does not match, {_TO}{place}"]
+    return [f"{name} has {count} of {count_with_noun(total, 'design')} that {other_name} does not match, {_TO}{place}"]
 
 
 def is_unmatched(front: Array, other_front: Array) -> NDArray[np.bool_]:

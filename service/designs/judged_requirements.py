@@ -96,10 +96,10 @@ class Judgement:
 
 def requirements_of(part: Problem) -> list[Requirement]:
     """Return the constraints of a problem without choices; default minimum values replace missing ones."""
-    from ...optimise.problem.constraint_violation import constraints_of
+    from ...optimise.problem.constraint_violation import constraints_with_floors
 
     requirements = []
-    for constraint in constraints_of(part):
+    for constraint in constraints_with_floors(part):
         quantity = part.quantity(constraint.quantity)
         ends = (None if end is None else end * quantity.unit.factor for end in (constraint.lower, constraint.upper))
         requirements.append(Requirement(quantity.name, quantity.field, quantity.title, quantity.unit.symbol, *ends))

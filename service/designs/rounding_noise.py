@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from ...objectives.column_keys import split_unit
+from ...objectives.column_keys import name_unit_and_factor_of_key
 from ..runs.result import Cell, Row
 
 _NOISE = 1e-12
@@ -32,4 +32,4 @@ def row_without_noise(row: Mapping[str, Cell]) -> Row:
 
 def _unit_or_name(key: str) -> str:
     """Return the unit of a column; without a unit its name, which a slack shares with its quantity."""
-    return split_unit(key)[1] or key.removeprefix(_SLACK)
+    return name_unit_and_factor_of_key(key)[1] or key.removeprefix(_SLACK)

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.errors import InputError
-from ...objectives.column_keys import split_unit
+from ...objectives.column_keys import name_unit_and_factor_of_key
 from ...objectives.formula.dimensional_analysis import kind_of_formula
-from ...objectives.formula.expression import Name, Node, fold, names_in, text_of
+from ...objectives.formula.expression import Name, Node, evaluate_in_algebra, formula_text, names_in
 from ...objectives.formula.formulas import Units
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import column_key_of_formula
@@ -37,7 +37,7 @@ class RowFormula:
         """Return its value at a design, SI; NaN if undefined, for example by a division by zero."""
         leaves = {name: Values(_si_values(row, column), None) for name, column in self.columns}
         with np.errstate(all="ignore"):
-            value = float(fold(self.node, Slopes(leaves, 1, 0, False)).values[0])
+            value = float(evaluate_in_algebra(self.node, Slopes(leaves, 1, 0, False)).values[0])
         endless = any(np.isinf(leaf.values[0]) for leaf in leaves.values())
         return value if endless or not math.isinf(value) else math.nan
 
@@ -47,10 +47,12 @@ def find_formula(text: str, keys: Collection[str]) -> Column | RowFormula:
 
     Raises `InputError`, with rule, value and remedy, for an invalid formula and for names that are not columns.
     """
-    node = parse(text, Units(frozenset(split_unit(key)[0] for key in keys)))
-    written = text_of(node)
+    node = parse(text, Units(frozenset(name_unit_and_factor_of_key(key)[0] for key in keys)))
+    written = formula_text(node)
     for key in keys:
-        if split_unit(key)[0] == column_key_of_formula(written) or key == column_key_of_formula(written):
+        if name_unit_and_factor_of_key(key)[0] == column_key_of_formula(written) or key == column_key_of_formula(
+            written
+        ):
             stored_column = find_column(key, keys)
             # It was referred to without its unit.
             return replace(stored_column, plain=None if stored_column.unit else 1.0)
@@ -71,7 +73,7 @@ def _column_of_name(name: str, keys: Collection[str]) -> Column:
     if "." not in name:
         return find_column(name, keys)
     plain = re.sub("[^a-z0-9]+", "_", name.removeprefix("mechanism.").lower()).strip("_")
-    if plain not in {split_unit(key)[0] for key in keys}:
+    if plain not in {name_unit_and_factor_of_key(key)[0] for key in keys}:
         raise InputError(f"there is no column {name!r}: only variables have one; leave it out")
     return find_column(plain, keys)
 

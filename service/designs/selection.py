@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import Kind
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
@@ -231,7 +231,7 @@ def no_match_message(result: Result, texts: Collection[str]) -> str:
     conditions = " and ".join(text.strip() for text in texts)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)
     reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_never_met(condition, rows)))
-    return "; ".join((f"none of the {counted(len(rows), 'design')} meets {conditions}", *reasons))
+    return "; ".join((f"none of the {count_with_noun(len(rows), 'design')} meets {conditions}", *reasons))
 
 
 def _why_never_met(condition: Condition, rows: Sequence[Row]) -> str | None:

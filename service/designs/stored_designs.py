@@ -14,7 +14,7 @@ from ...model.errors import RunError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import Varying
-from ...objectives.tables.variable_columns import varying_column
+from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
 from ...optimise.problem.table_columns import choice_field
@@ -130,7 +130,7 @@ def _distance_outside(variant: Variant, values: Sequence[float]) -> float:
 
 def _variable_factors(mechanism: Mechanism) -> dict[str, float]:
     """Return the columns of a design's variables, each with the factor from SI to its unit."""
-    varying = (varying_column(item) for item in mechanism.varying)
+    varying = (column_of_variable(item) for item in mechanism.varying)
     return {**_MILLIMETRES, **{key: unit.factor for key, unit in varying}}
 
 

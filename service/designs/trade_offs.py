@@ -28,10 +28,10 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     Raises `InputError` if there are no such rates: a single objective, an objective without gradient, or a design that
     does not meet its constraints.
     """
-    from ...optimise.front.hypervolume import scaling
+    from ...optimise.front.hypervolume import ideal_and_range
     from ...optimise.search.elimination import elimination_branches
     from ...optimise.search.evaluation import Evaluator
-    from ...optimise.search.polish import polish
+    from ...optimise.search.polish import polish_designs
 
     if len(front.objectives) < 2:
         raise InputError("trade-offs need at least two objectives; got one; add another to the job")
@@ -48,8 +48,8 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
         point = _unit_box_point(branch, values)
         if point is None:
             continue
-        span = scaling(front.values)[1]
-        polished = polish(Evaluator(design.part, branch), point[None], span, iterations=0)
+        span = ideal_and_range(front.values)[1]
+        polished = polish_designs(Evaluator(design.part, branch), point[None], span, iterations=0)
         owner, slopes = polished.goals[0]
         nothing = (np.zeros(0), np.zeros((0, 0)))
         goals, active = [nothing] * len(front), [nothing[1]] * len(front)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from ...objectives.column_keys import metric_key, split_unit
+from ...objectives.column_keys import metric_key, name_unit_and_factor_of_key
 from ..runs.result import Result, Row
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def _violation_sentence(key: str, row: Row, excess: float, verb: str) -> str:
     from ...objectives.registry import QUANTITIES
 
     quantity = next(quantity for quantity in QUANTITIES.values() if quantity.field == metric_key(key))
-    value, unit = row[key], split_unit(key)[1]
+    value, unit = row[key], name_unit_and_factor_of_key(key)[1]
     assert isinstance(value, float)
     low = quantity.better == "low"
     allowed = value - excess if low else value + excess

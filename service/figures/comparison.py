@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
@@ -71,7 +71,7 @@ def comparison_matrix(
     for line, note in enumerate(notes):
         write_text(figure, 0.2, notes_height - 0.1 - _NOTE * line, note, fontsize=SMALL, va="center")
     handles = [Line2D([], [], **_line_style(index)) for index in range(len(runs))]
-    labels = [f"{run.label}, {counted(len(run.values), 'design')}" for run in runs]
+    labels = [f"{run.label}, {count_with_noun(len(run.values), 'design')}" for run in runs]
     add_legend(figure, 0.2, height - _TOP, handles, labels)
     return figure
 

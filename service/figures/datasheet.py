@@ -21,7 +21,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
-from ...objectives.column_keys import split_unit
+from ...objectives.column_keys import name_unit_and_factor_of_key
 from ...objectives.kinds import LENGTH, System, metric_unit_in, unit_text
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
@@ -75,7 +75,7 @@ def design_datasheet(
     for column in range(2):
         x, y = _LEFT + 2.95 * column, _TABLE - 0.12
         for key, name in rows[tall * column : tall * (column + 1)]:
-            unit, factor = metric_unit_in(split_unit(key)[1], system)
+            unit, factor = metric_unit_in(name_unit_and_factor_of_key(key)[1], system)
             style: dict[str, Any] = {"weight": "bold" if key in (bold or {}) else "normal", "color": INK}
             name = textwrap.shorten(name, 2 * _LETTERS, placeholder=" ...")
             write_text(figure, x, y, name, fontsize=TEXT * min(1.0, _LETTERS / len(name)), **style)

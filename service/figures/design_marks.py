@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...objectives.kinds import System, metric_unit_in
-from ...objectives.tables.variable_columns import varying_column
+from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.requirements import Objective
@@ -117,7 +117,7 @@ def dimension_axes(front: ParetoFront, system: System = "metric") -> list[Axis]:
         for index, name in enumerate(columns)
     ]
     for index, item in enumerate(front.problem.mechanism.varying, start=3):
-        unit = varying_column(item)[1]
+        unit = column_of_variable(item)[1]
         symbol, unit_factor = metric_unit_in(unit.symbol, system)
         title = title_with_unit(item.name.removeprefix("mechanism."), symbol)
         axes.append(Axis(title, symbol, unit.factor * unit_factor * front.dimensions[:, index], 0))

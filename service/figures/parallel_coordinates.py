@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from ..render.numerals import format_on_scale
@@ -84,7 +84,7 @@ def parallel_coordinates(front: ParetoFront, system: System = "metric") -> Figur
         handlelength=4.0,
         columnspacing=2.0,
     )
-    text = f"Pareto front, {counted(len(front), 'design')}; lines coloured by "
+    text = f"Pareto front, {count_with_noun(len(front), 'design')}; lines coloured by "
     write_heading(figure, front.problem.name, text + objectives[0].title.split(",")[0], left=0.2)
     return figure
 

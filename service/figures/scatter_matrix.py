@@ -10,7 +10,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import System
 from ...optimise.front.front import ParetoFront
 from .design_marks import Axis, Mark, dimension_axes, marked_designs, objective_axis, with_better_arrow
@@ -132,7 +132,7 @@ def _draw_legend(figure: Figure, marked: list[Mark], x: float, y: float) -> None
 
 
 def _draw_heading(figure: Figure, front: ParetoFront, objectives: int) -> None:
-    text = f"Pareto front, {counted(len(front), 'design')}"
+    text = f"Pareto front, {count_with_noun(len(front), 'design')}"
     if objectives > MOST:
         text += f"; the first {MOST} of {objectives} objectives"
     write_heading(figure, front.problem.name, text, left=0.2)

@@ -18,7 +18,7 @@ from ...optimise.job.constraints_and_objectives import ConstraintsPart, constrai
 from ...optimise.job.crank_speed import SPEED_KEYS, CrankSpeedPart
 from ...optimise.job.raw_tables import table_in
 from ...optimise.job.value_types import RangeOf
-from ...optimise.job.variables_and_variants import ends_of
+from ...optimise.job.variables_and_variants import range_of_dimension
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
 from ...optimise.search.elimination import require_offset_for_slow_stroke
@@ -80,7 +80,7 @@ def _with_slow_stroke(problem: Problem, stroke: Any) -> Problem:
 
 def depends_on_dimensions_only(name: str) -> bool:
     """Whether a quantity depends only on the three dimensions."""
-    return name in QUANTITIES and QUANTITIES[name].of_dimensions
+    return name in QUANTITIES and QUANTITIES[name].depends_only_on_dimensions
 
 
 def _massless_machine(mechanism: Mapping[str, Any]) -> Mechanism:
@@ -99,7 +99,7 @@ def ranges_of(tables: Mapping[str, Any]) -> dict[str, Range] | None:
     stated = table_in(tables, "variables")
     signs: dict[str, Sign] = {"crank": "positive", "rod": "positive", "offset": "any"}
     try:
-        return {name: ends_of(RangeOf(sign).read(stated.get(name))) for name, sign in signs.items()}
+        return {name: range_of_dimension(RangeOf(sign).read(stated.get(name))) for name, sign in signs.items()}
     except InputError:
         return None
 

@@ -24,7 +24,7 @@ from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRA
 from ...objectives.tables.swing_columns import swing_quantities
 from ...optimise.job.motion import MotionPart, with_swing_margin
 from ...optimise.job.raw_tables import table_in
-from ...optimise.problem.constraint_violation import constraints_of
+from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective
 from .partial_job import ranges_of, requirement_names
@@ -164,7 +164,9 @@ def _possible_lever(problem: Problem) -> PossibleSwing | None:
         met_by_all=sample.met_by_all,
         example=lengths_of(example),
         example_feasible=bool(good.any()),
-        unchecked=() if checked is light else tuple(constraint.quantity for constraint in constraints_of(problem)),
+        unchecked=()
+        if checked is light
+        else tuple(constraint.quantity for constraint in constraints_with_floors(problem)),
         example_lever=machine,
     )
 

@@ -22,13 +22,13 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...objectives.registry import QUANTITIES
 from ...optimise.feasibility.best_value import with_single_objective
-from ...optimise.problem.constraint_violation import FEASIBLE, constraints_of
+from ...optimise.problem.constraint_violation import FEASIBLE, constraints_with_floors
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
-from ...optimise.search.polish import polish
-from ...optimise.search.sampling import first_samples, generator
+from ...optimise.search.polish import polish_designs
+from ...optimise.search.sampling import first_samples, random_generator
 from .partial_job import depends_on_dimensions_only
 from .samples import BATCH, SAMPLES, sampled_designs, screened_samples
 
@@ -125,7 +125,7 @@ def _dimensional_problem(problem: Problem) -> tuple[Problem, tuple[str, ...]]:
     """Return the problem with only the requirements on the dimensions, and the names of the others."""
     machine = massless_machine(problem.mechanism)
     closed = tuple(c for c in problem.constraints if depends_on_dimensions_only(c.quantity))
-    costly = tuple(c.quantity for c in constraints_of(problem) if not depends_on_dimensions_only(c.quantity))
+    costly = tuple(c.quantity for c in constraints_with_floors(problem) if not depends_on_dimensions_only(c.quantity))
     return replace(problem, mechanism=machine, constraints=closed), costly
 
 
@@ -149,7 +149,7 @@ def _rotates_fully(designs: Array) -> NDArray[np.bool_]:
 def _possible_ends(problem: Problem, name: str) -> Ends | None:
     """Return the range of a closed-form quantity subject to the other requirements on the dimensions."""
     constraints = tuple(
-        c for c in constraints_of(problem) if depends_on_dimensions_only(c.quantity) and c.quantity != name
+        c for c in constraints_with_floors(problem) if depends_on_dimensions_only(c.quantity) and c.quantity != name
     )
     if name == "transmission_angle":
         constraints = (*constraints, Constraint(quantity=name, lower=_FLATTEST))
@@ -165,7 +165,7 @@ def _ends_on_branch(problem: Problem, name: str, branch: EliminationBranch, inde
     values = _closed_form_values(problem, name, branch.dimensions(points)[:, :3])
     if not np.isfinite(values).any():
         return None
-    random = generator(1, 100 + index)
+    random = random_generator(1, 100 + index)
     ends = []
     for sign in (-1.0, 1.0):
         best, merits = points, np.where(np.isfinite(values), sign * values, -np.inf)
@@ -194,7 +194,7 @@ def _polished_extreme(problem: Problem, name: str, branch: EliminationBranch, si
     start = start[evaluator.can_evaluate(start)]
     if not branch.free or not len(start):
         return -np.inf
-    polished = polish(evaluator, start, np.ones(1))
+    polished = polish_designs(evaluator, start, np.ones(1))
     good = polished.violation <= FEASIBLE
     return float(-polished.values[good, 0].min()) if good.any() else -np.inf
 
@@ -258,7 +258,7 @@ def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] 
                 constraint, QUANTITIES[constraint.quantity].evaluate(problem.mechanism, designs).values
             ).mean()
         )
-        for constraint in constraints_of(problem)
+        for constraint in constraints_with_floors(problem)
         if not constraint.equality and len(designs)
     }
     return min(shares.items(), key=lambda item: item[1]) if shares else None
@@ -270,7 +270,7 @@ def _nearest_value(problem: Problem, name: str) -> float | None:
     One in ten samples that meet all other requirements is at least as near. So few designs would meet the very nearest
     value that the samples of a job that asks for it may have none.
     """
-    constraint = next(item for item in constraints_of(problem) if item.quantity == name)
+    constraint = next(item for item in constraints_with_floors(problem) if item.quantity == name)
     others = tuple(item for item in problem.constraints if item.quantity != name)
     if constraint.lower is not None and constraint.upper is not None:
         sought = with_single_objective(problem, name, "target", 0.5 * (constraint.lower + constraint.upper))

@@ -10,17 +10,17 @@ from typing import Any
 
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...optimise.feasibility.relaxation import Relaxation, relaxation_of_missed_bound
 from ...optimise.front.constant_numbers import is_constant
 from ...optimise.job import Job
 from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.job.job_file import require_few_values
 from ...optimise.job.mistake_messages import where_key_belongs
-from ...optimise.job.plain_numbers import plain_values
+from ...optimise.job.plain_numbers import numbers_without_unit
 from ...optimise.job.possible_values import STROKE_RATIOS, ratio_and_angle_conflict
 from ...optimise.job.schema import schema_of
-from ...optimise.problem.constraint_violation import constraints_of
+from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.job_remark import Change, Remark
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Word
@@ -147,7 +147,7 @@ def _preview_without_formulas(tables: Mapping[str, Any], read: Callable[[Mapping
 def _implausible_lengths(tables: Mapping[str, Any]) -> list[str]:
     """Return the warnings about crank, rod and offset values without a unit that are implausible."""
     keys = {f"variables.{name}" for name in DIMENSIONS}
-    plain = plain_values(Job, {"variables": tables["variables"]})
+    plain = numbers_without_unit(Job, {"variables": tables["variables"]})
     return [item.warning for item in plain if item.key in keys and item.warning]
 
 
@@ -193,7 +193,7 @@ def _none_meets_all_sentence(problem: Problem, possible_values: Possible, fixed_
         title = problem.quantity(name).title
         percent = f"{100.0 * share:.0f} %" if share >= 0.01 or share == 0.0 else "less than 1 %"
         hardest = f"; on its own, {title} is met by {percent} of those that rotate fully"
-        constraint = next(item for item in constraints_of(problem) if item.quantity == name)
+        constraint = next(item for item in constraints_with_floors(problem) if item.quantity == name)
         nearest = possible_values.nearest
         for word, bound in constraint.sides:
             item = None if nearest is None else relaxation_of_missed_bound(problem, constraint, word, bound, nearest)
@@ -202,7 +202,7 @@ def _none_meets_all_sentence(problem: Problem, possible_values: Possible, fixed_
                 change = _change_to_reachable_value(problem, constraint, word, item)
     values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
     return Remark(
-        f"none of {counted(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
+        f"none of {count_with_noun(possible_values.sampled, 'design')} tried{values} meets every requirement{hardest}; "
         "the search looks more closely",
         change,
     )

@@ -62,7 +62,7 @@ class PlainInput(Input):
         from pydantic import ValidationError
 
         from ...objectives.units import quote
-        from ...optimise.job.mistake_messages import rule_of
+        from ...optimise.job.mistake_messages import broken_rule
 
         form = get_origin(self.type)
         value: Any = [raw] if isinstance(raw, str) and form in (list, dict) else raw
@@ -72,7 +72,7 @@ class PlainInput(Input):
         try:
             return self._adapter.validate_python(value, strict=True)
         except ValidationError as error:
-            rule, received = rule_of(error.errors(include_url=False)[0]), quote(raw)
+            rule, received = broken_rule(error.errors(include_url=False)[0]), quote(raw)
             raise InputError(f"{word} {rule}; got {received}; write it like {self.usual or self.example}") from None
 
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, NotRequired
 
 from typing_extensions import TypedDict
 
-from ...objectives.column_keys import split_unit
+from ...objectives.column_keys import name_unit_and_factor_of_key
 from ...objectives.kinds import Kind
 
 _Handler = Callable[[Any], dict[str, Any]]
@@ -58,7 +58,7 @@ class ShakingNumbers(Record):
 def _title_with_unit(key: str, _: object = None) -> str:
     """Return the title of a key: "peak torque, N m"."""
     numerator, per, denominator = key.partition("_per_")
-    name, unit, _factor = split_unit(numerator)
+    name, unit, _factor = name_unit_and_factor_of_key(numerator)
     words = [name.replace("_", " "), *([f"per {denominator.replace('_', ' ')}"] if per else [])]
     if unit:
         words[0] += f", {unit}"

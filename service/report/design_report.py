@@ -6,7 +6,7 @@ import time
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.column_keys import metric_key
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
@@ -121,9 +121,9 @@ def _change_sentences(subject: Subject, changed: Variation) -> list[str]:
         sentences.append("misses requirements of the job; see below")
     better, beaten = len(changed.dominated_by), len(changed.dominates)
     if better:
-        sentences.append(f"{counted(better, 'design')} of the front at least as good in every objective")
+        sentences.append(f"{count_with_noun(better, 'design')} of the front at least as good in every objective")
     elif beaten and not changed.broken:
-        sentences.append(f"dominates {counted(beaten, 'design')} of the front")
+        sentences.append(f"dominates {count_with_noun(beaten, 'design')} of the front")
     else:
         sentences.append("no listed design is better in every objective")
     return sentences

@@ -106,7 +106,7 @@ def _applicable_columns(subject: Subject) -> tuple[list[Column], list[str]]:
         value, quantity = subject.row[column.key], quantity_of_column.get(column.key)
         is_absent = value is None or (isinstance(value, float) and math.isnan(value))
         if quantity is not None and column.key not in required:
-            is_absent = is_absent or any(quantity.lacks(mechanism, word) for word in get_args(Consequence))
+            is_absent = is_absent or any(quantity.unmet_need(mechanism, word) for word in get_args(Consequence))
         if is_absent and column.key not in required:
             absent.append(column.title)
         else:

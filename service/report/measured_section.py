@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import System
 from ...objectives.tables.measured_curves import Measured
 from ..figures.panel_drawing import draw_panel_figure
@@ -34,7 +34,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
         shifts.append((title, *texts[4:], unit))
     blocks: tuple[Block, ...] = (
         Table(
-            f"Measured minus computed, {counted(deviations_found['rows'], 'row')}",
+            f"Measured minus computed, {count_with_noun(deviations_found['rows'], 'row')}",
             ("curve", "samples", "RMS", "mean", "largest", "at, deg", "unit"),
             tuple(deviations),
             (0.32, 0.12, 0.12, 0.12, 0.12, 0.1, 0.1),

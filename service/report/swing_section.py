@@ -9,7 +9,7 @@ from ...model.swing.error_sources import error_shares
 from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
-from ...objectives.tables.swing_curves import driven_side, error_kind
+from ...objectives.tables.swing_curves import driven_error_kind, driven_side_name
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
@@ -51,7 +51,7 @@ class SwingOfSubject:
         if worst is None:
             return None
         shares = error_shares(design.mechanism, design.linkage, self.summary.swing, worst.crank_angle)
-        total, unit_of_error = sum(share.error for share in shares), error_kind(self.summary.swing).metric
+        total, unit_of_error = sum(share.error for share in shares), driven_error_kind(self.summary.swing).metric
         unit, factor = metric_unit_in(unit_of_error.symbol, system)
         rows = tuple(
             (
@@ -64,7 +64,7 @@ class SwingOfSubject:
             )
             for share in shares
         )
-        driven_quantity = "crank angle" if driven_side(self.summary.swing) == "crank" else "slider position"
+        driven_quantity = "crank angle" if driven_side_name(self.summary.swing) == "crank" else "slider position"
         sentence = (
             f"The {driven_quantity} is off by {format_cell(factor * unit_of_error.factor * worst.value)} {unit} at "
             f"most, at a crank angle of {format_cell(math.degrees(worst.crank_angle))} deg: worst case of all sources, "

@@ -11,7 +11,7 @@ from sqlalchemy import Row as Found
 from sqlalchemy import select
 
 from ...model.errors import InputError
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from .schema import bookmarks, jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]
@@ -229,4 +229,4 @@ class Crew:
         left = f"{self.waiting} waiting"
         if not self.workers:
             return f"no worker, {left}: start one with slidercrank worker"
-        return f"{counted(self.workers, 'worker')}, {self.busy} busy, {left}"
+        return f"{count_with_noun(self.workers, 'worker')}, {self.busy} busy, {left}"

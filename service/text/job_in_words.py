@@ -16,22 +16,22 @@ from ...model.machine.strength import Strength
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.machine.varying_numbers import Varying
 from ...model.swing.end_angles import swing_start_column
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.tables.variable_columns import columns_of_numbers, varying_column
+from ...objectives.tables.variable_columns import column_of_variable, columns_of_numbers
 from ...optimise.job.impossible_options import impossible_option_notes, impossible_options
 from ...optimise.problem.always_zero_quantities import idle_constraint_warnings
-from ...optimise.problem.constraint_violation import constraints_of
+from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.discrete_values import Discrete
 from ...optimise.problem.job_remark import changes_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Objective, Range
-from ...optimise.problem.restatement import restate
+from ...optimise.problem.restatement import restate_constraint
 from ...optimise.problem.tolerance_costs import Cost
 from ...optimise.search.driving_load_warnings import driving_load_warnings
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
-from ...optimise.search.overlong_stroke_part_warnings import full_stroke_load_warnings
+from ...optimise.search.overlong_stroke_part_warnings import overlong_part_warnings
 from ...optimise.search.stroke_warnings import stroke_warnings
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
@@ -45,11 +45,11 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
     """
     branch = elimination_branches(problem)[0]
     settings = problem.settings
-    samples = f", {counted(settings.samples, 'sample')} per round" if settings.samples else ""
+    samples = f", {count_with_noun(settings.samples, 'sample')} per round" if settings.samples else ""
     warnings = [
         *problem.warnings,
         *driving_load_warnings(problem),
-        *full_stroke_load_warnings(problem),
+        *overlong_part_warnings(problem),
         *stroke_warnings(problem),
         *idle_constraint_warnings(problem),
         *impossible_option_notes(problem),
@@ -68,7 +68,7 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
         ],
         "rules": [
             *([f"slow stroke {problem.slow_stroke}"] if problem.slow_stroke else []),
-            *(_constraint_text(constraint, problem) for constraint in constraints_of(problem)),
+            *(_constraint_text(constraint, problem) for constraint in constraints_with_floors(problem)),
             *_limit_lines(problem),
         ],
         "floors": _allowed_minimum_values(problem),
@@ -78,7 +78,8 @@ def problem_in_words(problem: Problem) -> dict[str, Any]:
         "eliminated": list(branch.eliminated),
         "warnings": warnings,
         "changes": changes_of(warnings),
-        "search": f"{settings.method}, at most {counted(settings.designs, 'design')}, seed {settings.seed}{samples}",
+        "search": f"{settings.method}, at most {count_with_noun(settings.designs, 'design')}, "
+        f"seed {settings.seed}{samples}",
     }
 
 
@@ -306,7 +307,7 @@ def _length_text(problem: Problem, name: str) -> str:
 
 
 def _varying_text(item: Varying) -> str:
-    unit = varying_column(item)[1]
+    unit = column_of_variable(item)[1]
     ends = f"{unit.factor * item.lower:.6g} to {unit.factor * item.upper:.6g} {unit.symbol}".rstrip()
     return f"{item.name} {ends}"
 
@@ -316,7 +317,7 @@ def _values_text(problem: Problem, item: Discrete) -> str:
     unit = columns_of_numbers(problem.mechanism.varying)[item.name][1]
     values = [f"{unit.factor * value:.6g}" for value in item.values]
     few = values if len(values) <= _MOST_VALUES else [*values[:2], "...", values[-1]]
-    return f"{item.name} {item.rule}: {counted(len(values), 'value')}, {', '.join(few)} {unit.symbol}".rstrip()
+    return f"{item.name} {item.rule}: {count_with_noun(len(values), 'value')}, {', '.join(few)} {unit.symbol}".rstrip()
 
 
 def _choice_lines(problem: Problem) -> list[str]:
@@ -385,8 +386,8 @@ def _constraint_text(constraint: Constraint, problem: Problem, *, is_stated: boo
 def _allowed_minimum_values(problem: Problem) -> list[dict[str, Any]]:
     """Return the least allowed values of quantities with a default: quantity, value, unit, and is default or not."""
     floors = []
-    for constraint in constraints_of(problem):
-        restated = restate(problem, constraint)
+    for constraint in constraints_with_floors(problem):
+        restated = restate_constraint(problem, constraint)
         quantity = problem.quantity(restated.quantity)
         if quantity.floor is not None and restated.lower is not None:
             value, default = restated.lower * quantity.unit.factor, constraint not in problem.constraints

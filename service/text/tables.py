@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.column_keys import metric_key
-from ...objectives.count_text import counted
+from ...objectives.count_text import count_with_noun
 from ..designs.columns import Column, choice_column_keys, find_column
 from ..designs.rounding_noise import row_without_noise
 from ..designs.violations import front_violations_in_words, violations_in_words
@@ -67,7 +67,7 @@ def show_front(
     print_table(screen, _front_table(result, chosen, columns))
     notes = []
     if len(chosen) < len(rows):
-        notes.append(f"{len(chosen)} of {counted(len(rows), 'design')} shown")
+        notes.append(f"{len(chosen)} of {count_with_noun(len(rows), 'design')} shown")
     if any(result.extremes[objective.quantity] in chosen for objective in result.objectives):
         notes.append("* best in an objective")
     if result.knee in chosen and len(result.objectives) > 1:

@@ -14,8 +14,8 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import NoReturn
 
 from ...model.errors import LeaseLost, StoreError
-from ...objectives.count_text import counted
-from ...objectives.own.function_process_client import is_guard
+from ...objectives.count_text import count_with_noun
+from ...objectives.own.function_process_client import is_guard_command
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result
 from ..store import NO_LIMITS, NOT_DONE, Claim, Limits
@@ -64,7 +64,7 @@ class Budget:
         if seconds is not None and time.monotonic() - self._began - self.waited() >= seconds:
             return f"its search reached its time limit of {seconds:g} s"
         if evaluations is not None and self._evaluations >= evaluations:
-            return f"its search reached its limit of {counted(evaluations, 'evaluation')}"
+            return f"its search reached its limit of {count_with_noun(evaluations, 'evaluation')}"
         return ""
 
 
@@ -195,7 +195,7 @@ def end_children() -> None:
     while waiting:
         child = waiting.pop()
         with contextlib.suppress(psutil.Error, OSError):
-            if is_guard(child.cmdline()):
+            if is_guard_command(child.cmdline()):
                 continue  # it kills what its function has started, once the requesting process has ended
             waiting += child.children()
             if hasattr(os, "killpg") and os.getpgid(child.pid) == child.pid:

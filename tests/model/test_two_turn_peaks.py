@@ -146,7 +146,7 @@ def test_a_table_that_repeats_after_one_turn_is_that_of_one_turn() -> None:
     designs = np.array([[0.03, 0.11, 0.01]])
     one, two = (Mechanism(speed=-30.0, slider_mass=0.4, loads=(table,)) for table in (once, twice))
     for quantity in QUANTITIES.values():
-        if not quantity.lacks(one, "undefined"):
+        if not quantity.unmet_need(one, "undefined"):
             values = [quantity.evaluate(machine, designs).values[0] for machine in (one, two)]
             turns = 2.0 if quantity.title.endswith("per cycle") else 1.0
             assert values[1] == pytest.approx(turns * values[0], rel=1e-10, abs=1e-12, nan_ok=True)

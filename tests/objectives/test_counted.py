@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from slidercrank.objectives.count_text import counted
+from slidercrank.objectives.count_text import count_with_noun
 
 
 def test_only_one_of_something_is_in_the_singular() -> None:
-    assert [counted(count, "design") for count in (0, 1, 2)] == ["0 designs", "1 design", "2 designs"]
+    assert [count_with_noun(count, "design") for count in (0, 1, 2)] == ["0 designs", "1 design", "2 designs"]

@@ -74,7 +74,7 @@ def test_a_stroke_that_is_no_longer_than_the_distance_has_neither() -> None:
         assert np.isnan(found.values).tolist() == [True, False]
         assert found.gradients is not None
         assert np.isnan(found.gradients).all(axis=1).tolist() == [True, False]
-        assert of.blank == "its stroke is not longer than the distance from the dead centre"
+        assert of.no_value_reason == "its stroke is not longer than the distance from the dead centre"
 
 
 def test_a_speed_profile_and_a_distance_left_out_are_refused() -> None:

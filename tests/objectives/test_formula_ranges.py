@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.formula.expression import ARGUMENTS, Call, Name, Node, Number
-from slidercrank.objectives.formula.linear import linear_of, unknown
+from slidercrank.objectives.formula.linear import linear_of, linear_unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 
 BOX = {"a": (0.5, 2.0), "b": (-1.5, 0.75), "c": (-3.0, -0.25), "d": (0.0, 1.0)}
@@ -136,7 +136,7 @@ def test_linear_formulas_have_exactly_the_values_of_what_they_stand_for() -> Non
 
     while taken < 200:
         node, exact = node_of(3)
-        found = linear_of(node, {name: unknown(name) for name in names})
+        found = linear_of(node, {name: linear_unknown(name) for name in names})
         if found is None or not found.factors:
             continue
         factors = dict(found.factors)

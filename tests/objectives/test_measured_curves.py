@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank import InputError, Linkage, Mechanism, analyse
 from slidercrank.objectives.tables.curve_extremes import every_curve
-from slidercrank.objectives.tables.measured_curves import columns_of, measured_from
+from slidercrank.objectives.tables.measured_curves import meaningful_columns, measured_samples
 from tests.model.cases import SMOOTH, TABLES
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)
@@ -20,7 +20,7 @@ MACHINE = Mechanism(speed=30.0, slider_mass=0.8)
 
 
 def meaning(name: str) -> tuple[str, float]:
-    column = columns_of(["crank_angle_deg", name], SMOOTH, LINKAGE)[name]
+    column = meaningful_columns(["crank_angle_deg", name], SMOOTH, LINKAGE)[name]
     return column.name, column.factor
 
 
@@ -36,7 +36,7 @@ def test_every_curve_is_read_as_tables_in_metric_inch_and_si_call_it() -> None:
 
 @pytest.mark.parametrize("name", ["temperature_C", "time_of_day", "load_cell_V", "torque_filtered_Nm", "", "x"])
 def test_other_columns_are_left_out(name: str) -> None:
-    found = measured_from({"crank_angle_deg": [0.0], "torque_Nm": [1.0], name: [5.0]}, MACHINE, LINKAGE)
+    found = measured_samples({"crank_angle_deg": [0.0], "torque_Nm": [1.0], name: [5.0]}, MACHINE, LINKAGE)
     assert found.left_out == (name,)
     assert list(found.values) == ["torque"]
 
@@ -78,7 +78,7 @@ def test_other_columns_are_left_out(name: str) -> None:
 )
 def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
-        columns_of(names, MACHINE, LINKAGE)
+        meaningful_columns(names, MACHINE, LINKAGE)
 
 
 @pytest.mark.parametrize(
@@ -106,16 +106,16 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
 )
 def test_values_that_cannot_be_are_refused(table: dict[str, list[float]], words: str) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
-        measured_from(table, MACHINE, LINKAGE)
+        measured_samples(table, MACHINE, LINKAGE)
 
 
 def test_time_is_a_crank_angle_at_constant_speed() -> None:
     backwards = Mechanism(speed=-30.0)
-    found = measured_from({"time_s": [0.0, 0.01], "slider_position_mm": [1.0, 2.0]}, backwards, LINKAGE)
+    found = measured_samples({"time_s": [0.0, 0.01], "slider_position_mm": [1.0, 2.0]}, backwards, LINKAGE)
     assert found.by_time
     assert found.crank_angle == pytest.approx([0.0, -0.3], rel=1e-12)
     both = {"time_s": [0.0], "crank_angle_deg": [90.0], "slider_position_mm": [1.0]}
-    found = measured_from(both, backwards, LINKAGE)
+    found = measured_samples(both, backwards, LINKAGE)
     assert found.crank_angle == pytest.approx([0.5 * math.pi], rel=1e-12)
     assert found.left_out == ("time_s",)
     for machine, words in (
@@ -123,7 +123,7 @@ def test_time_is_a_crank_angle_at_constant_speed() -> None:
         (SMOOTH, "a crank acceleration of 40 rad/s^2"),
     ):
         with pytest.raises(InputError, match=re.escape(words)):
-            columns_of(["time_s", "slider_position_mm"], machine, LINKAGE)
+            meaningful_columns(["time_s", "slider_position_mm"], machine, LINKAGE)
 
 
 @pytest.mark.parametrize("machine", [SMOOTH, TABLES])

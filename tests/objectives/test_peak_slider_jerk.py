@@ -35,4 +35,4 @@ def test_a_very_long_rod_gives_the_jerk_of_a_sine() -> None:
 
 
 def test_without_a_speed_it_is_said_to_need_one() -> None:
-    assert "needs a crank speed; got none" in (JERK.lacks(Mechanism(), "undefined") or "")
+    assert "needs a crank speed; got none" in (JERK.unmet_need(Mechanism(), "undefined") or "")

@@ -20,7 +20,7 @@ from slidercrank.model.swing.forces import swing_curves
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, without_inertia
 from slidercrank.objectives.swing_quantity import SwingQuantity
-from slidercrank.objectives.tables.swing_columns import quantities_for_swing, swing_facts, swing_quantities
+from slidercrank.objectives.tables.swing_columns import quantities_for_swing, swing_quantities, swing_quantity_facts
 from tests.model.cases import Array
 from tests.model.swing.swings import Case, random_swings
 from tests.objectives.richardson import derivatives
@@ -49,7 +49,7 @@ def design_of(linkage: Linkage) -> Array:
 
 def values(machine: Mechanism, swing: Swing, design: Array) -> dict[str, float]:
     own = swing_quantities(swing)
-    return {of.name: float(of.evaluate(machine, design).values[0]) for of in own if not of.lacks(machine, "equal")}
+    return {of.name: float(of.evaluate(machine, design).values[0]) for of in own if not of.unmet_need(machine, "equal")}
 
 
 @pytest.mark.slow
@@ -121,7 +121,7 @@ def test_gradients_are_those_of_extrapolated_differences(friction: bool) -> None
     for machine, linkage, swing in cases(7, seed=73, friction=friction):
         design = design_of(linkage)
         for of in swing_quantities(swing):
-            if of.lacks(machine, "equal"):
+            if of.unmet_need(machine, "equal"):
                 continue
 
             def function(displaced: Array, _: object, of: SwingQuantity = of, machine: Mechanism = machine) -> Array:
@@ -173,12 +173,12 @@ def test_what_cannot_swing_has_no_value_and_every_fact_has_a_place() -> None:
         swing = Swing(start=0.5, end=1.5, driver=driver)
         machine = Mechanism(slider_mass=1.0, gravity=(-9.81, 0.0), tolerances=TOLERANCES)
         for of in swing_quantities(swing):
-            if of.lacks(machine, "equal"):
+            if of.unmet_need(machine, "equal"):
                 continue
             found = of.evaluate(machine, np.array([closing, opening, [np.nan, 0.2, 0.0]])).values
             assert np.isfinite(found).tolist() == [True, False, False], of.name
             assert np.isnan(of.pieces(machine, np.array([opening])).values[0, 0]), of.name
-    assert len({of.place for of in swing_facts()}) == len(swing_facts())
+    assert len({of.place for of in swing_quantity_facts()}) == len(swing_quantity_facts())
 
 
 def test_numbers_that_vary_change_nothing_but_the_count_of_derivatives() -> None:
@@ -191,7 +191,7 @@ def test_numbers_that_vary_change_nothing_but_the_count_of_derivatives() -> None
         free = replace(machine, varying=(Varying(name="spring", sets=sets, lower=1.0, upper=30.0),))
         designs = np.array([[0.1, 0.25, 0.02, 20.0]])
         for of in swing_quantities(swing):
-            if of.lacks(machine, "equal"):
+            if of.unmet_need(machine, "equal"):
                 continue
             value = of.evaluate(free, designs).values
             found = of.evaluate(free, designs, gradients=True)

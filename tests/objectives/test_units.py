@@ -11,7 +11,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.objectives import kinds, units
 from slidercrank.objectives.kinds import KINDS, Kind
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.units import closest, kind_of_symbol, quote, to_si
+from slidercrank.objectives.units import closest_word, kind_of_symbol, quote, to_si
 
 PLATES = [
     *("1/min", "/min", "min^-1", "U/min", "Upm", "r/min", "r.p.m.", "spm", "SPM", "stroke/min", "strokes/min"),
@@ -215,7 +215,7 @@ def test_usual_units_are_those_of_the_definitions(monkeypatch: pytest.MonkeyPatc
     assert len(usual) > 8
     monkeypatch.setattr(units, "_USUAL", {})
     for name, (factor, powers) in usual.items():
-        defined, dimension = units._lookup(name)
+        defined, dimension = units._factor_and_dimension_of_unit(name)
         assert (defined, dict(dimension)) == (factor, dict(powers))
 
 
@@ -258,8 +258,8 @@ def test_values_are_shown_as_in_a_job_file() -> None:
 
 
 def test_the_nearest_word_is_found_whatever_its_case() -> None:
-    assert closest("Spede", ["speed", "crank"]) == "speed"
-    assert closest("something else", ["speed", "crank"]) is None
+    assert closest_word("Spede", ["speed", "crank"]) == "speed"
+    assert closest_word("something else", ["speed", "crank"]) is None
 
 
 def test_a_plain_number_is_offered_without_quotes_only_where_it_is_taken() -> None:

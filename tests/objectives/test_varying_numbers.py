@@ -23,7 +23,7 @@ CLOSE = 1e-7
 FOLLOWING = [
     name
     for name, quantity in QUANTITIES.items()
-    if not isinstance(quantity, ClosedFormQuantity | GasQuantity) and not quantity.lacks(BARS, "undefined")
+    if not isinstance(quantity, ClosedFormQuantity | GasQuantity) and not quantity.unmet_need(BARS, "undefined")
 ]
 OF_BODIES = (
     *("peak_torque", "rms_torque", "mean_power", "peak_guide_force", "position_error_rss"),

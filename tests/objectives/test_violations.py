@@ -103,7 +103,7 @@ def test_a_machine_without_material_violates_nothing_and_a_quantity_without_allo
         *("motor_peak_torque", "motor_rms_torque", "motor_speed"),
     }
     with pytest.raises(NotImplementedError, match="stroke has no allowable value"):
-        FACTS["stroke"].allowable(machine)
+        FACTS["stroke"].allowable_value(machine)
 
 
 def test_the_good_side_of_safeties_is_high_and_python_says_it() -> None:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.problem import Problem
 from tests.optimise.independent import excess
 
@@ -45,7 +45,7 @@ class Independent:
 
     def __init__(self, problem: Problem, wanted: StoredObjective) -> None:
         self.problem, self.wanted, self.m = problem, wanted, len(problem.objectives)
-        self.constraints = constraints_of(problem)
+        self.constraints = constraints_with_floors(problem)
         self.goals = [objective.quantity for objective in problem.objectives]
         self.names = list(dict.fromkeys([*self.goals, *(c.quantity for c in self.constraints)]))
         ends = [(of.lower, of.upper) for of in problem.ranges.values()]

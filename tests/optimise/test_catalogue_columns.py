@@ -15,7 +15,7 @@ import slidercrank as sc
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
-from slidercrank.optimise.job.catalogue_columns import columns_of
+from slidercrank.optimise.job.catalogue_columns import columns_of_header
 from tests import random_formulas
 
 TABLES: dict[str, Any] = {
@@ -74,7 +74,7 @@ def test_limits_on_random_formulas_are_those_of_constraints() -> None:
 def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(name: str) -> None:
     unit = "deg" if name == "transmission_angle" else "mm"
     right = f"{name} max ({unit})"
-    assert [column.word for column in columns_of(["name", right], "file", frozenset())] == ["max"]
+    assert [column.word for column in columns_of_header(["name", right], "file", frozenset())] == ["max"]
     for wrong in (
         f"{name} Max ({unit})",
         f"max {name} ({unit})",
@@ -82,17 +82,17 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         f"{name} maximum ({unit})",
     ):
         with pytest.raises(JobError) as told:
-            columns_of(["name", wrong], "file", frozenset())
+            columns_of_header(["name", wrong], "file", frozenset())
         assert f'file, column "{wrong}": ' in str(told.value)
         assert str(told.value).endswith(f"in lower case; write {right}")
     if name == "transmission_angle":  # one that says its good side
-        assert [column.header_text for column in columns_of(["name", f"{name} (deg)"], "file", frozenset())] == [
+        assert [column.header_text for column in columns_of_header(["name", f"{name} (deg)"], "file", frozenset())] == [
             "transmission_angle min (deg)"
         ]
     elif name != "crank":  # a number of the job
         for wrong in (f"{name} ({unit})", name):
             with pytest.raises(JobError, match=re.escape(f"needs min, max or equals; got none; write {name} max")):
-                columns_of(["name", wrong], "file", frozenset())
+                columns_of_header(["name", wrong], "file", frozenset())
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
 )
 def test_what_is_wrong_with_a_header_is_told_with_its_column_and_remedy(header: str, words: str) -> None:
     with pytest.raises(JobError, match=re.escape(words)) as told:
-        columns_of(["name", *header.split(",")], "file", frozenset())
+        columns_of_header(["name", *header.split(",")], "file", frozenset())
     assert f'file, column "{header.split(",")[-1]}": ' in str(told.value)
 
 

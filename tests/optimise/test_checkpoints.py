@@ -14,9 +14,9 @@ from slidercrank.model.errors import ForeignRecords
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.methods import local
-from slidercrank.optimise.methods.registry import methods
+from slidercrank.optimise.methods.registry import methods_by_name
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust_problem import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust_problem
 from slidercrank.optimise.search import checkpoints
 from slidercrank.optimise.search import fingerprint as identity
 from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record
@@ -55,7 +55,7 @@ def every_step(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def asked(method: str) -> Problem:
     """Return a small problem for a method."""
-    alone = methods()[method].objectives == "one"
+    alone = methods_by_name()[method].objectives == "one"
     given = problem(
         {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
         LIMITED,
@@ -105,7 +105,7 @@ def after(questions: int) -> Callable[[], bool]:
     return lambda: next(left, None) is None
 
 
-@pytest.mark.parametrize("method", methods())
+@pytest.mark.parametrize("method", methods_by_name())
 def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
     found, records, told, _ = whole(method)
     assert len(records) >= 6
@@ -118,7 +118,7 @@ def test_a_run_goes_on_from_any_record_bit_for_bit(method: str) -> None:
         assert [entry.round for entry in again] == [entry.round for entry in told[records[cut - 1].rounds :]]
 
 
-@pytest.mark.parametrize("method", [name for name in methods() if name not in SLOW])
+@pytest.mark.parametrize("method", [name for name in methods_by_name() if name not in SLOW])
 def test_a_run_that_is_cancelled_again_and_again_ends_as_if_it_had_not_been(method: str) -> None:
     """Each time within a round: after some of the questions that a whole run is asked."""
     found, records, _, questions = whole(method)
@@ -192,7 +192,7 @@ def test_records_of_another_job_method_or_seed_are_refused() -> None:
         replace(given, mechanism=replace(given.mechanism, slider_mass=2.5)),
         replace(given, offset=given.rod),
         replace(given, constraints=given.constraints[1:]),
-        robust(given, Robust(kind="worst case")),
+        robust_problem(given, Robust(kind="worst case")),
     ):
         with pytest.raises(ForeignRecords, match=r"can only continue with its original job, .*; start a new run"):
             solve(other, resume=records)

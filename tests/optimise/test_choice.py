@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from slidercrank.optimise.front.dominance import dominating, nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, choose_designs, scaling
+from slidercrank.optimise.front.hypervolume import REFERENCE, choose_designs, ideal_and_range
 
 Array = NDArray[np.float64]
 
@@ -25,7 +25,7 @@ def points(random: np.random.Generator, kind: str) -> Array:
 
 def greedily(values: Array, count: int, always: list[int]) -> float:
     """Return the hypervolume of a greedy choice that computes every volume anew, in scaled values."""
-    ideal, span = scaling(values)
+    ideal, span = ideal_and_range(values)
     scaled = np.ascontiguousarray((values - ideal) / span)
     picked = list(dict.fromkeys(always))[:count]
     while len(picked) < count:
@@ -45,7 +45,7 @@ def test_a_choice_is_worth_what_the_greedy_one_is(kind: str) -> None:
         chosen = choose_designs(values, count, always=tuple(always))
         assert len(chosen) == len(set(chosen.tolist())) == count
         assert set(list(dict.fromkeys(always))[:count]) <= set(chosen.tolist())
-        ideal, span = scaling(values)
+        ideal, span = ideal_and_range(values)
         volume = moocore.hypervolume(np.ascontiguousarray(((values - ideal) / span)[chosen]), ref=REFERENCE)
         # Of designs that gain the same, the one or the other is taken, and what follows may differ.
         assert volume == pytest.approx(greedily(values, count, always), rel=1e-12 if kind == "sphere" else 0.03)

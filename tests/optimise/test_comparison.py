@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare
+from slidercrank.optimise.decisions.front_comparison import compare_fronts
 from tests.optimise.independent import Array
 
 
@@ -35,7 +35,7 @@ def beats(p: Array, q: Array, room: list[float]) -> bool:
 def test_all_figures_agree_with_plain_loops(m: int, tolerance: float) -> None:
     for seed in range(4):
         fronts = random_fronts(seed, m)
-        found = compare(fronts, tolerance=tolerance)
+        found = compare_fronts(fronts, tolerance=tolerance)
         everything = [point for front in fronts for point in front]
         best = [q for q in everything if not any(beats(p, q, [0.0] * m) for p in everything)]
         low = [min(float(point[i]) for point in best) for i in range(m)]
@@ -60,7 +60,7 @@ def test_all_figures_agree_with_plain_loops(m: int, tolerance: float) -> None:
 def test_hypervolumes_are_those_of_a_count_of_points() -> None:
     """A regular grid of 400 x 400 cells counts areas to about the length of their edge: 2 / 400."""
     fronts = [front[:, :2] for front in random_fronts(3, 2)]
-    found = compare(fronts)
+    found = compare_fronts(fronts)
     side = (np.arange(400) + 0.5) / 400.0 * 1.1
     x, y = (axis.ravel() for axis in np.meshgrid(side, side))
     counted = []
@@ -76,7 +76,7 @@ def test_hypervolumes_are_those_of_a_count_of_points() -> None:
 
 def test_epsilon_is_what_makes_one_front_cover_the_other() -> None:
     fronts = random_fronts(8, 3)
-    found = compare(fronts)
+    found = compare_fronts(fronts)
     for a in range(3):
         for b in range(3):
             for change, covers in ((1e-9, True), (-1e-9, False)):
@@ -86,7 +86,7 @@ def test_epsilon_is_what_makes_one_front_cover_the_other() -> None:
 
 def test_a_front_equals_itself() -> None:
     front = random_fronts(1, 3)[0]
-    found = compare([front, front])
+    found = compare_fronts([front, front])
     assert found.coverage.tolist() == [[1.0, 1.0], [1.0, 1.0]]
     assert found.epsilon == pytest.approx(np.zeros((2, 2)), abs=1e-15)
     assert found.shares == pytest.approx([1.0, 1.0], rel=1e-15)
@@ -97,19 +97,19 @@ def test_a_front_equals_itself() -> None:
 def test_a_better_front_dominates_and_the_tolerance_forgives() -> None:
     angle = np.linspace(0.0, 0.5 * math.pi, 30)
     arc = np.stack([1.0 - np.cos(angle), 1.0 - np.sin(angle)], axis=1)
-    found = compare([arc, arc + 1e-4])
+    found = compare_fronts([arc, arc + 1e-4])
     assert found.dominates.tolist() == [[False, True], [False, False]]
     assert found.in_union.tolist() == [30, 0]
     assert found.epsilon[1, 0] == pytest.approx(1e-4, rel=1e-6)
-    forgiving = compare([arc, arc + 1e-4], tolerance=2e-4)
+    forgiving = compare_fronts([arc, arc + 1e-4], tolerance=2e-4)
     assert not forgiving.dominates.any()
     assert forgiving.in_union.tolist() == [30, 30]
 
 
 def test_nothing_depends_on_units_or_zero() -> None:
     fronts = random_fronts(4, 3)
-    one = compare(fronts, tolerance=0.01)
-    two = compare(
+    one = compare_fronts(fronts, tolerance=0.01)
+    two = compare_fronts(
         [front * np.array([1e-3, 57.0, 1e4]) + np.array([5.0, -2.0, 1.0]) for front in fronts], tolerance=0.01
     )
     for name in ("hypervolumes", "shares", "in_union", "coverage", "epsilon", "dominates"):
@@ -119,10 +119,10 @@ def test_nothing_depends_on_units_or_zero() -> None:
 def test_what_cannot_be_compared_is_said() -> None:
     front = random_fronts(0, 2)[0]
     with pytest.raises(InputError, match="at least two fronts; got 1"):
-        compare([front])
+        compare_fronts([front])
     with pytest.raises(InputError, match="must have designs"):
-        compare([front, front[:0]])
+        compare_fronts([front, front[:0]])
     with pytest.raises(InputError, match="different numbers"):
-        compare([front, front[:, :1]])
+        compare_fronts([front, front[:, :1]])
     with pytest.raises(InputError, match="fraction of the range, zero or more; got -1"):
-        compare([front, front], tolerance=-1.0)
+        compare_fronts([front, front], tolerance=-1.0)

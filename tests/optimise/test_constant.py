@@ -12,11 +12,11 @@ import pytest
 
 from slidercrank.optimise.front.choose_design import knee, lexicographic, scale_by_range, topsis
 from slidercrank.optimise.front.constant_numbers import SAME, column_ranges, is_constant
-from slidercrank.optimise.front.hypervolume import hypervolume, ignore_progress, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range, ignore_progress
 from slidercrank.optimise.front.slack import slack_of
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.requirements import Constraint
-from slidercrank.optimise.search.assemble_front import columns_of
+from slidercrank.optimise.search.assemble_front import columns_of_designs
 from tests.optimise.problems import problem
 
 PAGE = Path(__file__).parents[2] / "service" / "page" / "static" / "lib" / "constant.js"
@@ -65,7 +65,9 @@ def test_a_last_bit_of_a_constant_objective_changes_no_choice() -> None:
         assert topsis(bits, [1.0, 2.0, 3.0]) == topsis(values, [1.0, 2.0, 3.0])
         assert lexicographic(bits, order) == lexicographic(values, order)
         assert (scale_by_range(bits)[:, 2] == 0.0).all()
-        assert hypervolume(bits, *scaling(bits)) == pytest.approx(hypervolume(values, *scaling(values)), rel=1e-8)
+        assert hypervolume(bits, *ideal_and_range(bits)) == pytest.approx(
+            hypervolume(values, *ideal_and_range(values)), rel=1e-8
+        )
 
 
 def test_distances_from_a_target_that_is_met_are_rounding() -> None:
@@ -87,13 +89,13 @@ def test_a_slack_of_rounding_is_zero(bits: int) -> None:
     bound = stroke + bits * np.spacing(stroke)
     for held in ((bound, bound), (bound, None), (None, bound), (bound, 2.0 * bound)):
         asked = problem({"peak_torque": "minimise"}, {"stroke": held}, crank=0.1, rod=0.3, offset=0.05)
-        table = columns_of(asked, np.zeros(1, dtype=np.int64), design, ignore_progress)
+        table = columns_of_designs(asked, np.zeros(1, dtype=np.int64), design, ignore_progress)
         assert table["slack_stroke_mm"].tolist() == [0.0]
-        assert len(constraints_of(asked)) == 2
+        assert len(constraints_with_floors(asked)) == 2
     apart = replace(
         given, constraints=problem({"peak_torque": "minimise"}, {"stroke": (stroke - 1e-7, None)}).constraints
     )
-    table = columns_of(apart, np.zeros(1, dtype=np.int64), design, ignore_progress)
+    table = columns_of_designs(apart, np.zeros(1, dtype=np.int64), design, ignore_progress)
     assert table["slack_stroke_mm"][0] == pytest.approx(1e-4, rel=1e-6)
 
 
@@ -106,5 +108,5 @@ def test_the_slack_of_what_is_infinite_is_infinite_and_of_what_has_no_value_none
     np.testing.assert_array_equal(slack_of(equal, values), [-math.inf, math.nan, -2.0, 0.0])
     asked = problem({"peak_torque": "minimise"}, {"rod_to_offset": (3.0, None)}, crank=0.1, rod=0.3)
     designs = np.array([[0.1, 0.3, 0.0], [0.1, 0.3, 0.1]])
-    table = columns_of(asked, np.zeros(2, dtype=np.int64), designs, ignore_progress)
+    table = columns_of_designs(asked, np.zeros(2, dtype=np.int64), designs, ignore_progress)
     assert table["slack_rod_to_offset"].tolist() == [math.inf, 0.0]

@@ -61,7 +61,10 @@ def test_every_quantity_is_that_of_its_own_evaluation() -> None:
     drive = Drive(gear_ratio=8.0, gear_efficiency=0.9, rated_torque=3.0, greatest_torque=9.0, greatest_speed=300.0)
     of = replace(machine(), loads=(*machine().loads, AIR), crank=bar, rod=bar, strength=STRENGTH, slider=slider)
     of = replace(of, drive=replace(drive, motor_inertia=1e-3))
-    some, names = designs(40), [name for name, quantity in QUANTITIES.items() if not quantity.lacks(of, "undefined")]
+    some, names = (
+        designs(40),
+        [name for name, quantity in QUANTITIES.items() if not quantity.unmet_need(of, "undefined")],
+    )
     assert len(names) > len(QUANTITIES) - 5
     values, jacobian = sc.evaluate(of, some, names, gradients=True)
     assert values.shape == (40, len(names))

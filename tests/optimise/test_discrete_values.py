@@ -18,11 +18,11 @@ from slidercrank.optimise.discrete import combinations
 from slidercrank.optimise.discrete import discrete_front as discrete
 from slidercrank.optimise.discrete.combinations import (
     Axes,
+    best_near_designs,
+    best_of_all_combinations,
+    combinations_around,
+    designs_meeting_requirements,
     has_judged_neighbours,
-    judge,
-    judge_all,
-    judge_near,
-    neighbours,
 )
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
@@ -74,7 +74,7 @@ def test_every_combination_is_judged_once_however_many_at_once(at_once: int, mon
     given = {name: {"values": [f"{value} mm" for value in each]} for name, each in values.items()}
     axes = Axes.of_problem(parse_job(job(given, constraints={"stroke": {"min": "90 mm"}})))
     asked: list[tuple[int, int]] = []
-    found = combinations.judge_all(axes, lambda begun, of: asked.append((begun, of)))
+    found = combinations.best_of_all_combinations(axes, lambda begun, of: asked.append((begun, of)))
     expected = [
         (crank, rod, offset)
         for crank, rod, offset in itertools.product(*values.values())
@@ -179,11 +179,13 @@ def test_designs_whose_neighbours_were_not_judged_are_not_called_stationary(monk
 def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_better() -> None:
     part = parse_job(job())
     axes = Axes.of_problem(part)
-    exact = judge_all(axes)
-    found, seen = judge_near(axes, exact.dimensions[:1], 30, 10_000)
+    exact = best_of_all_combinations(axes)
+    found, seen = best_near_designs(axes, exact.dimensions[:1], 30, 10_000)
     assert len(seen) == found.judged < axes.count
     assert has_judged_neighbours(axes, found.dimensions, seen).all()
-    around = judge(part, axes.designs_of_numbers(np.unique(axes.neighbour_numbers(found.dimensions))))
+    around = designs_meeting_requirements(
+        part, axes.designs_of_numbers(np.unique(axes.neighbour_numbers(found.dimensions)))
+    )
     for values in around.values:
         assert not ((values <= found.values).all(axis=1) & (values < found.values).any(axis=1)).any()
 
@@ -191,11 +193,11 @@ def test_a_search_around_the_best_combinations_ends_where_none_next_to_them_is_b
 def test_all_combinations_are_judged_in_parts_of_which_the_best_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Parts of any size give what one part gives, and no more is held than the best."""
     axes = Axes.of_problem(parse_job(job()))
-    whole = judge(axes.part, axes.designs(0, axes.count)).best()
+    whole = designs_meeting_requirements(axes.part, axes.designs(0, axes.count)).best()
     sizes: list[int] = []
     monkeypatch.setattr(combinations, "_BATCH", 100)
     monkeypatch.setattr(combinations, "_HELD", 20)
-    found = judge_all(axes, lambda done, of: sizes.append(done))
+    found = best_of_all_combinations(axes, lambda done, of: sizes.append(done))
     assert sizes == list(range(0, axes.count, 100))
     assert found.judged == axes.count
     assert len(found.values) <= 120
@@ -215,7 +217,7 @@ def test_neighbours_are_those_on_either_side_the_nearest_first() -> None:
         "crank has discrete values in the job, multiples of 0.5 mm, and stays unchanged"
         in solve(problem).rounded(0, 1e-3).notes
     )
-    found = neighbours(Axes.of_problem(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
+    found = combinations_around(Axes.of_problem(problem), np.array([[0.0503, 0.123, 0.012]]), 4)
     assert found[:, :2].tolist() == [[0.0505, 0.125], [0.05, 0.125], [0.0505, 0.112], [0.05, 0.112]]
     assert np.isnan(found[:, 2]).all()
 

@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.methods.registry import methods
+from slidercrank.optimise.methods.registry import methods_by_name
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.search.sample_and_zoom import Archive
@@ -82,13 +82,15 @@ def test_designs_that_just_miss_displace_none_that_meet_the_requirements(job: di
     assert front.evaluations <= 2 * len(given.variants) + 2 * len(front)
 
 
-@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives != "one"])
+@pytest.mark.parametrize("method", [name for name, method in methods_by_name().items() if method.objectives != "one"])
 def test_every_method_gives_all_of_a_catalogue(method: str) -> None:
     job = listed(optimiser={"method": method})
     assert solve(parse_job(job)).values.tolist() == solve(parse_job(listed())).values.tolist()
 
 
-@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives != "several"])
+@pytest.mark.parametrize(
+    "method", [name for name, method in methods_by_name().items() if method.objectives != "several"]
+)
 def test_every_method_gives_the_best_of_a_catalogue(method: str) -> None:
     """Also with an equality that no formula eliminates, met by some combinations alone."""
     exact = {"stroke": {"equals": "140 mm"}, "peak_slider_speed": {"max": "10 m/s"}}

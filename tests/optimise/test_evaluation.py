@@ -13,7 +13,7 @@ from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
-from slidercrank.optimise.problem.constraint_violation import FEASIBLE, constraints_of, minimised
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE, constraints_with_floors, minimised_values
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -179,7 +179,7 @@ def test_near_zero_offset_slopes_are_those_of_its_sheet() -> None:
 def test_the_transmission_angle_has_a_floor_where_none_is_set() -> None:
     def floor(bounds: Bounds | None) -> Constraint:
         held: dict[str, Bounds] = {} if bounds is None else {"transmission_angle": bounds}
-        found = constraints_of(problem({"peak_torque": "minimise"}, held))
+        found = constraints_with_floors(problem({"peak_torque": "minimise"}, held))
         return next(constraint for constraint in found if constraint.quantity == "transmission_angle")
 
     assert floor(None).lower == pytest.approx(TRANSMISSION_ANGLE.floor)
@@ -193,9 +193,9 @@ def test_the_transmission_angle_has_a_floor_where_none_is_set() -> None:
 
 def test_objectives_are_minimised_as_they_are_negated_or_as_distances() -> None:
     values = np.array([1.0, 3.0])
-    assert minimised(Objective(quantity="stroke", sense="minimise"), values).tolist() == [1.0, 3.0]
-    assert minimised(Objective(quantity="stroke", sense="maximise"), values).tolist() == [-1.0, -3.0]
-    assert minimised(Objective(quantity="stroke", sense="target", target=2.5), values).tolist() == [1.5, 0.5]
+    assert minimised_values(Objective(quantity="stroke", sense="minimise"), values).tolist() == [1.0, 3.0]
+    assert minimised_values(Objective(quantity="stroke", sense="maximise"), values).tolist() == [-1.0, -3.0]
+    assert minimised_values(Objective(quantity="stroke", sense="target", target=2.5), values).tolist() == [1.5, 0.5]
 
 
 def test_a_band_lets_in_what_violates_by_less() -> None:

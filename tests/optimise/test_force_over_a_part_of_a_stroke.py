@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.optimise.job import Job, job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.driving_load_warnings import net_work
-from slidercrank.optimise.search.overlong_stroke_part_warnings import full_stroke_load_warnings
+from slidercrank.optimise.search.overlong_stroke_part_warnings import overlong_part_warnings
 
 LENGTHS = {"crank": ["20 mm", "100 mm"], "rod": ["200 mm", "400 mm"], "offset": ["0 mm", "50 mm"]}
 
@@ -114,7 +114,7 @@ def test_the_part_may_be_a_choice_and_says_that_it_cannot_be_a_range() -> None:
 )
 def test_a_part_longer_than_every_stroke_is_warned_of(load: dict[str, Any], place: str) -> None:
     asked = problem(load, crank=["20 mm", "60 mm"], offset="0 mm")  # strokes from 40 to 120 mm
-    (warning,) = full_stroke_load_warnings(asked)
+    (warning,) = overlong_part_warnings(asked)
     assert warning.startswith(f"load #1 acts over the {place}, but the longest stroke of the sampled designs is ")
     assert warning.endswith(" mm, so it acts over the whole stroke; shorten this part, or leave it out")
     longest = float(warning.partition("designs is ")[2].partition(" mm")[0])
@@ -133,21 +133,21 @@ def test_a_part_longer_than_every_stroke_is_warned_of(load: dict[str, Any], plac
     ],
 )
 def test_a_part_that_a_stroke_can_contain_is_not_warned_of(load: dict[str, Any], crank: Any) -> None:
-    assert full_stroke_load_warnings(problem(load, crank=crank, offset="0 mm")) == []
+    assert overlong_part_warnings(problem(load, crank=crank, offset="0 mm")) == []
 
 
 def test_a_part_that_a_choice_shortens_is_not_warned_of() -> None:
     load = {"opposes": "outward stroke", "over": "last 300 mm"}
     short, long = ({"choices": ["last 300 mm", over]} for over in ("last 60 mm", "last 400 mm"))
-    assert full_stroke_load_warnings(problem(load, **{"load.1.over": short})) == []
-    (warning,) = full_stroke_load_warnings(problem(load, **{"load.1.over": long}))
+    assert overlong_part_warnings(problem(load, **{"load.1.over": short})) == []
+    (warning,) = overlong_part_warnings(problem(load, **{"load.1.over": long}))
     assert "last 300 mm" in warning
 
 
 def test_a_table_that_is_longer_than_the_stroke_is_not_warned_of() -> None:
     table = {"positions": ["0 mm", "300 mm"], "forces": ["-10 N", "-20 N"], "measured_from": "outer dead centre"}
     job = tables({}) | {"load": [table]}
-    assert full_stroke_load_warnings(parse_job(job)) == []
+    assert overlong_part_warnings(parse_job(job)) == []
 
 
 def test_python_warns_of_a_part_longer_than_every_stroke() -> None:

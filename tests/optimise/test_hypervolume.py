@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.dominance import nondominated
-from slidercrank.optimise.front.hypervolume import REFERENCE, GainBounds, choose_designs, hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import REFERENCE, GainBounds, choose_designs, hypervolume, ideal_and_range
 
 UNIT = (np.zeros(3), np.ones(3))
 
@@ -31,7 +31,7 @@ def test_hypervolume_agrees_with_counting_random_points() -> None:
 def test_choice_is_the_greedy_one_and_keeps_what_must_stay() -> None:
     values = np.random.default_rng(5).random((25, 3))
     values = values[nondominated(values)]
-    ideal, span = scaling(values)
+    ideal, span = ideal_and_range(values)
     picked = [0]
     while len(picked) < 6:
         gains = [
@@ -46,7 +46,7 @@ def test_no_design_gains_more_than_its_bound(objectives: int) -> None:
     random = np.random.default_rng([7, objectives])
     values = random.random((60, objectives))
     values = values[nondominated(values)]
-    ideal, span = scaling(values)
+    ideal, span = ideal_and_range(values)
     scaled, bounds = (values - ideal) / span, GainBounds((values - ideal) / span)
     chosen: list[int] = []
     for index in random.permutation(len(values))[:12].tolist():

@@ -15,7 +15,7 @@ from slidercrank.model.errors import JobError
 from slidercrank.objectives.formula.quantity import FormulaQuantity
 from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.job.custom_quantities import declared_quantities
-from slidercrank.optimise.job.model import job_with
+from slidercrank.optimise.job.model import job_type_with_quantities
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 
@@ -110,7 +110,7 @@ def test_varying_numbers_and_choices_take_formulas() -> None:
 
 def test_a_job_with_formulas_that_was_read_is_a_job_again() -> None:
     tables = job(quantity={"a": {"formula": "2 * crank"}}, constraints={"a": {"max": "0.1 m"}, "rod": {"min": "a"}})
-    known = job_with(declared_quantities(tables, allowed=False))
+    known = job_type_with_quantities(declared_quantities(tables, allowed=False))
     again = known.model_validate(tables).model_dump(mode="json", exclude_none=True)
     assert parse_job(again) == parse_job(tables)
 

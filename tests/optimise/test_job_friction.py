@@ -19,7 +19,7 @@ from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.job.problem_of_job import problem_of
 from slidercrank.optimise.job.sections_table import EXAMPLE
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -89,7 +89,7 @@ def test_shaking_without_masses_is_refused() -> None:
 
 def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one() -> None:
     def floors(problem: Problem) -> list[Constraint]:
-        return [c for c in constraints_of(problem) if c.quantity == "self_locking_margin"]
+        return [c for c in constraints_with_floors(problem) if c.quantity == "self_locking_margin"]
 
     assert floors(job(None)) == []
     assert floors(job()) == [Constraint(quantity="self_locking_margin", lower=SELF_LOCKING_MARGIN.floor)]
@@ -106,7 +106,7 @@ def test_self_locking_margin_has_a_floor_with_friction_unless_the_job_sets_one()
 
 def test_a_least_margin_of_zero_switches_the_floor_off_and_a_summary_says_which_holds() -> None:
     off = job(constraints={"self_locking_margin": {"min": "0 deg"}})
-    assert [c for c in constraints_of(off) if c.quantity == "self_locking_margin"] == list(off.constraints)
+    assert [c for c in constraints_with_floors(off) if c.quantity == "self_locking_margin"] == list(off.constraints)
     assert off.constraints[0].lower == 0.0
     told = problem_in_words(off)
     assert "self-locking margin at least 0 deg (replaces the default of 5 deg)" in told["rules"]

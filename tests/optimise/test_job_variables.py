@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.objectives.tables.variable_columns import varying_column
+from slidercrank.objectives.tables.variable_columns import column_of_variable
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Range
@@ -112,7 +112,7 @@ def test_a_path_becomes_a_varying_number(path: str, ends: list[Any], sets: dict[
     assert found == only(parse_job(job(f'"{path}" = {ends}')))
     assert found.name == path
     assert dict(found.sets) == pytest.approx(sets, rel=1e-12)
-    assert varying_column(found)[0] == column
+    assert column_of_variable(found)[0] == column
     assert found.lower < found.upper
 
 

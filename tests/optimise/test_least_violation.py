@@ -50,7 +50,7 @@ def test_the_best_of_one_objective_takes_few_cycles(monkeypatch: pytest.MonkeyPa
     judged: list[int] = []
 
     def counted(problem: Problem, names: tuple[str, ...], dimensions: Array) -> list[Array]:
-        if any(not problem.quantity(name).of_dimensions for name in names):
+        if any(not problem.quantity(name).depends_only_on_dimensions for name in names):
             judged.append(len(dimensions))
         return screen_quantities(problem, names, dimensions)
 

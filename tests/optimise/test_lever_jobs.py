@@ -13,13 +13,13 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.lever_quantity import LeverQuantity
-from slidercrank.objectives.tables.swing_columns import swing_facts
+from slidercrank.objectives.tables.swing_columns import swing_quantity_facts
 from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
 from slidercrank.optimise.problem.constraint_violation import (
     FEASIBLE,
-    all_minimised,
-    constraints_of,
+    constraints_with_floors,
     greatest_violation,
+    minimised_objectives,
 )
 from slidercrank.optimise.problem.problem import Problem
 from tests.optimise.problems import LEVER
@@ -67,7 +67,9 @@ def test_the_jobs_of_the_guide_have_a_front_of_levers(pytestconfig: pytest.Confi
         assert tables == {name: part for name, part in shipped.items() if name not in ("description", "optimiser")}
     front = sc.solve(sc.problem(tables | {"optimiser": {"designs": 4, "samples": 200}}))
     assert len(front) == 4
-    assert set(re.findall(r"`(\w+)`", guide)) >= {of.name for of in swing_facts() if isinstance(of, LeverQuantity)}
+    assert set(re.findall(r"`(\w+)`", guide)) >= {
+        of.name for of in swing_quantity_facts() if isinstance(of, LeverQuantity)
+    }
 
 
 def test_a_spring_of_a_job_unloads_the_cylinder() -> None:
@@ -83,7 +85,7 @@ def test_a_spring_of_a_job_unloads_the_cylinder() -> None:
 
 
 def test_the_cylinder_of_a_job_must_be_long_strong_and_stiff_enough() -> None:
-    names = {c.quantity: c.lower for c in constraints_of(sc.problem(lever()))}
+    names = {c.quantity: c.lower for c in constraints_with_floors(sc.problem(lever()))}
     assert names == pytest.approx(
         {
             "lever_transmission_angle": np.radians(10.0),
@@ -91,11 +93,11 @@ def test_the_cylinder_of_a_job_must_be_long_strong_and_stiff_enough() -> None:
         }
     )
     unknown = sc.problem(lever(cylinder=None, motion={"margin": "25 deg"}, tolerances={"crank": "1 mm"}))
-    assert {c.quantity: c.lower for c in constraints_of(unknown)} == {
+    assert {c.quantity: c.lower for c in constraints_with_floors(unknown)} == {
         "lever_transmission_angle": pytest.approx(np.radians(25.0))
     }
     stated = sc.problem(lever(constraints={"buckling_margin": {"min": 3.5}}))
-    assert {c.quantity: c.lower for c in constraints_of(stated)}["buckling_margin"] == 3.5
+    assert {c.quantity: c.lower for c in constraints_with_floors(stated)}["buckling_margin"] == 3.5
 
 
 @pytest.mark.slow
@@ -145,7 +147,7 @@ def random_job(random: np.random.Generator) -> Problem:
         tables["cylinder"] = {"seal_friction": f"{random.uniform(0.0, 60.0)} N"}
         problem = sc.problem(tables, require_feasible=False)
         some = designs_within(problem, random, 400)
-        if (greatest_violation(problem, some, constraints_of(problem)) <= FEASIBLE).any():
+        if (greatest_violation(problem, some, constraints_with_floors(problem)) <= FEASIBLE).any():
             return problem
 
 
@@ -160,8 +162,8 @@ def assert_unbeaten(problem: Problem, random: np.random.Generator, count: int) -
     front = sc.solve(problem)
     assert front.status == "done", front.message
     designs = designs_within(problem, random, count)
-    met = designs[greatest_violation(problem, designs, constraints_of(problem)) <= FEASIBLE]
-    found, own = all_minimised(problem, problem.evaluate(met)), front.values
+    met = designs[greatest_violation(problem, designs, constraints_with_floors(problem)) <= FEASIBLE]
+    found, own = minimised_objectives(problem, problem.evaluate(met)), front.values
     beaten = (found[:, None] < own[None] - 1e-6 * np.abs(own)[None]).all(axis=2)
     assert not beaten.any()
 

@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.load import Load
-from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job, with_files
+from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job, with_file_contents
 from slidercrank.optimise.job.curve_file import MOST_POINTS, SHARE
 from slidercrank.optimise.job.job_notes import file_summaries
 
@@ -32,7 +32,7 @@ def job(load: dict[str, Any], speed: str = "60 rpm", **parts: Any) -> dict[str, 
 
 def read(text: str | bytes, speed: str = "60 rpm", **keys: Any) -> Load:
     """Return the load of a file that is sent with a job."""
-    filled = with_files(job({"file": "trace.csv", **keys}, speed), {"trace.csv": text})
+    filled = with_file_contents(job({"file": "trace.csv", **keys}, speed), {"trace.csv": text})
     return parse_job(filled).mechanism.loads[0]
 
 
@@ -115,7 +115,7 @@ def test_a_time_is_a_crank_angle_at_the_speed_of_the_job() -> None:
         ({"variables": {**RANGES, "mechanism.speed": ["30 rpm", "60 rpm"]}}, "needs a constant crank speed"),
     ):
         with pytest.raises(JobError, match=words):
-            with_files(job({"file": "a.csv"}) | tables, {"a.csv": times})
+            with_file_contents(job({"file": "a.csv"}) | tables, {"a.csv": times})
 
 
 def test_a_file_of_two_turns_has_a_cycle_of_720_deg() -> None:
@@ -146,7 +146,7 @@ def test_a_long_table_is_thinned_within_the_stated_bound_and_its_steps_stay(seed
     step = int(random.integers(10, 3590))
     at[step] = at[step - 1]  # two points at one place
     text = "angle_deg,force_N\n" + "\n".join(f"{a!r},{f!r}" for a, f in zip(at.tolist(), force.tolist(), strict=True))
-    data = with_files(job({"file": "trace.csv"}), {"trace.csv": text})
+    data = with_file_contents(job({"file": "trace.csv"}), {"trace.csv": text})
     angles, forces = map(np.array, parse_job(data).mechanism.loads[0].knots())
     kept = np.degrees(angles[:-1])
     assert 2 <= len(kept) < 2000
@@ -176,7 +176,7 @@ def test_a_thinned_load_changes_quantities_by_no_more_than_the_bound_allows() ->
     at, force = noisy(np.random.default_rng(8), 3600)
     lines = [f"{a!r},{f!r}" for a, f in zip(at.tolist(), force.tolist(), strict=True)]
     thin = parse_job(
-        with_files(
+        with_file_contents(
             job({"file": "a.csv"}, objectives={"rms_torque": "minimise"}),
             {"a.csv": "\n".join(["angle_deg,force_N", *lines])},
         )
@@ -254,14 +254,14 @@ def test_units_stand_after_in_and_among_other_brackets(heads: str) -> None:
 def test_a_coarse_record_between_one_turn_and_two_is_refused_and_two_turns_are_reported() -> None:
     with pytest.raises(JobError, match=r"must cover one or two turns .* got 1\.4 turns"):
         read("time_s,force_N\n0,1\n0.1,2\n0.3,3\n0.7,4\n", "120 rpm")
-    data = with_files(job({"file": "a.csv"}), {"a.csv": "angle_deg,force_N\n0,1\n180,2\n360,3\n540,4\n"})
+    data = with_file_contents(job({"file": "a.csv"}), {"a.csv": "angle_deg,force_N\n0,1\n180,2\n360,3\n540,4\n"})
     assert data["load"][0]["cycle"] == "720 deg"
     assert file_summaries(data)[0].endswith("two turns, a cycle of 720 deg")
 
 
 def test_a_file_and_a_force_in_one_load_are_refused_before_the_file_is_read() -> None:
     with pytest.raises(JobError, match=r'load #1\.force: a load with file must not have this key; got "3 N"; possible'):
-        with_files(job({"file": "a.csv", "force": "3 N"}), {"a.csv": "angle_deg,force_N\n0,1\n9,2"})
+        with_file_contents(job({"file": "a.csv", "force": "3 N"}), {"a.csv": "angle_deg,force_N\n0,1\n9,2"})
 
 
 @pytest.mark.parametrize(
@@ -277,7 +277,7 @@ def test_refusals_of_a_profile_or_a_motion_name_its_file(rows: str, words: str) 
     profile = job({}, mechanism={"speed": "60 rpm", "speed_profile": {"file": "a.csv"}})
     for data, head in ((motion, "position_mm"), (profile, "speed_rpm")):
         with pytest.raises(JobError, match=rf'file: "a\.csv":? {words}'):
-            with_files(data, {"a.csv": f"angle_deg,{head}\n{rows}\n"})
+            with_file_contents(data, {"a.csv": f"angle_deg,{head}\n{rows}\n"})
 
 
 def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
@@ -300,5 +300,5 @@ def test_a_file_beside_a_job_is_read_named_and_told(tmp_path: Path) -> None:
     with pytest.raises(
         JobError, match=re.escape('load #1.file: "a.csv" not found among the files sent with the job (b.csv)')
     ):
-        with_files(job({"file": "a.csv"}), {"b.csv": ""})
-    assert parse_job(with_files(job({"file": "trace.csv"}), tmp_path)).mechanism.loads == loads
+        with_file_contents(job({"file": "a.csv"}), {"b.csv": ""})
+    assert parse_job(with_file_contents(job({"file": "trace.csv"}), tmp_path)).mechanism.loads == loads

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import linprog, nnls
 
 from slidercrank.optimise.front.front import _losses_of_cheapest_gain
-from slidercrank.optimise.front.neighbours import neighbours
+from slidercrank.optimise.front.neighbours import nearest_neighbours
 from slidercrank.optimise.front.nonnegative_least_squares import nonnegative_least_squares
 from tests.optimise.independent import Array
 
@@ -71,7 +71,7 @@ def test_neighbours_are_those_of_brute_force() -> None:
         if case % 7 == 0:
             points[:] = points[0]
         count = int(random.integers(1, n + 1))
-        distance, rows = neighbours(points, count)
+        distance, rows = nearest_neighbours(points, count)
         apart = np.linalg.norm(points[:, None] - points, axis=2)
         np.testing.assert_allclose(distance, np.sort(apart, axis=1)[:, :count], atol=1e-15)
         np.testing.assert_allclose(np.take_along_axis(apart, rows, axis=1), distance, atol=1e-15)

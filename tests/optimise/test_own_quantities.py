@@ -206,7 +206,11 @@ def test_a_method_that_needs_gradients_refuses_a_quantity_without() -> None:
 
 
 ROUNDED = OwnQuantity(
-    name="mine", function=lambda d: np.round(1e3 * d.rod.real), title="mine", kind=kind_in("mm", 1.0), gradient="none"
+    name="mine",
+    function=lambda d: np.round(1e3 * d.rod.real),
+    title="mine",
+    kind=kind_in("mm", 1.0),
+    gradient="none",
 )
 
 

@@ -9,9 +9,9 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.restatement import restate
+from slidercrank.optimise.problem.restatement import restate_constraint
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
@@ -72,7 +72,7 @@ def test_a_formula_that_is_a_quantity_in_other_words_is_searched_as_the_quantity
         ends = [[c.lower or 0.0, c.upper or 0.0] for c in (found, theirs[name])]
         np.testing.assert_allclose(ends[0], ends[1], rtol=1e-7)
     assert not {"transmission_angle", "self_locking_margin"} - {
-        restate(one, c).quantity for c in constraints_of(one)
+        restate_constraint(one, c).quantity for c in constraints_with_floors(one)
     }, "floors hold once, by the job or by default"
 
 
@@ -93,7 +93,7 @@ def test_a_formula_that_only_resembles_a_quantity_stays_itself(formula: str) -> 
     unit = "300 mm" if "stroke +" in formula or "abs" in formula or "sqrt" in formula else unit
     problem = job({formula: {"max": "900 mm" if "**2 / crank" in formula else unit}})
     asked = next(item for item in problem.constraints)
-    assert restate(problem, asked) is asked
+    assert restate_constraint(problem, asked) is asked
 
 
 def test_the_front_of_a_job_in_formulas_is_that_of_the_job_in_quantities() -> None:
@@ -137,4 +137,4 @@ def test_along_a_speed_profile_a_ratio_of_crank_angles_is_no_time_ratio() -> Non
         "slider": {"mass": "2 kg"},
     }
     problem = job({RATIO: {"min": 1.2}}, mechanism=uneven)
-    assert restate(problem, problem.constraints[0]) is problem.constraints[0]
+    assert restate_constraint(problem, problem.constraints[0]) is problem.constraints[0]

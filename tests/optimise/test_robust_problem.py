@@ -15,7 +15,7 @@ from slidercrank.optimise.decisions.price_of_robustness import robust_cost
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust_problem import Robust, nominal_problem, robust, robust_quantities
+from slidercrank.optimise.problem.robust_problem import Robust, nominal_problem, robust_problem, robust_quantities
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
 from slidercrank.optimise.solve import solve
@@ -54,7 +54,7 @@ def plain(designs: int = 3) -> Problem:
 def front(kind: str, order: int) -> ParetoFront:
     with pytest.MonkeyPatch.context() as patch:
         search_little(patch)
-        return solve(robust(plain(), Robust(kind=kind, order=order)))  # type: ignore[arg-type]
+        return solve(robust_problem(plain(), Robust(kind=kind, order=order)))  # type: ignore[arg-type]
 
 
 @pytest.mark.slow
@@ -104,7 +104,7 @@ def test_robustness_costs_something_and_nominal_designs_do_not_keep_their_requir
 def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> None:
     exact = replace(plain(), mechanism=replace(TOLERANT, tolerances=Tolerances()))
     exact = replace(exact, constraints=exact.constraints[:1])  # two sides of one quantity change the order of sums
-    within = robust(exact, Robust(kind=kind))  # type: ignore[arg-type]
+    within = robust_problem(exact, Robust(kind=kind))  # type: ignore[arg-type]
     one, other = (Evaluator(problem, elimination_branches(problem)[0]) for problem in (exact, within))
     points = np.random.default_rng(0).random((2000, one.dimension))
     points = points[one.can_evaluate(points)]
@@ -121,7 +121,7 @@ def test_without_tolerances_the_robust_front_is_the_nominal_one(kind: str) -> No
 
 
 def test_the_nominal_problem_comes_back() -> None:
-    assert nominal_problem(robust(plain(), Robust())) == plain()
+    assert nominal_problem(robust_problem(plain(), Robust())) == plain()
 
 
 def test_equalities_targets_and_position_errors_stay_nominal() -> None:
@@ -130,10 +130,10 @@ def test_equalities_targets_and_position_errors_stay_nominal() -> None:
         {"stroke": 0.1},
         mechanism=TOLERANT,
     )
-    made = robust(asked, Robust())
+    made = robust_problem(asked, Robust())
     assert [o.quantity for o in made.objectives] == ["time_ratio", "peak_torque_robust", "position_error"]
     assert made.constraints == asked.constraints
-    named = robust(asked, Robust(quantities=("position_error",)))
+    named = robust_problem(asked, Robust(quantities=("position_error",)))
     assert [o.quantity for o in named.objectives] == ["time_ratio", "peak_torque", "position_error_robust"]
 
 
@@ -148,7 +148,7 @@ def test_equalities_targets_and_position_errors_stay_nominal() -> None:
 def test_what_cannot_be_robust_is_refused(quantities: tuple[str, ...], words: str) -> None:
     asked = problem({"time_ratio": 1.2, "peak_torque": "minimise"}, {"stroke": 0.1}, mechanism=TOLERANT)
     with pytest.raises(InputError, match=words):
-        robust(asked, Robust(quantities=quantities))
+        robust_problem(asked, Robust(quantities=quantities))
 
 
 def test_a_job_with_the_table_robust_is_a_robust_problem() -> None:

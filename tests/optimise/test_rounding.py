@@ -14,11 +14,11 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.rounded_design import Rounded
-from slidercrank.optimise.front.rounding import rounding
+from slidercrank.optimise.front.rounding import round_design
 from slidercrank.optimise.front.rounding_search import Stage, Steps
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Range
-from slidercrank.optimise.problem.robust_problem import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust_problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import MACHINE, Bounds, Ends, degrees, problem, search_little
 
@@ -151,7 +151,7 @@ def test_near_designs_follow_the_one_whose_round_numbers_keep_an_exact_stroke_at
     asked = problem(PLAIN, {"stroke": 0.24}, crank=(0.05, 0.2), rod=(0.1, 0.6), offset=(0.05, 0.3), designs=2)
     crank, rod = 0.1, 0.35
     offset = np.sqrt((0.12**2 - crank**2) * (4.0 * rod**2 / 0.24**2 - 1.0))  # the stroke in closed form
-    search = rounding(asked, np.array([crank, rod, offset]), np.array([0.5, 0.5]), 0.001, notes=())
+    search = round_design(asked, np.array([crank, rod, offset]), np.array([0.5, 0.5]), 0.001, notes=())
     found = end_of(search)
     assert found.is_met
     np.testing.assert_allclose(found.dimensions[0], (0.096, 0.37, 0.21))  # a Pythagorean triple
@@ -455,7 +455,7 @@ def test_nothing_that_turns_is_said() -> None:
 
 
 def test_robust_requirements_are_kept_by_the_rounded_designs() -> None:
-    asked = robust(problem({"time_ratio": "maximise"}, HELD, designs=4, samples=128), Robust(kind="worst case"))
+    asked = robust_problem(problem({"time_ratio": "maximise"}, HELD, designs=4, samples=128), Robust(kind="worst case"))
     front = solve(asked)
     found = front.rounded(0, 0.0005)
     assert found.is_met

@@ -11,9 +11,9 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.decisions.similar_design import Ends, distance, extend_problem, like
+from slidercrank.optimise.decisions.similar_design import Ends, distance_to_design, extend_problem, like
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.hypervolume import scaling
+from slidercrank.optimise.front.hypervolume import ideal_and_range
 from slidercrank.optimise.problem.problem import Settings
 from slidercrank.optimise.problem.requirements import Constraint, Sense
 from slidercrank.optimise.solve import solve
@@ -46,7 +46,7 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
     given = front(torque)
     row = len(given) // 2
     found = like(given, row, *constraints, ranges=ranges)
-    span = scaling(given.values)[1]
+    span = ideal_and_range(given.values)[1]
     assert len(found) == 1
     assert found.designs["residual"][0] <= 1e-6
     assert found.designs["status"][0] == "stationary"
@@ -61,8 +61,8 @@ def test_it_is_the_nearest_of_the_front_that_the_conditions_leave(case: str) -> 
     dense = solve(replace(found.problem, settings=Settings(designs=30, samples=512)))
     here, there = found.values / span, dense.values / span
     assert not ((there <= here).all(axis=1) & (there < here - 1e-7).any(axis=1)).any()
-    mine = float(distance(found.values, given.values[row], span)[0])
-    nearest = float(distance(dense.values, given.values[row], span).min())
+    mine = float(distance_to_design(found.values, given.values[row], span)[0])
+    nearest = float(distance_to_design(dense.values, given.values[row], span).min())
     assert mine > 1e-3
     assert mine <= nearest + 1e-6
     spacing = float(np.min(np.linalg.norm(there - here, axis=1)))

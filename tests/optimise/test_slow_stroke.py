@@ -13,7 +13,7 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.time_ratio import TIME_RATIO
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.problem import Variant
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.sampling import first_samples
@@ -193,9 +193,11 @@ def test_a_problem_in_python_refuses_what_has_no_side() -> None:
 )
 def test_the_time_ratio_has_a_floor_above_one_unless_the_job_sets_one(ratio: dict[str, float], lower: float) -> None:
     asked = {"slow_stroke": "outward", **({"time_ratio": ratio} if ratio else {})}
-    found = {constraint.quantity: constraint for constraint in constraints_of(parse_job(job(constraints=asked)))}
+    found = {
+        constraint.quantity: constraint for constraint in constraints_with_floors(parse_job(job(constraints=asked)))
+    }
     assert found["time_ratio"].lower == pytest.approx(lower, rel=1e-12)
-    assert "time_ratio" not in {c.quantity for c in constraints_of(parse_job(job()))}
+    assert "time_ratio" not in {c.quantity for c in constraints_with_floors(parse_job(job()))}
 
 
 def test_infeasibility_names_the_slow_stroke_that_stands_in_the_way() -> None:

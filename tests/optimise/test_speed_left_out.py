@@ -65,4 +65,4 @@ def test_a_quantity_follows_the_speed_where_its_values_at_random_speeds_differ()
         speeds = [0.0, *draw.uniform(-300.0, 300.0, 3)]
         values = np.array([of.evaluate(replace(machine, speed=speed), designs).values for speed in speeds])
         spread = np.ptp(values, axis=0) > 1e-9 * abs(values).max(axis=0)
-        assert of.follows_speed(machine) == spread.any(), name
+        assert of.depends_on_speed(machine) == spread.any(), name

@@ -22,7 +22,7 @@ from slidercrank.optimise.front.progress import REPEATING, Progress
 from slidercrank.optimise.methods.auto import partial_front
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search import assemble_front, checkpoints, sample_and_zoom
-from slidercrank.optimise.search.assemble_front import columns_of
+from slidercrank.optimise.search.assemble_front import columns_of_designs
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 
@@ -137,7 +137,7 @@ def test_designs_with_thousands_of_steps_are_analysed_few_at_a_time_and_come_out
     def columns(some: Array) -> Columns:
         asked.append(0)
         with interrupted_by(lambda: None, between_parts=lambda: asked.append(asked.pop() + 1)):
-            return columns_of(stepping, np.zeros(len(some), np.int64), some)
+            return columns_of_designs(stepping, np.zeros(len(some), np.int64), some)
 
     whole = columns(designs)
     each = [columns(design[None]) for design in designs]
@@ -153,10 +153,10 @@ def test_a_cancelled_front_has_as_many_designs_as_are_analysed_in_a_moment(monke
         if "polishing" in heard:
             analysed.append(len(dimensions))
             time.sleep(0.1 * len(dimensions))
-        return columns_of(given, variants, dimensions, *rest)
+        return columns_of_designs(given, variants, dimensions, *rest)
 
     for module in (partial_front, assemble_front):
-        monkeypatch.setattr(module, "columns_of", slowly)
+        monkeypatch.setattr(module, "columns_of_designs", slowly)
     heard: list[str] = []
     given = replace(GIVEN, settings=replace(GIVEN.settings, designs=40))
     front = solve(given, progress=lambda at: heard.append(at.stage), cancelled=saying(heard, "polishing"))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.optimise.front.stationarity import multipliers, multipliers_with_positive_weights
+from slidercrank.optimise.front.stationarity import multipliers_with_positive_weights, optimality_multipliers
 
 Array = NDArray[np.float64]
 cp: Any = cvxpy  # its own types know neither `sum` nor `norm`
@@ -37,7 +37,7 @@ def least(goals: Array, active: Array, groups: list[list[int]] | None) -> float:
 def test_the_residual_is_the_least_norm_of_a_cone_programme(seed: int) -> None:
     """The cone programme is solved to 1e-8 of the gradients' size."""
     goals, _, active = instance(seed)
-    residual, convex, pushing = multipliers(goals, active)
+    residual, convex, pushing = optimality_multipliers(goals, active)
     assert residual == pytest.approx(least(goals, active, None), abs=1e-6)
     assert convex.min() >= 0.0
     assert convex.sum() == pytest.approx(1.0, rel=1e-12)
@@ -59,18 +59,18 @@ def test_the_strict_residual_lets_every_objective_carry_weight(seed: int) -> Non
 
 
 def test_one_free_gradient_is_its_own_residual() -> None:
-    assert multipliers(np.array([[3.0, 4.0, 0.0]]), NOTHING)[0] == pytest.approx(5.0, rel=1e-14)
+    assert optimality_multipliers(np.array([[3.0, 4.0, 0.0]]), NOTHING)[0] == pytest.approx(5.0, rel=1e-14)
 
 
 def test_an_active_constraint_takes_what_points_into_it() -> None:
     """Minimising along (3, 4) against a wall whose outward normal is (-1, 0): what is left is 4."""
-    residual, _, pushing = multipliers(np.array([[3.0, 4.0]]), np.array([[-2.0, 0.0]]))
+    residual, _, pushing = optimality_multipliers(np.array([[3.0, 4.0]]), np.array([[-2.0, 0.0]]))
     assert residual == pytest.approx(4.0, rel=1e-14)
     assert pushing == pytest.approx([1.5], rel=1e-12)
 
 
 def test_a_constraint_is_not_pulled() -> None:
-    residual, _, pushing = multipliers(np.array([[3.0, 4.0]]), np.array([[2.0, 0.0]]))
+    residual, _, pushing = optimality_multipliers(np.array([[3.0, 4.0]]), np.array([[2.0, 0.0]]))
     assert residual == pytest.approx(5.0, rel=1e-14)
     assert pushing == pytest.approx([0.0], abs=1e-14)
 
@@ -79,19 +79,22 @@ def test_a_constraint_is_not_pulled() -> None:
 def test_the_residual_scales_with_the_gradients_and_not_with_the_constraints(size: float) -> None:
     for seed in (1, 2, 4):
         goals, owner, active = instance(seed)
-        plain, strict = multipliers(goals, active)[0], multipliers_with_positive_weights(goals, owner, active)[0]
+        plain, strict = (
+            optimality_multipliers(goals, active)[0],
+            multipliers_with_positive_weights(goals, owner, active)[0],
+        )
         assert plain > 0.1
-        assert multipliers(size * goals, active)[0] == pytest.approx(size * plain, rel=1e-9)
-        assert multipliers(goals, size * active)[0] == pytest.approx(plain, rel=1e-9)
+        assert optimality_multipliers(size * goals, active)[0] == pytest.approx(size * plain, rel=1e-9)
+        assert optimality_multipliers(goals, size * active)[0] == pytest.approx(plain, rel=1e-9)
         assert multipliers_with_positive_weights(size * goals, owner, active)[0] == pytest.approx(
             size * strict, rel=1e-9
         )
 
 
 def test_a_design_without_freedom_is_stationary() -> None:
-    assert multipliers(np.zeros((2, 0)), np.zeros((0, 0)))[0] == 0.0
+    assert optimality_multipliers(np.zeros((2, 0)), np.zeros((0, 0)))[0] == 0.0
 
 
 def test_vanishing_gradients_are_stationary() -> None:
-    assert multipliers(np.zeros((2, 3)), NOTHING)[0] == 0.0
+    assert optimality_multipliers(np.zeros((2, 3)), NOTHING)[0] == 0.0
     assert multipliers_with_positive_weights(np.zeros((2, 3)), np.arange(2), NOTHING)[0] == 0.0

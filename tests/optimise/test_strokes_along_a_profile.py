@@ -11,7 +11,7 @@ from slidercrank.model.errors import InputError, JobError
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.constraint_violation import constraints_of
+from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.stroke_warnings import front_stroke_warnings, stroke_warnings
@@ -141,7 +141,7 @@ def test_bounds_of_the_closed_form_refuse_no_time_ratio_that_a_profile_gives() -
 
 def test_the_floor_of_a_slow_stroke_is_that_of_its_time_ratio() -> None:
     def bounds(**changes: Any) -> dict[str, Any]:
-        return {item.quantity: item for item in constraints_of(parse_job(job(constraints=changes)))}
+        return {item.quantity: item for item in constraints_with_floors(parse_job(job(constraints=changes)))}
 
     assert bounds(slow_stroke="outward")["outward_to_inward_time_ratio"].lower == pytest.approx(1.01, rel=1e-15)
     assert bounds(slow_stroke="inward")["inward_to_outward_time_ratio"].lower == pytest.approx(1.01, rel=1e-15)

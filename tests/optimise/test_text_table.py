@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.job.text_table import bytes_of, read_table, text_of
+from slidercrank.optimise.job.text_table import decode_file_text, read_file_bytes, read_table
 
 SEPARATORS = {";": ".,", "\t": ".,", "|": ".,", " ": ".,", ",": "."}
 """Each with the decimal signs that go with it."""
@@ -70,7 +70,7 @@ def test_200_random_tables_in_30_dialects_are_read_back_to_the_bit() -> None:
         numbers[0, 0] = 0.25  # says the decimal sign
         dialect = DIALECTS[case % 30]
         content = written(numbers, dialect)
-        table = read_table(text_of(content, "the file"), "the file")
+        table = read_table(decode_file_text(content, "the file"), "the file")
         assert len(table.heads) == shape[1], (dialect, table.heads)
         assert table.heads[1] == "Weg_µm", dialect
         np.testing.assert_array_equal(np.column_stack(table.numbers(range(shape[1]))), numbers, err_msg=str(dialect))
@@ -163,7 +163,7 @@ def test_one_row_and_a_negative_zero_are_reported_as_people_write_them() -> None
 
 def test_a_folder_is_refused_once(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"^the file must be a file; got a folder; name a file in it$"):
-        bytes_of(tmp_path, "the file", 10)
+        read_file_bytes(tmp_path, "the file", 10)
 
 
 def test_a_line_of_texts_and_units_is_a_row() -> None:

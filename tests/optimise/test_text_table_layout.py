@@ -7,7 +7,7 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.job.text_table import read_table
-from slidercrank.optimise.job.text_table_layout import title_lines
+from slidercrank.optimise.job.text_table_layout import title_line_count
 
 TITLES = ["Measurement", "Press 7", "2026-05-01", "Müller", "1000 Hz", "", "Kistler 9311B", "12", "ok"]
 
@@ -55,4 +55,4 @@ def test_a_row_of_more_cells_names_the_lines_above_as_a_cause() -> None:
 
 
 def test_rows_of_texts_alone_have_no_titles() -> None:
-    assert title_lines([]) == title_lines([["a"]]) == title_lines([["a", "b"], ["c", "d"]]) == 0
+    assert title_line_count([]) == title_line_count([["a"]]) == title_line_count([["a", "b"], ["c", "d"]]) == 0

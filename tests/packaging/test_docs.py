@@ -16,7 +16,7 @@ from benchmarks import glossary_sketch
 from docs.site import hooks
 from slidercrank.model.errors import JobError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.optimise.job import load_job, parse_job, with_files
+from slidercrank.optimise.job import load_job, parse_job, with_file_contents
 from slidercrank.optimise.search.stroke_warnings import stroke_warnings
 from slidercrank.optimise.solve import solve
 from slidercrank.service.api.preview import AllowedModel, PreviewModel
@@ -234,7 +234,7 @@ def test_the_parts_of_jobs_that_the_pages_show_are_valid(pages: dict[Path, str],
                 job[name] = {**whole[name], **part[name]}
         if "cycle_time" in job["mechanism"]:
             del job["mechanism"]["speed"]
-        assert parse_job(with_files(job, tmp_path)).name == "Press feed"
+        assert parse_job(with_file_contents(job, tmp_path)).name == "Press feed"
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from docs.site.python_reference import folder_reference, front_door_reference
 from docs.site.quantity_reference import quantity_reference, requirement, section
 from docs.site.schema_tables import kind
 from slidercrank.objectives.registry import FACTS
-from slidercrank.optimise.job import job_schema, parse_job, with_files
+from slidercrank.optimise.job import job_schema, parse_job, with_file_contents
 from tests.optimise.problems import LEVER, SHAPER
 
 
@@ -57,7 +57,8 @@ def test_examples_of_the_reference_of_jobs_are_parts_of_jobs(tmp_path: Path) -> 
         merged = {**whole[name], **table} if isinstance(whole.get(name), dict) and name != "objectives" else table
         if not swings:
             assert (
-                parse_job(with_files({**whole, name: merged}, tmp_path), require_feasible=False).name == whole["name"]
+                parse_job(with_file_contents({**whole, name: merged}, tmp_path), require_feasible=False).name
+                == whole["name"]
             ), block
 
 

@@ -17,9 +17,9 @@ from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.mechanism import Window
 from slidercrank.model.tolerance.first_order import first_order_position_errors
 from slidercrank.optimise.job import load_job
-from slidercrank.optimise.sizing.counterweight import RodSpace, balance
+from slidercrank.optimise.sizing.counterweight import RodSpace, best_balance
 from slidercrank.optimise.sizing.input_words import Kind
-from slidercrank.optimise.sizing.tolerance_allocation import allocate
+from slidercrank.optimise.sizing.tolerance_allocation import allocate_tolerances
 from slidercrank.service.figures.panel_drawing import draw_panel_figure
 from slidercrank.service.questions.allocate.figure import allocation_curves, allocation_figure
 from slidercrank.service.questions.counterweight import analysis as counterweight
@@ -97,7 +97,7 @@ def test_allocation_is_that_of_the_model(job: Path, command: Command) -> None:
     assert done.exit_code == 0, done.stderr
     numbers, problem = json.loads(done.stdout), load_job(job)
     assert problem.costs is not None
-    found = allocate(LINKAGE, problem.costs, 3e-4, "rss", mechanism=problem.mechanism)
+    found = allocate_tolerances(LINKAGE, problem.costs, 3e-4, "rss", mechanism=problem.mechanism)
     assert numbers["cost"] == pytest.approx(found.cost, rel=1e-12)
     assert numbers["error_mm"] == pytest.approx(0.3, rel=1e-10)
     assert numbers["saving_per_um"] == pytest.approx(1e-6 * found.saving, rel=1e-12)
@@ -117,7 +117,7 @@ def test_balance_is_that_of_the_model(job: Path, command: Command) -> None:
     done = command("balance", job, "--offset", "60 mm", "--radius", "80 mm", "--mass", "6 kg", "--json")
     assert done.exit_code == 0, done.stderr
     numbers, mechanism = json.loads(done.stdout), load_job(job).mechanism
-    found = balance(mechanism, LINKAGE, radius=0.08, greatest_moment=0.48)
+    found = best_balance(mechanism, LINKAGE, radius=0.08, greatest_moment=0.48)
     assert numbers["counterweight_moment_kg_m"] == pytest.approx(found.moment, rel=1e-9)
     assert numbers["counterweight_kg"] == pytest.approx(found.moment / 0.08, rel=1e-9)
     weight = Counterweight(
@@ -204,7 +204,7 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
     window = Window(during="inward stroke", start=0.2, end=0.9)
     tolerances = dataclasses.replace(problem.mechanism.tolerances, window=window)
     mechanism = dataclasses.replace(problem.mechanism, tolerances=tolerances)
-    found = allocate(LINKAGE, problem.costs, 3e-4, kind, mechanism=mechanism)
+    found = allocate_tolerances(LINKAGE, problem.costs, 3e-4, kind, mechanism=mechanism)
     data = allocation_curves(found, LINKAGE, problem.costs, mechanism)
     theta = np.radians(data.angles)
     now, before = (first_order_position_errors(each, LINKAGE, theta) for each in (found.mechanism, mechanism))
@@ -233,7 +233,7 @@ def test_the_figure_of_an_allocation_draws_what_the_model_gives(kind: Kind, job:
 def test_the_figure_of_a_balance_draws_what_the_model_gives(space: RodSpace | None, job: Path) -> None:
     problem = load_job(job)
     mechanism = problem.mechanism
-    found = balance(mechanism, LINKAGE, rod=space)
+    found = best_balance(mechanism, LINKAGE, rod=space)
     sheet = counterweight.figure(mechanism, LINKAGE, optimum=found, problem=problem)
     assert len(sheet.panels) == (2 if space is None else 3)
     theta = np.radians(sheet.panels[1].lines[0].x)

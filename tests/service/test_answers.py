@@ -15,7 +15,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.objectives.column_keys import kind_of_key, split_unit
+from slidercrank.objectives.column_keys import kind_of_key, name_unit_and_factor_of_key
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
@@ -127,7 +127,7 @@ def assert_in_inches(metric: Any, inch: Any, factor: float = 1.0) -> None:
             own = kind.display_unit("inch").factor / kind.metric.factor
             expected = OTHER_KEYS.get(key, (name + kind.display_unit("inch").suffix if kind.inch else key, own))
             assert shown == expected[0]
-            assert_in_inches(value, other, expected[1] if split_unit(key)[1] else factor)
+            assert_in_inches(value, other, expected[1] if name_unit_and_factor_of_key(key)[1] else factor)
     elif isinstance(metric, list):
         for one, other in zip(metric, inch, strict=True):
             assert_in_inches(one, other, factor)
@@ -231,7 +231,7 @@ def test_a_schema_is_closed_says_its_units_and_why_a_number_may_be_null(name: st
     assert all(record["additionalProperties"] is False and record["description"] for record in records)
     for record in records:
         for key, of in record["properties"].items():
-            _, unit, _ = split_unit(key.partition("_per_")[0])
+            _, unit, _ = name_unit_and_factor_of_key(key.partition("_per_")[0])
             assert unit in of["title"]
             items = of.get("items", {})
             for value in (of, items):

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare
+from slidercrank.optimise.decisions.front_comparison import compare_fronts
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.service.agents.call import Call
 from slidercrank.service.agents.server import TOOLS
@@ -55,7 +55,7 @@ def names(runs: Path, tmp_path: Path) -> list[str]:
 
 def test_json_is_the_comparison(names: list[str], command: Command) -> None:
     record = json.loads(command("compare", *names, "--json").stdout)
-    expected = compare([part(slice(0, 20)).values, part(slice(10, 30)).values])
+    expected = compare_fronts([part(slice(0, 20)).values, part(slice(10, 30)).values])
     assert [run["run"] for run in record["runs"]] == names
     assert [run["method"] for run in record["runs"]] == ["auto", "unknown"]
     assert [run["seed"] for run in record["runs"]] == [1, 2]
@@ -69,7 +69,7 @@ def test_json_is_the_comparison(names: list[str], command: Command) -> None:
 
 def test_the_table_says_the_same(names: list[str], command: Command) -> None:
     done = command("compare", *names)
-    expected = compare([part(slice(0, 20)).values, part(slice(10, 30)).values])
+    expected = compare_fronts([part(slice(0, 20)).values, part(slice(10, 30)).values])
     assert done.exit_code == 0
     for index, name in enumerate(names):
         line = next(line for line in done.stdout.splitlines() if line.split()[:2] == [str(index + 1), name])

@@ -13,7 +13,7 @@ from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.cylinder_machines import single_cylinder
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.sizing.counterweight import balance
+from slidercrank.optimise.sizing.counterweight import best_balance
 from slidercrank.service.questions.cylinders import analysis
 from slidercrank.service.questions.motor import analysis as motor
 from tests.service.conftest import Command
@@ -32,7 +32,7 @@ def test_the_figure_draws_the_whole_and_each() -> None:
 
 def test_what_is_of_one_cylinder_says_so() -> None:
     with pytest.raises(InputError, match=r"one cylinder; got 2 cylinders at 0, 171.887 deg, at 0, 100 mm along"):
-        balance(TWO, LINKAGE)
+        best_balance(TWO, LINKAGE)
 
 
 def test_the_motor_is_that_of_all_cylinders() -> None:

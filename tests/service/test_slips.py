@@ -12,7 +12,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import InfeasibleError, InputWarning, JobError
-from slidercrank.optimise.job import with_files
+from slidercrank.optimise.job import with_file_contents
 from slidercrank.optimise.job.job_file import toml_tables
 from slidercrank.service.api.job_files import Understood
 from slidercrank.service.api.preview import Draft, preview_job
@@ -93,7 +93,7 @@ def page_findings(text: str, files: dict[str, str]) -> tuple[list[str], bool, Un
         for choice in job.get("choice", ()):
             if choice["file"] in files:
                 choice["table"] = files[choice.pop("file")]
-        job = with_files(job, {name: content.encode() for name, content in files.items()})
+        job = with_file_contents(job, {name: content.encode() for name, content in files.items()})
     except JobError as error:
         return [str(error)], False, None
     found = preview_job(Draft(job=job), Settings())

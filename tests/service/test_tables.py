@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from slidercrank.objectives.column_keys import split_unit
+from slidercrank.objectives.column_keys import name_unit_and_factor_of_key
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.rounding_noise import row_without_noise
 from slidercrank.service.runs.result import Result, StoredObjective
@@ -89,7 +89,7 @@ def test_columns_of_a_catalogue_keep_their_unit_and_say_what_suffices() -> None:
         "least_gearmotor_output_speed_1_min",
         "least_flow_L_min",
     ]
-    assert split_unit("output_speed_1_min") == ("output_speed", "1/min", 60.0)
+    assert name_unit_and_factor_of_key("output_speed_1_min") == ("output_speed", "1/min", 60.0)
     titles = [(find_column(key, keys).title, find_column(key, keys).unit) for key in keys[-3:]]
     assert titles == [
         ("smallest sufficient gearmotor", ""),

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.column_keys import column_key_in_system, metric_key, split_unit
+from slidercrank.objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
 from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
 from slidercrank.objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 from slidercrank.service.designs.columns import find_column
@@ -66,7 +66,9 @@ def test_keys_carry_the_unit_of_their_values(key: str, shown: str, metric: float
     assert convert_row({key: metric}, "inch") == {shown: pytest.approx(inch, rel=1e-15)}
     assert metric_key(shown) == key
     assert find_column(shown, [shown]).title == find_column(key, [key]).title
-    assert split_unit(shown)[2] / split_unit(key)[2] == pytest.approx(column_key_in_system(key, "inch")[1])
+    assert name_unit_and_factor_of_key(shown)[2] / name_unit_and_factor_of_key(key)[2] == pytest.approx(
+        column_key_in_system(key, "inch")[1]
+    )
 
 
 def test_what_is_no_number_stays_at_any_depth() -> None:
@@ -100,7 +102,7 @@ def test_the_order_the_marks_and_the_ranks_are_those_of_the_metric_result() -> N
             for item, rows in ((wanted, result.designs), (shown, inch.designs))
         ]
         assert np.argsort(ranks[0]).tolist() == np.argsort(ranks[1]).tolist()
-        assert split_unit(shown.column)[1] == shown.unit
+        assert name_unit_and_factor_of_key(shown.column)[1] == shown.unit
 
 
 def test_trade_offs_tell_the_same_rates_in_readable_steps() -> None:
@@ -137,7 +139,9 @@ def test_csv_in_inches_reads_back_to_the_metric_values(run: Path, command: Comma
                 assert str(value) == str(told)
             else:
                 assert told is not None
-                assert float(told) / split_unit(shown)[2] == pytest.approx(value / split_unit(key)[2], rel=1e-12)  # type: ignore[operator]
+                assert float(told) / name_unit_and_factor_of_key(shown)[2] == pytest.approx(
+                    value / name_unit_and_factor_of_key(key)[2], rel=1e-12
+                )  # type: ignore[operator]
 
 
 def test_tables_json_and_the_environment_follow(run: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,10 +14,10 @@ from ....model.arrays import Array, IntArray, Mask, sorted_unique
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import ReportProgress, choose_designs
-from ...front.neighbours import neighbours
+from ...front.neighbours import nearest_neighbours
 from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
-from ...search.assemble_front import SELECTING, assemble, span_of
+from ...search.assemble_front import SELECTING, assemble_front, objective_ranges
 from ...search.candidates import SAME, Candidates, FrontCandidates, Polished, stack_rows
 from ...search.evaluation import Evaluator
 from ...search.recorded_polish import polish_recorded, project_recorded
@@ -32,7 +32,7 @@ from ...search.sample_and_zoom import (
     samples_per_branch,
     searched_evaluators,
 )
-from ...search.sampling import first_samples, generator, sample_near
+from ...search.sampling import first_samples, random_generator, sample_near
 from ..registry import Method
 
 ROUNDS = 4
@@ -60,10 +60,10 @@ def search_with(method: Method, problem: Problem, evaluators: list[Evaluator], r
     enumerate_branches(problem, evaluators, run)
     free = searched_evaluators(evaluators)
     archive = method.search(problem, free, run) if free else Archive.empty(len(problem.objectives))
-    return (deliver if method.polishes else deliver_unpolished)(problem, evaluators, archive, run)
+    return (deliver_front if method.polishes else deliver_unpolished)(problem, evaluators, archive, run)
 
 
-def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
+def deliver_front(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
     """Return the front from the enumerated designs and those of an archive; None if none could be made feasible."""
     candidates, free = _start_candidates(problem, archive, run), searched_evaluators(evaluators)
     several = len(problem.objectives) > 1
@@ -90,7 +90,7 @@ def deliver(problem: Problem, evaluators: list[Evaluator], archive: Archive, run
         starts = points_to_polish_next(problem, free, archive, candidates, attempt, run.stage_reporter(SELECTING))
         if not starts:
             break
-    return assemble(problem, evaluators, candidates, run) if len(candidates) else None
+    return assemble_front(problem, evaluators, candidates, run) if len(candidates) else None
 
 
 def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: Archive, run: Run) -> ParetoFront | None:
@@ -103,7 +103,7 @@ def deliver_unpolished(problem: Problem, evaluators: list[Evaluator], archive: A
     for group in archive.feasible_and_infeasible():
         rows = _rows_to_polish(problem, group, evaluators[0], run) if several else slice(_STARTS)
         add_projected(candidates, group[rows], evaluators)
-    return assemble(problem, evaluators, candidates, run) if len(candidates) else None
+    return assemble_front(problem, evaluators, candidates, run) if len(candidates) else None
 
 
 def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCandidates:
@@ -111,7 +111,9 @@ def _start_candidates(problem: Problem, archive: Archive, run: Run) -> FrontCand
     values = np.concatenate([archive.values, run.candidates.values])
     if len(problem.objectives) > 1:
         values = values[nondominated(values)]
-    run.candidates = run.candidates.only_enumerated(span_of(problem, values) if len(values) else run.candidates.span)
+    run.candidates = run.candidates.only_enumerated(
+        objective_ranges(problem, values) if len(values) else run.candidates.span
+    )
     return run.candidates
 
 
@@ -222,7 +224,7 @@ def _screen_fresh_points(
 ) -> None:
     """Screen new points everywhere, polished designs, points around them, and all these on other branches."""
     seed, k = problem.settings.seed, len(evaluators)
-    random = generator(seed, 2000, attempt)
+    random = random_generator(seed, 2000, attempt)
     everywhere = samples_per_branch(problem.settings.samples or FIRST, evaluators)
     nearby = -(-(problem.settings.samples or SAMPLES) // k)
 
@@ -260,7 +262,7 @@ def _midpoints_of_gaps(evaluators: list[Evaluator], best: FrontCandidates, count
     n, m = scaled.shape
     if n < 2:
         return []
-    _, nearest = neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
+    _, nearest = nearest_neighbours(scaled, min(n, 1 + _NEIGHBOURS * m))
     neighbour_pairs = np.stack(np.broadcast_arrays(np.arange(n)[:, None], nearest), axis=-1).reshape(-1, 2)
     pairs = sorted_unique(np.sort(neighbour_pairs), axis=0)
     pairs = pairs[pairs[:, 0] != pairs[:, 1]]

@@ -13,7 +13,7 @@ from ....objectives.own.quantity import runs_custom_function
 from ...front.dominance import nondominated
 from ...front.front import ParetoFront
 from ...problem.problem import Problem
-from ...search.assemble_front import assemble, columns_of, empty_front, span_of
+from ...search.assemble_front import assemble_front, columns_of_designs, empty_front, objective_ranges
 from ...search.candidates import FrontCandidates
 from ...search.checkpoints import Cancelled
 from ...search.evaluation import Evaluator
@@ -65,7 +65,7 @@ def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> 
     seconds = min(max(_LEAST, _SHARE * run.checkpoints.seconds), _MOST_SECONDS)
     if len(archive):
         if not candidates.free.any():
-            span = span_of(problem, np.concatenate([archive.values, candidates.values]))
+            span = objective_ranges(problem, np.concatenate([archive.values, candidates.values]))
             candidates = candidates.only_enumerated(span)
         _add_archive(problem, evaluators, archive, candidates, _PROJECTING * seconds)
     if not len(candidates):
@@ -74,7 +74,7 @@ def _assemble_front(problem: Problem, evaluators: list[Evaluator], run: Run) -> 
     best = candidates.best()
     rows = best[_evenly_spread_rows(candidates.values[best], problem.settings.designs)]
     rows = _rows_in_time(problem, evaluators, candidates, rows, _ANALYSING * seconds)
-    return assemble(problem, evaluators, candidates, run, rows)
+    return assemble_front(problem, evaluators, candidates, run, rows)
 
 
 def _add_archive(
@@ -114,7 +114,7 @@ def _rows_in_time(
     while count <= _TRIED and count < len(rows) and (begin := time.perf_counter()) < end:
         sample = candidates[rows[:: -(-len(rows) // count)]]
         variants = np.array([evaluators[index].branch.variant for index in sample.branch], dtype=np.int64)
-        columns_of(problem, variants, sample.dimensions(evaluators))
+        columns_of_designs(problem, variants, sample.dimensions(evaluators))
         count, seconds_per_design = 2 * count, (time.perf_counter() - begin) / len(sample)
     return rows[_evenly_spread_rows(candidates.values[rows], max(1, int(seconds / seconds_per_design)))]
 

@@ -28,7 +28,7 @@ class Point:
     """A design during a descent: its position, its rows, and the last programme there.
 
     u: (k,). goals: pieces of the objective, scaled. limits: constraint rows. step: last step, with its multipliers.
-    residual: see `residual_of`.
+    residual: see `lagrangian_residual`.
     """
 
     u: Array
@@ -68,7 +68,7 @@ class Descent:
             step, weight = self._step_and_penalty(point, root, radius, weight)
             if step is None:
                 break
-            point.step, point.residual = step, residual_of(point, step)
+            point.step, point.residual = step, lagrangian_residual(point, step)
             still = float(np.abs(step.move).max()) < _SHORTEST
             converged = point.residual <= CONVERGED and point.violation <= _MET
             if converged or radius < _SHORTEST or still or iteration == _ITERATIONS - 1:
@@ -77,7 +77,7 @@ class Descent:
             step, weight = self._step_and_penalty(point, root, radius, weight)
             if step is None:
                 break
-            gain, trial = self._try(point, step, root, weight)
+            gain, trial = self._try_step(point, step, root, weight)
             if gain < _POOR:
                 again = self._try_second_order_correction(point, trial, step, root, radius, weight)
                 if again is not None and again[0] > gain:
@@ -123,7 +123,7 @@ class Descent:
                 return step, weight  # no step within the radius removes the violation
             weight *= 10.0
 
-    def _try(self, point: Point, step: Step, root: Array, weight: float) -> tuple[float, Point | None]:
+    def _try_step(self, point: Point, step: Step, root: Array, weight: float) -> tuple[float, Point | None]:
         """Return actual over predicted decrease, and the design after a step; None if it cannot rotate fully."""
         predicted = weight * (point.violation - step.slack) - step.top - 0.5 * float(np.sum((root @ step.move) ** 2))
         u = np.clip(point.u + step.move, 0.0, 1.0)
@@ -151,7 +151,7 @@ class Descent:
             return None
         # Judged by the decrease that the first step predicted, because the corrected rows predict what they were built
         # to.
-        return self._try(point, replace(step, move=corrected.move), root, weight)
+        return self._try_step(point, replace(step, move=corrected.move), root, weight)
 
     def _hessian_root(self, point: Point, step: Step) -> Array:
         """Return R with R'R the Lagrangian's Hessian, convexified along the active rows."""
@@ -171,7 +171,7 @@ class Descent:
         )
 
 
-def residual_of(point: Point, step: Step) -> float:
+def lagrangian_residual(point: Point, step: Step) -> float:
     """Return the norm of the Lagrangian's gradient, plus complementarity gap, plus violation."""
     left = (
         step.goals @ np.where(step.goals[:, None] > 0.0, point.goals.gradients, 0.0)

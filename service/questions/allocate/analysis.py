@@ -16,7 +16,7 @@ from ....objectives.kinds import ANGLE, LENGTH, display_unit
 from ....optimise.problem.problem import Problem
 from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.input_words import Kind
-from ....optimise.sizing.tolerance_allocation import Allocation, allocate
+from ....optimise.sizing.tolerance_allocation import Allocation, allocate_tolerances
 from ...render.blocks import (
     Block,
     Table,
@@ -108,7 +108,7 @@ def compute_shared_options(
             "allocation needs the costs of the tolerances; this job has no [costs]; add for example [costs] crank = { "
             'cost = 8.0, at = "0.05 mm" }'
         )
-    allocation = allocate(linkage, problem.costs, limit, kind, mechanism=mechanism)
+    allocation = allocate_tolerances(linkage, problem.costs, limit, kind, mechanism=mechanism)
     return {"allocation": allocation, "costs": problem.costs}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
-from ....optimise.decisions.front_comparison import compare
+from ....optimise.decisions.front_comparison import compare_fronts
 from ...designs.design_selection_options import minimised_values
 from ...designs.display_units import convert_objective
 from ...designs.front_comparison import comparison_sentences
@@ -53,7 +53,7 @@ def analyse(runs: Sequence[ComparedRun], *, tolerance: float = 1e-6, **_: Any) -
         solved = [replace(run, result=_reorder_objectives(run.result, solved[0].result)) for run in solved]
         values = [minimised_values(run.result) for run in solved]
         if all(np.isfinite(front).all() for front in values):
-            comparison = compare(values, tolerance=tolerance)
+            comparison = compare_fronts(values, tolerance=tolerance)
     places = differences_between_jobs([run.tables for run in runs if run.tables is not None])
     sentences = {system: _better_sentences(solved, system) for system in _SYSTEMS}
     caution = _different_jobs_sentence(len(runs), places) if sentences["metric"] else []

@@ -13,7 +13,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, display_unit
 from ....optimise.problem.problem import Problem
-from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, balance
+from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, best_balance
 from ....optimise.sizing.input_words import Measure
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import (
@@ -86,7 +86,7 @@ def compute_shared_options(
 ) -> dict[str, Any]:
     """Return the balance that numbers and figure share. inputs: remaining inputs, in SI."""
     at = radius or mechanism.counterweight.radius or float(linkage.crank)
-    optimum = balance(
+    optimum = best_balance(
         mechanism,
         linkage,
         measure=measure,
@@ -209,7 +209,7 @@ def figure(_: Mechanism, __: Linkage, *, optimum: Balance, problem: Problem, **o
     """Return the hodograph and the force before and after, and the moment if a rod balance changes it."""
     theta = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
     degrees = np.degrees(theta)
-    curves = list(enumerate(zip(("before", "after"), optimum.hodograph(theta), strict=True)))
+    curves = list(enumerate(zip(("before", "after"), optimum.shaking_before_and_after(theta), strict=True)))
     hodographs = tuple(Line(name, shaking.force_x, shaking.force_y, n) for n, (name, shaking) in curves)
     sizes = (Line(name, degrees, np.hypot(shaking.force_x, shaking.force_y), n) for n, (name, shaking) in curves)
     x_title = words("horizontal: along the slider line, {unit}; vertical: across it", unit=Unit(FORCE))

@@ -10,9 +10,9 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....optimise.decisions.similar_design import Ends, distance, intersect_ranges, nearest_optimal_design
+from ....optimise.decisions.similar_design import Ends, distance_to_design, intersect_ranges, nearest_optimal_design
 from ....optimise.front.front import ParetoFront
-from ....optimise.front.hypervolume import scaling
+from ....optimise.front.hypervolume import ideal_and_range
 from ....optimise.problem.problem import Problem
 from ....optimise.problem.requirements import Constraint
 from ...designs.display_units import convert_record
@@ -32,7 +32,7 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
     front.part(row)  # raises an error for an invalid row
     before = rows_of_columns(front.columns)[row]
     constraints, ranges = _added_constraints(where, before, front.problem)
-    values, span = front.values[row], scaling(front.values)[1]
+    values, span = front.values[row], ideal_and_range(front.values)[1]
     similar = nearest_optimal_design(front.problem, before, values, span, constraints, ranges)
     record: dict[str, Any] = {"status": similar.status, "message": similar.message}
     if not len(similar):
@@ -40,7 +40,11 @@ def analyse(front: ParetoFront, *, row: int, where: Sequence[str], **_: Any) -> 
             record=lambda _: record, blocks=[Sentence(similar.message)], is_satisfied=False, message=similar.message
         )
     after = rows_of_columns(similar.columns)[0]
-    record |= {"distance": float(distance(similar.values, values, span)[0]), "design": after, "before": before}
+    record |= {
+        "distance": float(distance_to_design(similar.values, values, span)[0]),
+        "design": after,
+        "before": before,
+    }
     record["moved"] = {key: value for key in after if (value := _change_of(before, after, key)) is not None}
     title = heading(
         f"{{name}}: like design {row % len(front) + 1}, with {{where}}",

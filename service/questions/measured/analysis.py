@@ -12,7 +12,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import cycle_turns
 from ....objectives.column_keys import kind_of_key
-from ....objectives.count_text import counted
+from ....objectives.count_text import count_with_noun
 from ....objectives.kinds import ANGLE
 from ....objectives.tables.curve_deviation import Deviation, deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
@@ -125,7 +125,9 @@ def blocks(numbers: Deviations) -> list[Block]:
     curve, unit_column = column("curve", left=True), column("unit", left=True)
     sizes = [column(name) for name in ("samples", "RMS", "mean", "largest")]
     return [
-        heading(f"Measured minus computed, {counted(numbers['rows'], 'row')}{source}; RMS and mean over the samples"),
+        heading(
+            f"Measured minus computed, {count_with_noun(numbers['rows'], 'row')}{source}; RMS and mean over the samples"
+        ),
         Table((curve, *sizes, column("at", ANGLE), unit_column), tuple(deviations), ruled=True),
         heading("Shifts that, added to the measured curves, give the best fit; not applied above"),
         Table(

@@ -16,7 +16,7 @@ from ....model.machine.cylinder_machines import member_machines
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....objectives.average_torque import MEAN_TORQUE
-from ....objectives.flow import FLOW, FLOW_RIPPLE, pumps_of
+from ....objectives.flow import FLOW, FLOW_RIPPLE, liquid_pumps
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
 from ....objectives.peak_torque import PEAK_TORQUE
 from ....objectives.quantity import Quantity
@@ -74,7 +74,9 @@ def _with_pressures_only(mechanism: Mechanism) -> Mechanism:
 def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
     """Return the flow of each liquid cylinder, m^3/s, at crank angles of the shaft, rad."""
     flows = []
-    pumps = [(pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in pumps_of(mechanism).values()]
+    pumps = [
+        (pump.area, 1.0 if pump.head == "outer dead centre" else -1.0) for pump in liquid_pumps(mechanism).values()
+    ]
     for member in member_machines(mechanism):
         rate = linkage.at(theta + member.lead, speed=mechanism.speed).slider_velocity * mechanism.sign
         flows.append(sum((area * np.maximum(sign * rate, 0.0) for area, sign in pumps), np.zeros(len(theta))))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.column_keys import column_key_in_system, metric_key, split_unit
+from ....objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
 from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
 from ....objectives.units import kind_of_symbol, quote
 from ....optimise.front.progress import stage_text
@@ -88,14 +88,14 @@ def _rounded_result(rounded: Rounded, row: int) -> Answer:
 def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
     from ....model.machine.raw_numbers_of_designs import unit_of_number
-    from ....objectives.tables.variable_columns import varying_column
+    from ....objectives.tables.variable_columns import column_of_variable
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}
     for item in part.mechanism.varying:
-        column_key = varying_column(item)[0]
+        column_key = column_of_variable(item)[0]
         kinds[item.name] = kind_of_symbol(unit_of_number(item.paths[0]))
-        names |= {item.name: item.name, column_key: item.name, split_unit(column_key)[0]: item.name}
+        names |= {item.name: item.name, column_key: item.name, name_unit_and_factor_of_key(column_key)[0]: item.name}
     steps: dict[str, float] = {}
     for text in texts:
         name, equals, value = (piece.strip() for piece in text.rpartition("="))

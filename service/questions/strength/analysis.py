@@ -75,7 +75,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
     record: dict[str, Any] = {}
     for quantity in QUANTITIES.values():
         if quantity.group is Group.STRENGTH and not (
-            quantity.lacks(mechanism, "undefined") or quantity.lacks(mechanism, "zero")
+            quantity.unmet_need(mechanism, "undefined") or quantity.unmet_need(mechanism, "zero")
         ):
             value = float(quantity.unit.factor * quantity.evaluate(mechanism, design).values[0])
             record[quantity.field] = None if missing_value_reason(quantity, value, mechanism, linkage) else value
@@ -89,7 +89,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
 
 
 def _require_section(mechanism: Mechanism) -> None:
-    if reason := STATIC_SAFETY.lacks(mechanism, "undefined"):
+    if reason := STATIC_SAFETY.unmet_need(mechanism, "undefined"):
         raise InputError(f"strength needs material and pins for crank and rod: {reason}")
 
 

@@ -14,7 +14,7 @@ from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH
 from ....objectives.registry import FACTS
 from ....objectives.tables.sweep import Axis, Parameter, sweep
-from ....objectives.units import closest
+from ....objectives.units import closest_word
 from ...designs.display_units import convert_rows
 from ...designs.rotating_crank import require_rotating_crank
 from ...designs.selection import parse_value
@@ -106,7 +106,7 @@ def parse_axis(text: str, word: str = "over") -> Axis:
         remedy = "set other numbers in the job or with analyse --set, or let them vary in [variables]"
         if parameter in FACTS:
             remedy = f"{parameter} follows from these: sweep one of them, and compute {parameter} as a quantity"
-        elif near := closest(parameter, parameters):
+        elif near := closest_word(parameter, parameters):
             remedy = f"did you mean {near}?"
         raise InputError(f"a sweep must be over one of {', '.join(parameters)}; got {parameter!r}; {remedy}")
     match, several = _FORM.fullmatch(text), _LIST.fullmatch(text)

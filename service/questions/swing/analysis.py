@@ -19,8 +19,8 @@ from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FOR
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.swing_curves import (
     drive_kind,
-    driven_side,
-    error_kind,
+    driven_error_kind,
+    driven_side_name,
     force_magnitudes,
     motion_and_drive_curves,
 )
@@ -160,7 +160,7 @@ def figure(mechanism: Mechanism, linkage: Linkage, *, units: System, **options: 
 def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
     """Return the metric numbers of a swing; null if undefined, with notes that give the reason."""
     swing, linkage = summary.swing, summary.linkage
-    drive, error = drive_kind(swing).metric, error_kind(swing).metric
+    drive, error = drive_kind(swing).metric, driven_error_kind(swing).metric
     record: dict[str, Any] = {
         **{f"{name}_mm": 1e3 * float(getattr(linkage, name)) for name in ("crank", "rod", "offset")},
         "branch": linkage.branch,
@@ -190,7 +190,7 @@ def swing_record(mechanism: Mechanism, summary: SwingSummary) -> SwingNumbers:
         record |= _value_and_location("peak_power_W", summary.peak_power, 1.0, way=True)
     if summary.position_error is not None:
         record |= _value_and_location(
-            f"{driven_side(swing)}_position_error{error.suffix}", summary.position_error, error.factor
+            f"{driven_side_name(swing)}_position_error{error.suffix}", summary.position_error, error.factor
         )
     return record | {"extremes": _curve_extremes(mechanism, summary), "notes": _swing_notes(mechanism, summary)}
 

@@ -28,7 +28,7 @@ from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
 from slidercrank.optimise.certificate.box_bounds import Boxes
-from slidercrank.optimise.problem.constraint_violation import FEASIBLE, minimised
+from slidercrank.optimise.problem.constraint_violation import FEASIBLE, minimised_values
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
@@ -139,7 +139,7 @@ def sampled(given: Problem, width: float, *, count: int = 60, inside: int = 40, 
         values = np.full((len(violation), len(given.objectives)), np.nan)
         for column, objective in enumerate(given.objectives):
             exact = given.quantity(objective.quantity).evaluate(given.mechanism, dimensions[rows]).values
-            values[rows, column] = minimised(objective, exact)
+            values[rows, column] = minimised_values(objective, exact)
         yield found, u, values.reshape(count, inside, -1), violation.reshape(count, inside)
 
 
@@ -239,7 +239,7 @@ def assert_close_to_designs(given: Problem, count: int, tolerance: float) -> Non
     assert found.alive.all()
     for column, objective in enumerate(given.objectives):
         quantity = given.quantity(objective.quantity)
-        exact = minimised(objective, quantity.evaluate(given.mechanism, dimensions[rows]).values)
+        exact = minimised_values(objective, quantity.evaluate(given.mechanism, dimensions[rows]).values)
         close = np.isclose(found.corner[:, column], exact, rtol=tolerance, atol=0.0)
         # A jump of a load at the peak's own angle leaves the side open; there are few of them.
         assert close.mean() > (0.8 if given.mechanism.loads != MACHINE.loads else 0.99), quantity.name

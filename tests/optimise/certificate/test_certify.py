@@ -20,11 +20,11 @@ from slidercrank.optimise.certificate.certificate import Certificate, Step
 from slidercrank.optimise.certificate.certify import certify_designs
 from slidercrank.optimise.certificate.covering_designs import (
     choose_covering,
-    excess,
+    excess_over_designs,
     greedy_cover,
     hypervolume_gap_bound,
 )
-from slidercrank.optimise.discrete.combinations import judge
+from slidercrank.optimise.discrete.combinations import designs_meeting_requirements
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.front.hypervolume import hypervolume
 from slidercrank.optimise.job import parse_job
@@ -168,7 +168,7 @@ def test_listed_values_are_proven_over_every_combination() -> None:
     assert set(np.round(1e3 * found.added[:, 0], 9)) <= {80.0, 120.0, 150.0}
     random, (cranks, offsets) = np.random.default_rng(3), front.problem.discrete
     columns = random.choice(cranks.values, 3000), random.uniform(0.2, 0.6, 3000), random.choice(offsets.values, 3000)
-    values = judge(front.problem, np.stack(columns, axis=1)).values
+    values = designs_meeting_requirements(front.problem, np.stack(columns, axis=1)).values
     assert len(values) > 1000
     assert beats(values, np.concatenate([front.values, found.added_values]), found.span) <= found.epsilon + ROUNDED
 
@@ -298,10 +298,10 @@ def test_excess_is_the_least_epsilon_that_covers() -> None:
     random = np.random.default_rng(1)
     points, designs = random.random((500, 3)), random.random((40, 3))
     expected = (designs[None] - points[:, None]).max(axis=2).min(axis=1)
-    assert excess(points, designs) == pytest.approx(expected, abs=0.0)
-    assert np.isposinf(excess(points, designs[:0])).all()
+    assert excess_over_designs(points, designs) == pytest.approx(expected, abs=0.0)
+    assert np.isposinf(excess_over_designs(points, designs[:0])).all()
     first = np.full(500, 20)
-    part = excess(points, designs, earlier_excess=excess(points, designs[:20]), first=first)
+    part = excess_over_designs(points, designs, earlier_excess=excess_over_designs(points, designs[:20]), first=first)
     assert part == pytest.approx(expected, abs=0.0)
 
 
@@ -310,9 +310,9 @@ def test_thinned_designs_cover_what_all_of_them_cover() -> None:
     points = random.random((400, 2))
     values = points + 0.05 * random.random((400, 2))
     chosen = choose_covering(points, values, 0.1)
-    assert excess(points, values[chosen]).max() <= 0.1
+    assert excess_over_designs(points, values[chosen]).max() <= 0.1
     few = greedy_cover(points, values[chosen], 0.1)
-    assert excess(points, values[chosen][few]).max() <= 0.1
+    assert excess_over_designs(points, values[chosen][few]).max() <= 0.1
     assert 0 < len(few) <= len(chosen) < 400
 
 

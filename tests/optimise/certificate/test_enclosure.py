@@ -20,7 +20,7 @@ from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.certificate.enclosed_cycle_curve import CycleCurve
 from slidercrank.optimise.certificate.enclosed_machine import interpolate_force
-from slidercrank.optimise.certificate.enclosure import Enclosure, coordinate
+from slidercrank.optimise.certificate.enclosure import Enclosure, free_unknown
 
 FORMULAS: dict[str, Callable[[Any, Any, Any], Any]] = {
     "sum": lambda x, y, z: 3.0 - (x + y) * 2.0 + z / 7.0 - x,
@@ -45,7 +45,7 @@ def boxes(width: float, seed: int = 3, count: int = 200) -> tuple[Array, Array]:
 
 def enclose(formula: Callable[[Any, Any, Any], Any], low: Array, high: Array) -> Enclosure:
     with np.errstate(all="ignore"):
-        found = formula(*(coordinate(low[:, i], high[:, i], i, 3) for i in range(3)))
+        found = formula(*(free_unknown(low[:, i], high[:, i], i, 3) for i in range(3)))
     assert isinstance(found, Enclosure)
     return found
 
@@ -106,7 +106,7 @@ def test_a_division_by_what_may_be_zero_says_nothing() -> None:
 def test_a_table_over_an_enclosed_position_holds_every_sample(width: float) -> None:
     at, force = np.array([0.8, 1.0, 1.3, 1.3, 1.31, 2.0]), np.array([2.0, -1.0, 4.0, 6.0, 0.0, 0.5])
     low, high = boxes(width)
-    least, most = interpolate_force(coordinate(low[:, 0], high[:, 0], 0, 3), at, force).ends()
+    least, most = interpolate_force(free_unknown(low[:, 0], high[:, 0], 0, 3), at, force).ends()
     for part in np.linspace(0.0, 1.0, 200):
         value = np.interp(low[:, :1] + (high[:, :1] - low[:, :1]) * part, at, force)
         assert not ((value < least) | (value > most)).any()
@@ -122,7 +122,7 @@ def test_the_torque_of_a_table_that_steps_at_its_seam_is_enclosed_for_every_desi
     low = np.array([0.04, 0.15, 0.01]) * random.uniform(0.9, 1.1, (40, 3))
     high = low * 1.02
     angles = 0.4 + random.uniform(-0.4, 0.4, 40)
-    sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
+    sides = {k: free_unknown(low[:, k], high[:, k], k, 3) for k in range(3)}
     found = curve.enclose(sides, angles[:, None], 0.5 * (low + high))
     least, most = (end.reshape(40, -1) for end in found.ends())
     for design, angle, lower, upper in zip(low, angles, least, most, strict=True):
@@ -142,7 +142,7 @@ def test_a_peak_on_a_step_is_bounded_the_better_the_smaller_the_box() -> None:
     peak = find_peaks(machine, Signal.TORQUE, middle, limit=1)
     for width in (1e-3, 1e-4, 1e-5):
         low, high = middle * (1.0 - width), middle * (1.0 + width)
-        sides = {k: coordinate(low[:, k], high[:, k], k, 3) for k in range(3)}
+        sides = {k: free_unknown(low[:, k], high[:, k], k, 3) for k in range(3)}
         least = CycleCurve(machine, Signal.TORQUE).enclose(sides, peak.angles, middle).ends()[0]
         assert least.max() <= peak.values[0, 0]
         assert least.max() >= peak.values[0, 0] * (1.0 - 100.0 * width)

@@ -16,7 +16,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, balance
+from slidercrank.optimise.sizing.counterweight import Balance, RodSpace, best_balance
 from slidercrank.optimise.sizing.input_words import Measure
 from slidercrank.optimise.sizing.shaking_rows import shaking_rows, with_masses
 from tests.model.cases import linkage_of, random_designs, random_machine
@@ -65,7 +65,7 @@ def test_without_a_slider_mass_the_rotating_mass_is_balanced_in_full(measure: Me
     """A rod with its mass at the crank pin turns with the crank. c = -(crank's moment + rod's mass times crank)."""
     crank = RigidLink(mass=0.7, centre=0.02, centre_across=0.004)
     machine = Mechanism(speed=-20.0, crank=crank, rod=RigidLink(mass=1.2, centre=0.0, inertia=0.0))
-    found = balance(machine, Linkage(0.05, 0.2, 0.03), measure=measure)
+    found = best_balance(machine, Linkage(0.05, 0.2, 0.03), measure=measure)
     expected = np.array([-(0.7 * 0.02 + 1.2 * 0.05), -0.7 * 0.004])
     np.testing.assert_allclose(along_and_across(found), expected, rtol=1e-7)
     assert found.shaking_before.peak_force == pytest.approx(400.0 * np.hypot(*expected), rel=1e-12)
@@ -78,7 +78,7 @@ def test_least_rms_balances_the_rotating_mass_and_half_of_the_reciprocating_one(
     machine = Mechanism(
         speed=30.0, crank=RigidLink(mass=0.4, centre=0.02), rod=two_point_rod(rod, 0.6, 0.3), slider_mass=1.1
     )
-    found = balance(machine, Linkage(0.05, rod), measure="rms")
+    found = best_balance(machine, Linkage(0.05, rod), measure="rms")
     rotating, reciprocating = 0.4 * 0.02 + 0.6 * 0.05, (0.3 + 1.1) * 0.05
     assert found.moment == pytest.approx(rotating + 0.5 * reciprocating, rel=1e-9)
     assert abs(found.angle) == pytest.approx(math.pi, abs=1e-9)
@@ -90,7 +90,7 @@ def test_least_peak_tends_to_the_half_mass_compromise_for_long_rods() -> None:
     off = []
     for ratio in (1e-3, 1e-4):
         machine = Mechanism(speed=30.0, slider_mass=1.1)
-        found = balance(machine, Linkage(0.05, 0.05 / ratio))
+        found = best_balance(machine, Linkage(0.05, 0.05 / ratio))
         off.append(found.moment / (0.5 * 1.1 * 0.05) - 1.0)
         assert found.shaking_after.peak_force / found.shaking_before.peak_force == pytest.approx(0.5, abs=2.0 * ratio)
         assert abs(off[-1]) < 2.0 * ratio
@@ -102,7 +102,7 @@ def test_a_rod_balance_and_a_counterweight_balance_the_force_in_full() -> None:
     machine = Mechanism(
         speed=25.0, crank=RigidLink(mass=0.4, centre=0.02), rod=RigidLink(mass=0.6, centre=0.06), slider_mass=1.1
     )
-    found = balance(machine, Linkage(0.05, 0.2, 0.02), rod=RodSpace(radius=0.08, mass=10.0))
+    found = best_balance(machine, Linkage(0.05, 0.2, 0.02), rod=RodSpace(radius=0.08, mass=10.0))
     assert found.rod is not None
     along = 0.6 * 0.06 + 1.1 * 0.2
     assert found.rod.moment_along == pytest.approx(-along, rel=1e-7)
@@ -126,7 +126,7 @@ def test_least_rms_is_the_solution_of_least_squares() -> None:
             ]
         )
         best /= machine.speed**2
-        found = balance(machine, linkage, measure="rms")
+        found = best_balance(machine, linkage, measure="rms")
         np.testing.assert_allclose(along_and_across(found), best, rtol=0, atol=1e-7 * np.hypot(*best))
         rest = shaking_curves(found.balanced, linkage, TURN)
         rms = np.sqrt(np.mean(rest.force_x**2 + rest.force_y**2))
@@ -182,7 +182,7 @@ def by_scipy(machine: Mechanism, linkage: Linkage, found: Balance, arm: float | 
 def test_scipy_finds_the_same_least_peak(arm: float | None) -> None:
     for machine, linkage in random_cases(3, seed=5):
         space = None if arm is None else RodSpace(radius=0.06, mass=1.5)
-        found = balance(machine, linkage, arm=arm, rod=space)
+        found = best_balance(machine, linkage, arm=arm, rod=space)
         assert found.converged
         assert found.objective == pytest.approx(by_scipy(machine, linkage, found, arm, space), rel=1e-6)
         assert found.objective == pytest.approx(found.bound, rel=1e-6)
@@ -190,8 +190,8 @@ def test_scipy_finds_the_same_least_peak(arm: float | None) -> None:
 
 def test_peaks_are_exact_and_less_than_before() -> None:
     for machine, linkage in random_cases(3, seed=6):
-        found = balance(machine, linkage, rod=RodSpace(radius=0.05, mass=0.8), arm=0.4, greatest_moment=0.2)
-        before, after = found.hodograph(TURN)
+        found = best_balance(machine, linkage, rod=RodSpace(radius=0.05, mass=0.8), arm=0.4, greatest_moment=0.2)
+        before, after = found.shaking_before_and_after(TURN)
         for curves, shaking in ((before, found.shaking_before), (after, found.shaking_after)):
             size = np.hypot(curves.force_x, curves.force_y)
             assert shaking.peak_force >= size.max() * (1.0 - 1e-12)
@@ -210,14 +210,14 @@ def test_peaks_are_exact_and_less_than_before() -> None:
 @pytest.mark.parametrize("measure", MEASURES)
 def test_the_price_of_a_bounded_counterweight_predicts_one_percent_more(measure: Measure) -> None:
     machine, linkage = Mechanism(speed=30.0, rod=RigidLink(mass=0.5), slider_mass=1.1), Linkage(0.05, 0.15, 0.02)
-    free = balance(machine, linkage, measure=measure)
+    free = best_balance(machine, linkage, measure=measure)
     assert free.saving == 0.0
     most = 0.5 * free.moment
-    found = balance(machine, linkage, measure=measure, greatest_moment=most)
+    found = best_balance(machine, linkage, measure=measure, greatest_moment=most)
     assert found.moment == pytest.approx(most, rel=1e-7)
-    more = balance(machine, linkage, measure=measure, greatest_moment=1.01 * most)
+    more = best_balance(machine, linkage, measure=measure, greatest_moment=1.01 * most)
     assert found.objective - more.objective == pytest.approx(found.saving * 0.01 * most, rel=0.02)
-    wide = balance(machine, linkage, measure=measure, greatest_moment=2.0 * free.moment)
+    wide = best_balance(machine, linkage, measure=measure, greatest_moment=2.0 * free.moment)
     assert wide.saving == 0.0
     assert wide.objective == pytest.approx(free.objective, rel=1e-8)
 
@@ -235,7 +235,7 @@ def test_what_makes_no_sense_is_refused() -> None:
         ((machine, {"measure": "mean"}), "measure must be"),
     ):
         with pytest.raises(InputError, match=message):
-            balance(arguments[0], linkage, **arguments[1])
+            best_balance(arguments[0], linkage, **arguments[1])
     with pytest.raises(InputError, match="space for the rod balance"):
         RodSpace(radius=0.0, mass=1.0)
     with pytest.raises(InputError, match="greatest mass"):

@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.methods.minimax.minimax import descent_starts
-from slidercrank.optimise.methods.minimax.scp import Descent, Point, residual_of
+from slidercrank.optimise.methods.minimax.scp import Descent, Point, lagrangian_residual
 from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -148,7 +148,7 @@ def test_a_start_that_is_no_optimum_has_a_residual() -> None:
     point = descent._point_at(np.array([0.6, 0.5]))
     step, _ = descent._step_and_penalty(point, np.zeros((2, 2)), 0.01, 10.0)
     assert step is not None
-    assert residual_of(point, step) >= 0.1
+    assert lagrangian_residual(point, step) >= 0.1
 
 
 def test_it_can_be_asked_for_as_a_method() -> None:

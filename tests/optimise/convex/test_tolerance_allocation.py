@@ -18,7 +18,7 @@ from slidercrank.model.tolerance.error_sources import angle_ranges_where_error_c
 from slidercrank.model.tolerance.first_order import first_order_position_errors
 from slidercrank.optimise.problem.tolerance_costs import NAMES, Cost, Costs
 from slidercrank.optimise.sizing.input_words import Kind
-from slidercrank.optimise.sizing.tolerance_allocation import Allocation, allocate
+from slidercrank.optimise.sizing.tolerance_allocation import Allocation, allocate_tolerances
 from tests.model.cases import linkage_of, random_designs
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ def test_with_one_active_angle_it_is_the_dearest_of_the_closed_forms_of_single_a
     power, root = (0.5, 2.0) if kind == "worst case" else (2.0 / 3.0, 1.5)
     for design in random_designs(9, seed=2, least_margin=0.05):
         linkage, costs = linkage_of(design), random_costs(random, free=True)
-        found = allocate(linkage, costs, limit, kind)
+        found = allocate_tolerances(linkage, costs, limit, kind)
         b = np.array([cost.cost * cost.at for cost in costs.by_name.values()])
         fixed = sum(cost.fixed for cost in costs.by_name.values())
 
@@ -148,7 +148,7 @@ def test_slsqp_on_many_angles_finds_the_same_tolerances(kind: Kind) -> None:
         mechanism = Mechanism(speed=float(random.choice([-1.0, 1.0])), branch=branch, tolerances=tolerances)
         linkage, costs = linkage_of(design, branch), random_costs(random)
         try:
-            found = allocate(linkage, costs, limit, kind, mechanism=mechanism)
+            found = allocate_tolerances(linkage, costs, limit, kind, mechanism=mechanism)
         except InputError:
             continue
         compared += 1
@@ -163,7 +163,7 @@ def test_slsqp_on_many_angles_finds_the_same_tolerances(kind: Kind) -> None:
 @pytest.mark.parametrize("window", WINDOWS)
 def test_the_error_reaches_the_limit_and_never_exceeds_it_in_the_working_stroke(kind: Kind, window: Window) -> None:
     for offset in (0.0, -0.02):
-        found = allocate(Linkage(SIEVE.crank, SIEVE.rod, offset), PLAIN, 1e-4, kind, window)
+        found = allocate_tolerances(Linkage(SIEVE.crank, SIEVE.rod, offset), PLAIN, 1e-4, kind, window)
         linkage = Linkage(0.14, 0.31, offset)
         assert found.converged
         assert found.residual <= 1e-10
@@ -185,18 +185,20 @@ def test_prices_predict_what_loosening_a_limit_or_a_bound_by_one_percent_saves(k
     costs = dataclasses.replace(
         PLAIN, rod=Cost(cost=3.0, at=1e-4, exponent=2.0, greatest=3e-5), offset=Cost(cost=0.01, at=1e-4, least=4e-5)
     )
-    base = allocate(SIEVE, costs, 2e-4, kind)
+    base = allocate_tolerances(SIEVE, costs, 2e-4, kind)
     assert [part.bound for part in base.parts] == [None, "greatest", "least", None]
     assert base.saving == pytest.approx(base.savings.sum(), rel=1e-14)
 
     def saved(share: float, which: str) -> tuple[float, float]:
         if which == "limit":
-            return base.cost - allocate(SIEVE, costs, 2e-4 * (1.0 + share), kind).cost, base.saving * 2e-4 * share
+            return base.cost - allocate_tolerances(
+                SIEVE, costs, 2e-4 * (1.0 + share), kind
+            ).cost, base.saving * 2e-4 * share
         part = next(part for part in base.parts if part.name == which)
         cost = costs.by_name[which]
         end = {"greatest": cost.greatest * (1.0 + share)} if which == "rod" else {"least": cost.least * (1.0 - share)}
         moved = dataclasses.replace(costs, **{which: dataclasses.replace(cost, **end)})
-        return base.cost - allocate(SIEVE, moved, 2e-4, kind).cost, part.saving * part.tolerance * share
+        return base.cost - allocate_tolerances(SIEVE, moved, 2e-4, kind).cost, part.saving * part.tolerance * share
 
     for which in ("limit", "rod", "offset"):
         coarse, fine = saved(1e-2, which), saved(1e-3, which)
@@ -208,7 +210,7 @@ def test_prices_predict_what_loosening_a_limit_or_a_bound_by_one_percent_saves(k
 @pytest.mark.parametrize("kind", KINDS)
 def test_where_the_limit_is_wide_every_tolerance_is_the_greatest_and_only_its_bound_has_a_price(kind: Kind) -> None:
     cost = Cost(cost=3.0, at=1e-5, exponent=1.5, greatest=1e-5)
-    found = allocate(SIEVE, Costs(crank=cost, rod=cost), 1e-3, kind)
+    found = allocate_tolerances(SIEVE, Costs(crank=cost, rod=cost), 1e-3, kind)
     assert [(part.tolerance, part.bound) for part in found.parts] == [(1e-5, "greatest")] * 2
     assert found.saving == 0.0
     assert len(found.angles) == 0
@@ -222,15 +224,15 @@ def test_a_tolerance_without_a_cost_is_given_and_takes_its_part_of_the_limit() -
     given = Mechanism(tolerances=Tolerances(rod=Tolerance(fraction=1e-3), clearances=Clearances(crank_pin=1e-5)))
     tiny = Window(start=0.0, end=1e-9)
     costs = Costs(crank=Cost(cost=1.0, at=1e-4))
-    found = allocate(Linkage(0.05, 0.1), costs, 3e-4, "worst case", tiny, mechanism=given)
+    found = allocate_tolerances(Linkage(0.05, 0.1), costs, 3e-4, "worst case", tiny, mechanism=given)
     assert found.parts[0].tolerance == pytest.approx(3e-4 - 1e-4 - 1e-5, rel=1e-6)
     assert found.mechanism.tolerances.rod == Tolerance(fraction=1e-3)
-    square = allocate(Linkage(0.05, 0.1), costs, 3e-4, "rss", tiny, mechanism=given)
+    square = allocate_tolerances(Linkage(0.05, 0.1), costs, 3e-4, "rss", tiny, mechanism=given)
     assert square.parts[0].tolerance == pytest.approx(np.sqrt(3e-4**2 - 1e-4**2 - 1e-5**2), rel=1e-6)
 
 
 def test_squares_cost_less_than_sums() -> None:
-    assert allocate(SIEVE, PLAIN, 1e-4, "rss").cost < 0.75 * allocate(SIEVE, PLAIN, 1e-4).cost
+    assert allocate_tolerances(SIEVE, PLAIN, 1e-4, "rss").cost < 0.75 * allocate_tolerances(SIEVE, PLAIN, 1e-4).cost
 
 
 def test_what_can_not_be_met_or_makes_no_sense_is_refused() -> None:
@@ -238,12 +240,15 @@ def test_what_can_not_be_met_or_makes_no_sense_is_refused() -> None:
     wide = Costs(crank=Cost(cost=1.0, at=1e-4, least=1e-3))
     loose = Mechanism(tolerances=Tolerances(clearances=Clearances(crank_pin=2e-4)))
     for wrong, message in (
-        (lambda: allocate(SIEVE, wide, 1e-4), "the limit must exceed .* got 0.1 mm, below 1.*raise the limit"),
-        (lambda: allocate(SIEVE, PLAIN, 1e-4, mechanism=loose), "the limit must exceed"),
-        (lambda: allocate(SIEVE, PLAIN, 0.0), "must be positive and finite; got 0 m"),
-        (lambda: allocate(SIEVE, PLAIN, 1e-4, "rms"), "kind must be"),  # type: ignore[arg-type]
-        (lambda: allocate(SIEVE, PLAIN, 1e-4, mechanism=Mechanism(branch="crossed")), "same branch"),
-        (lambda: allocate(Linkage(0.3, 0.31, 0.06), PLAIN, 1e-4), "full rotation"),
+        (
+            lambda: allocate_tolerances(SIEVE, wide, 1e-4),
+            "the limit must exceed .* got 0.1 mm, below 1.*raise the limit",
+        ),
+        (lambda: allocate_tolerances(SIEVE, PLAIN, 1e-4, mechanism=loose), "the limit must exceed"),
+        (lambda: allocate_tolerances(SIEVE, PLAIN, 0.0), "must be positive and finite; got 0 m"),
+        (lambda: allocate_tolerances(SIEVE, PLAIN, 1e-4, "rms"), "kind must be"),  # type: ignore[arg-type]
+        (lambda: allocate_tolerances(SIEVE, PLAIN, 1e-4, mechanism=Mechanism(branch="crossed")), "same branch"),
+        (lambda: allocate_tolerances(Linkage(0.3, 0.31, 0.06), PLAIN, 1e-4), "full rotation"),
         (lambda: Costs(), "at least one of crank, rod"),
         (lambda: Cost(cost=0.0, at=1.0), "the cost of a tolerance's cost must be positive"),
         (lambda: Cost(cost=1.0, at=1.0, exponent=9.0), "exponent .* from 0.25 to 4; got 9"),

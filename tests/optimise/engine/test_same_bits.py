@@ -18,18 +18,18 @@ from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.problem.robust_problem import Robust, robust
+from slidercrank.optimise.problem.robust_problem import Robust, robust_problem
 from slidercrank.optimise.search.batch_quantities import evaluate_pieces, join_batches, screen_quantities
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
-from slidercrank.optimise.search.polish import polish
+from slidercrank.optimise.search.polish import polish_designs
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work
 from tests.optimise.problems import problem, search_little, shipped
 from tests.optimise.test_own_quantities import ACCELERATION, job, module
 from tests.optimise.test_robust_problem import TOLERANT, plain
 
-JOB = robust(
+JOB = robust_problem(
     replace(plain(1), settings=replace(plain(1).settings, samples=200)),
     Robust(samples=1024, quantities=("peak_torque", "time_ratio")),
 )
@@ -135,8 +135,8 @@ def test_the_polish_of_a_design_does_not_depend_on_the_designs_beside_it(name: s
     start = np.random.default_rng(1).random((200, evaluator.dimension))
     start = start[evaluator.can_evaluate(start)][:12]
     scale = np.ones(len(shipped(name).objectives))
-    whole = polish(evaluator, start, scale, iterations=10)
-    parts = [polish(evaluator, part, scale, iterations=10) for part in (start[:1], start[1:8], start[8:])]
+    whole = polish_designs(evaluator, start, scale, iterations=10)
+    parts = [polish_designs(evaluator, part, scale, iterations=10) for part in (start[:1], start[1:8], start[8:])]
     assert np.array_equal(whole.u, np.concatenate([part.u for part in parts]))
     assert np.array_equal(whole.values, np.concatenate([part.values for part in parts]))
     assert np.array_equal(whole.residual, np.concatenate([part.residual for part in parts]))

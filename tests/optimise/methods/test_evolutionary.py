@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import degrees, problem, shipped, shipped_front
@@ -29,7 +29,7 @@ def asked(given: Problem, method: str, evaluations: int, *, seed: int = 1, sampl
 def share(method: str, evaluations: int, seed: int) -> float:
     """Return the share of the default's hypervolume that a method finds on the feeder."""
     best = shipped_front("feeder")
-    ideal, span = scaling(best.values)
+    ideal, span = ideal_and_range(best.values)
     front = solve(asked(shipped("feeder"), method, evaluations, seed=seed, samples=40))
     return hypervolume(front.values, ideal, span) / best.hypervolume
 
@@ -42,7 +42,7 @@ def test_genetic_search_beats_random_points_on_a_small_budget(method: str) -> No
 
 def test_the_default_is_not_dominated() -> None:
     best = shipped_front("feeder")
-    _, span = scaling(best.values)
+    _, span = ideal_and_range(best.values)
     for method in ("nsga2", "sobol"):
         front = solve(asked(shipped("feeder"), method, 800, samples=40))
         gain = ((best.values[None] - front.values[:, None]) / span).min(axis=2).max()

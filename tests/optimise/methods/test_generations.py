@@ -15,7 +15,7 @@ from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.methods import nsga as evolutionary
 from slidercrank.optimise.methods import population
 from slidercrank.optimise.methods.population import Brood, Generation, generation_seed
-from slidercrank.optimise.methods.registry import methods
+from slidercrank.optimise.methods.registry import methods_by_name
 from slidercrank.optimise.problem.constraint_violation import FEASIBLE
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
@@ -34,7 +34,7 @@ SIZES = {"tpe": (8, 40), "cmaes": (6, 60)}
 def asked(method: str) -> Problem:
     """Return a small problem for a method: five generations or more."""
     samples, evaluations = SIZES.get(method, (16, 80))
-    alone = methods()[method].objectives == "one"
+    alone = methods_by_name()[method].objectives == "one"
     given = problem(
         {"peak_torque": "minimise"} if alone else {"peak_torque": "minimise", "time_ratio": "maximise"},
         LIMITED,
@@ -145,7 +145,7 @@ def test_what_is_not_finite_is_never_told_as_feasible(monkeypatch: pytest.Monkey
     wrong = np.array([[np.nan, 1.0], [np.inf, 1.0], [1.0, 1.0], [1.0, 1.0]])
     met = np.array([0.0, 0.0, np.nan, 0.0])
     monkeypatch.setattr(evaluator, "screen", lambda u, *, band: (u, wrong.copy(), met.copy()))
-    values, violation = population.screen_points(evaluator, u)
+    values, violation = population.objectives_and_violations(evaluator, u)
     assert violation.tolist() == [np.inf, np.inf, np.inf, 0.0]
     assert np.isnan(values[:3]).all()
     assert values[3].tolist() == [1.0, 1.0]

@@ -16,7 +16,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job.model import Job
 from slidercrank.optimise.job.schema import schema_of
-from slidercrank.optimise.methods.registry import FAMILIES, Method, budget, methods
+from slidercrank.optimise.methods.registry import FAMILIES, Method, evaluation_budget, methods_by_name
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
@@ -44,17 +44,17 @@ def scatter(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
 @pytest.fixture(autouse=True)
 def sobol(monkeypatch: pytest.MonkeyPatch) -> None:
     """Put `scatter` in the place of a method's search."""
-    monkeypatch.setitem(methods(), "sobol", replace(methods()["sobol"], search=scatter))
+    monkeypatch.setitem(methods_by_name(), "sobol", replace(methods_by_name()["sobol"], search=scatter))
 
 
 def test_methods_are_named_family_by_family_the_default_first() -> None:
-    assert next(iter(methods())) == "auto"
-    assert [method.family for method in methods().values()] == sorted(
-        (method.family for method in methods().values()), key=FAMILIES.index
+    assert next(iter(methods_by_name())) == "auto"
+    assert [method.family for method in methods_by_name().values()] == sorted(
+        (method.family for method in methods_by_name().values()), key=FAMILIES.index
     )
 
 
-@pytest.mark.parametrize("method", methods().values(), ids=list(methods()))
+@pytest.mark.parametrize("method", methods_by_name().values(), ids=list(methods_by_name()))
 def test_a_method_tells_of_itself(method: Method) -> None:
     assert re.fullmatch("[a-z][a-z0-9_]*", method.name)
     assert method.help.endswith(".")
@@ -64,19 +64,19 @@ def test_a_method_tells_of_itself(method: Method) -> None:
 
 
 def test_the_schema_of_jobs_names_every_method() -> None:
-    assert schema_of(Job)["$defs"]["OptimiserPart"]["properties"]["method"]["enum"] == list(methods())
+    assert schema_of(Job)["$defs"]["OptimiserPart"]["properties"]["method"]["enum"] == list(methods_by_name())
 
 
 def test_the_documentation_lists_every_method_as_it_tells_of_itself(pytestconfig: pytest.Config) -> None:
     page = (pytestconfig.rootpath / "docs" / "optimisers.md").read_text(encoding="utf-8")
     takes = {"one": "one objective", "several": "several objectives", "any": "any"}
-    for method in methods().values():
+    for method in methods_by_name().values():
         assert f"| `{method.name}` | {takes[method.objectives]} | {method.help} |\n" in page
 
 
 def test_the_budget_is_the_one_asked_or_the_method_s_own() -> None:
-    assert budget(asking(BOTH, "nbi", evaluations=123)) == 123
-    assert budget(asking(BOTH, "nbi")) == methods()["nbi"].budget
+    assert evaluation_budget(asking(BOTH, "nbi", evaluations=123)) == 123
+    assert evaluation_budget(asking(BOTH, "nbi")) == methods_by_name()["nbi"].budget
 
 
 def test_a_budget_without_a_method_is_refused() -> None:
@@ -84,20 +84,22 @@ def test_a_budget_without_a_method_is_refused() -> None:
         solve(replace(BOTH, settings=Settings(evaluations=100)))
 
 
-@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "one"])
+@pytest.mark.parametrize("method", [name for name, method in methods_by_name().items() if method.objectives == "one"])
 def test_several_objectives_are_refused_naming_the_methods_that_fit(method: str) -> None:
     wanted = rf"{method} needs one objective; got 2 \(peak_torque, time_ratio\); use one of auto, epsilon_constraint"
     with pytest.raises(InputError, match=wanted):
         solve(asking(BOTH, method))
 
 
-@pytest.mark.parametrize("method", [name for name, method in methods().items() if method.objectives == "several"])
+@pytest.mark.parametrize(
+    "method", [name for name, method in methods_by_name().items() if method.objectives == "several"]
+)
 def test_one_objective_is_refused_naming_the_methods_that_fit(method: str) -> None:
     with pytest.raises(InputError, match=f"{method} needs several objectives; got 1 .*; use one of auto, slsqp"):
         solve(asking(problem({"peak_torque": "minimise"}), method))
 
 
-@pytest.mark.parametrize("method", [name for name, method in methods().items() if not method.equalities])
+@pytest.mark.parametrize("method", [name for name, method in methods_by_name().items() if not method.equalities])
 def test_an_equality_that_stays_is_refused_by_methods_that_cannot_hold_it(method: str) -> None:
     given = problem({"transmission_angle": "maximise"}, {"stroke": 0.2, "peak_slider_speed": 4.0})
     with pytest.raises(InputError, match=f"{method} cannot keep peak_slider_speed at one value.*use slsqp or auto"):

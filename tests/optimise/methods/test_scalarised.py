@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.front import ParetoFront
-from slidercrank.optimise.front.hypervolume import hypervolume, scaling
+from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range
 from slidercrank.optimise.methods import scalarised
 from slidercrank.optimise.methods.scalar_objective import Form, Programme
-from slidercrank.optimise.methods.scalarised import grid, simplex_weights
+from slidercrank.optimise.methods.scalarised import grid_points, simplex_weights
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
@@ -51,7 +51,7 @@ def front_of(name: str, method: str) -> ParetoFront:
 def test_a_front_of_two_objectives_is_as_good_as_the_default_s(method: str) -> None:
     ours, theirs = default("two"), front_of("two", method)
     assert theirs.status == "done"
-    scale = scaling(ours.values)
+    scale = ideal_and_range(ours.values)
     assert hypervolume(theirs.values, *scale) >= 0.99 * hypervolume(ours.values, *scale)
 
 
@@ -60,7 +60,7 @@ def test_a_front_of_two_objectives_is_as_good_as_the_default_s(method: str) -> N
 def test_a_front_that_is_a_surface_is_covered_with_gaps_at_most(method: str, share: float) -> None:
     """Measured 0.987, 0.980 and 0.994: aim is taken evenly in the objectives, the surface is not even."""
     ours, theirs = default("three"), front_of("three", method)
-    scale = scaling(ours.values)
+    scale = ideal_and_range(ours.values)
     assert len(theirs) == len(ours)
     assert hypervolume(theirs.values, *scale) >= share * hypervolume(ours.values, *scale)
 
@@ -101,7 +101,7 @@ def test_points_of_the_simplex_are_all_sums_of_equal_shares() -> None:
 
 
 def test_points_of_the_grid_are_the_upper_ends_of_its_cells() -> None:
-    points = grid(np.array([0.0, 10.0]), np.array([1.0, 20.0]), 2)
+    points = grid_points(np.array([0.0, 10.0]), np.array([1.0, 20.0]), 2)
     assert points.tolist() == [[0.5, 15.0], [0.5, 20.0], [1.0, 15.0], [1.0, 20.0]]
 
 

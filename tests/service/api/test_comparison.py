@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare
+from slidercrank.optimise.decisions.front_comparison import compare_fronts
 from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.questions.compare.analysis import differences_between_jobs
@@ -148,7 +148,7 @@ def test_measures_are_those_of_the_fronts_and_left_out_for_other_objectives(
     values = [np.array([[-float(str(row[key])) for key in KEYS] for row in own]) for own in rows]
     with Client(str(client.base_url).removesuffix("/api/v1")) as service:
         found = service.comparison(numbers, tolerance=0.01)
-        expected = compare(values, tolerance=0.01)
+        expected = compare_fronts(values, tolerance=0.01)
         assert found["tolerance"] == 0.01
         assert [run["run"] for run in found["runs"]] == [f"run {number}" for number in numbers]
         assert np.array(found["coverage"]) == pytest.approx(expected.coverage)

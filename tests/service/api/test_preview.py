@@ -16,7 +16,7 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job.job_file import MOST
-from slidercrank.optimise.search.polish import polish
+from slidercrank.optimise.search.polish import polish_designs
 from slidercrank.service.preview import possible_values
 from tests.service.api.serving import refusal_sentence
 from tests.service.weak_pins import TABLES
@@ -270,8 +270,8 @@ def test_what_is_typed_besides_the_ranges_searches_no_ends_anew(
     wider = deepcopy(feeder)
     wider["variables"]["crank"] = ["19.5 mm", "60 mm"]
     first = preview(shared, feeder)
-    searched = Mock(side_effect=polish)
-    monkeypatch.setattr(possible_values, "polish", searched)
+    searched = Mock(side_effect=polish_designs)
+    monkeypatch.setattr(possible_values, "polish_designs", searched)
     again = preview(shared, changed)
     assert again["understood"] != first["understood"]
     assert again["allowed"] == first["allowed"]
