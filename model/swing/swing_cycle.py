@@ -192,7 +192,11 @@ class SwingCycle:
             return []
         share = np.linspace(0.0, 1.0, _SIDES)
         shares: list[float] = []
-        for side in (_guide_pushes_up, _crank_pin_reverses):
+        sides: tuple[Callable[[SwingCurves], Mask], ...] = (
+            lambda curves: curves.guide > 0.0,
+            lambda curves: curves.rod_rate > 1.0,  # the crank pin rubs the other way
+        )
+        for side in sides:
             values = side(self.curves(share, back=back))
             places = np.flatnonzero(values[:-1] != values[1:]).tolist()
             shares += [self._share_of_change(share[i], share[i + 1], side, back) for i in places]
@@ -211,14 +215,6 @@ class SwingCycle:
 
 def _rank_values(values: Array, rank: np.ufunc) -> Array:
     return np.where(np.isnan(values), -np.inf, rank(values))
-
-
-def _guide_pushes_up(curves: SwingCurves) -> Mask:
-    return curves.guide > 0.0
-
-
-def _crank_pin_reverses(curves: SwingCurves) -> Mask:
-    return curves.rod_rate > 1.0
 
 
 def _point_of_sample(curves: SwingCurves, sample: int, back: bool, value: float) -> SwingPoint:

@@ -61,7 +61,8 @@ def _not_one_value_message(path: str, tables: Mapping[str, Any]) -> str:
             "values in a list, such as the points of a table, cannot vary; solve a job for each list"
         )
     if is_complete and isinstance(part, Mapping):
-        number = next((known_path for known_path, value in _walk_values(part, path) if _is_number(value)), None)
+        starts = set("+-.0123456789")  # of a number, or of a text that begins like one
+        number = next((known for known, value in _walk_values(part, path) if str(value)[:1] in starts), None)
         named = f"; did you mean {number}?" if number else " without a number that can vary"
         return f"must name a number that the job gives; got {path}, a table{named}"
     return ""
@@ -109,11 +110,6 @@ def _replace_at(part: Any, steps: list[str], value: Any) -> Any:
 
 def _is_settable_value(value: object) -> bool:
     return isinstance(value, int | float | str | StrokePart)
-
-
-def _is_number(value: object) -> bool:
-    """Whether a value is a number, or a text that begins like one."""
-    return (isinstance(value, float | int) and not isinstance(value, bool)) or str(value)[:1] in set("+-.0123456789")
 
 
 def _walk_values(data: Any, root: str) -> Iterator[tuple[str, Any]]:

@@ -17,6 +17,7 @@ from ..designs.changed_design import (
 from ..designs.columns import all_columns
 from ..designs.design_curves import LEAST, MOST
 from ..designs.judged_requirements import (
+    Requirement,
     faults_in_words,
     quantity_names,
     ranges_as_requirements,
@@ -40,21 +41,6 @@ router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_r
 _MOST_NUMBERS = 20
 
 
-class RequirementModel(BaseModel):
-    """Quantity with a lower and an upper bound, in its unit; null leaves a side open.
-
-    column: its key in the designs. slack: key of the distance to the nearer bound, negative if the bound is violated.
-    """
-
-    quantity: str = Field(examples=["transmission_angle"])
-    column: str = Field(examples=["least_transmission_angle_deg"])
-    title: str = Field(examples=["least transmission angle"])
-    unit: str = Field(examples=["deg"])
-    lower: float | None = Field(examples=[40.0])
-    upper: float | None = Field(examples=[None])
-    slack: str = Field(examples=["slack_least_transmission_angle_deg"])
-
-
 class RequirementsModel(OfDesign):
     """Requirements of a job on a design, for the choices of the design.
 
@@ -66,7 +52,7 @@ class RequirementsModel(OfDesign):
     name: str = Field(examples=["Round numbers", "design 3"])
     bookmark: int | None = Field(examples=[1])
     ranges: dict[str, tuple[float, float]] = Field(examples=[{"crank_mm": (20.0, 60.0)}])
-    requirements: list[RequirementModel]
+    requirements: list[Requirement]
     slow_stroke: str | None = Field(None, description="the stroke that must be the slow one", examples=["outward"])
     speed_rpm: float = Field(examples=[300.0])
     tolerances: bool
@@ -139,14 +125,13 @@ def show_requirements(stored_front: FrontDep, design: DesignNumber, store: Store
     """Return the ranges and constraints that apply to a design, including default minimum values."""
     stored = stored_front.design(design)
     requested = requested_design(stored_front, design, None, bookmarks_of(store, stored_front.job.id))
-    requirements = [RequirementModel(**vars(item), slack=item.slack_column) for item in requirements_of(stored.part)]
     return RequirementsModel(
         job=stored_front.job.id,
         number=design,
         name=requested.display_name,
         bookmark=requested.bookmark and requested.bookmark.number,
         ranges={bounds.column: (bounds.lower, bounds.upper) for bounds in ranges_as_requirements(stored.part)},
-        requirements=requirements,
+        requirements=requirements_of(stored.part),
         slow_stroke=stored.part.slow_stroke,
         speed_rpm=speed_rpm(stored.mechanism),
         names=quantity_names(stored.part),

@@ -23,7 +23,10 @@ MET = 1e-8
 
 @dataclass(frozen=True)
 class Requirement:
-    """Quantity that must lie between two values, in its unit; None leaves a side open."""
+    """Quantity that must lie between two values, in its unit; None leaves a side open.
+
+    column: its key in the designs. slack: key of the distance to the nearer bound, negative if the bound is violated.
+    """
 
     quantity: str
     column: str
@@ -31,11 +34,7 @@ class Requirement:
     unit: str
     lower: float | None
     upper: float | None
-
-    @property
-    def slack_column(self) -> str:
-        """Column with the distance to the nearer bound."""
-        return f"slack_{self.column}"
+    slack: str
 
     def missed_by(self, row: Row) -> float | None:
         """Return the amount by which a design misses the requirement: zero if met, None if it lacks the quantity."""
@@ -101,8 +100,11 @@ def requirements_of(part: Problem) -> list[Requirement]:
     requirements = []
     for constraint in constraints_with_floors(part):
         quantity = part.quantity(constraint.quantity)
-        ends = (None if end is None else end * quantity.unit.factor for end in (constraint.lower, constraint.upper))
-        requirements.append(Requirement(quantity.name, quantity.field, quantity.title, quantity.unit.symbol, *ends))
+        names = (quantity.name, quantity.field, quantity.title, quantity.unit.symbol)
+        lower, upper = (
+            None if end is None else end * quantity.unit.factor for end in (constraint.lower, constraint.upper)
+        )
+        requirements.append(Requirement(*names, lower, upper, f"slack_{quantity.field}"))
     return requirements
 
 
@@ -115,9 +117,8 @@ def ranges_as_requirements(part: Problem) -> list[Requirement]:
     for name, bounds in part.ranges.items():
         column, unit = columns[name]
         title = find_column(column, (column,)).title
-        ranges.append(
-            Requirement(name, column, title, unit.symbol, bounds.lower * unit.factor, bounds.upper * unit.factor)
-        )
+        bounds_in_unit = (bounds.lower * unit.factor, bounds.upper * unit.factor)
+        ranges.append(Requirement(name, column, title, unit.symbol, *bounds_in_unit, f"slack_{column}"))
     return ranges
 
 

@@ -34,7 +34,8 @@ def fixed_lever_shapes(machine: LeverMachine, swing: LeverSwing) -> list[Shape]:
     shapes: list[Shape] = []
     for pivot in (0j, _pivot(machine)):
         shapes += pivot_bearing(_point(pivot), 0.05 * size, is_below=True)
-    first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in _ends(swing))
+    last_angle = swing.start + 2.0 * math.pi if swing.of_full_turn else swing.end
+    first, last = sorted(math.degrees(end + machine.sizes.pin_angle) for end in (swing.start, last_angle))
     shapes.append(Arc(on.PATHS, (0.0, 0.0), _MM * machine.sizes.crank, first, last))
     for layer, end in ((on.START, swing.start), (on.END, swing.end)):
         shapes += _links((layer,) * 3, machine, swing, end)
@@ -149,11 +150,6 @@ def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:
     across = 0.5j * width * (end - start) / abs(end - start) / _MM
     corners = (start - across, end - across, end + across, start + across)
     return Outline(layer, tuple(_point(corner) for corner in corners), (0.0, 0.0, 0.0, 0.0))
-
-
-def _ends(swing: LeverSwing) -> tuple[float, float]:
-    """Return the first and the last lever angle, rad, over the whole motion."""
-    return (swing.start, swing.start + 2.0 * math.pi) if swing.of_full_turn else (swing.start, swing.end)
 
 
 def _size(machine: LeverMachine) -> float:

@@ -156,7 +156,7 @@ def _bounds_by_slack_column(subject: Subject) -> dict[str, str]:
     """Return the bounds of each requirement on the design, including those from its choices, by slack column."""
     bounds = {}
     for item in requirements_of(subject.design.part):
-        key, factor = column_key_in_system(item.slack_column, subject.system)
+        key, factor = column_key_in_system(item.slack, subject.system)
         ends = [("at least", item.lower), ("at most", item.upper)]
         if item.lower == item.upper:
             ends = [("equal to", item.lower)]

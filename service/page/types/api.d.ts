@@ -65,7 +65,7 @@ declare global {
     type Preview = Schemas["PreviewModel"];
     type Progress = Schemas["JobProgress"];
     type Quantity = Schemas["QuantityModel"];
-    type Requirement = Schemas["RequirementModel"];
+    type Requirement = Schemas["Requirement"];
     type Requirements = Schemas["RequirementsModel"];
     type SwingPreview = Schemas["SwingPreview"];
     type Block = Schemas["AnswerBlock"];

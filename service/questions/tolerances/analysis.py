@@ -105,11 +105,9 @@ def numbers(
     source_limits = limits_of_sources(mechanism, linkage)
     if not np.any(source_limits):
         raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
-    signals = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
-    (worst_case, at), (rss, at_square) = (
-        (float(values[0]), angles)
-        for values, angles in (first_peaks(mechanism, signal, lengths_row(linkage)) for signal in signals)
-    )
+    design = lengths_row(linkage)
+    (worst_case,), at = first_peaks(mechanism, Signal.POSITION_ERROR, design)
+    (rss,), at_square = first_peaks(mechanism, Signal.POSITION_ERROR_RSS, design)
     try:
         exact = worst_position_error(mechanism, linkage)
     except AssemblyError:
@@ -123,11 +121,11 @@ def numbers(
     )
     deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
     return {
-        "worst_case_mm": 1e3 * worst_case,
+        "worst_case_mm": 1e3 * float(worst_case),
         "worst_case_angle_deg": float(np.degrees(at[0])),
         "exact_worst_case_mm": None if exact is None else 1e3 * exact.size,
         "exact_worst_case_angle_deg": None if exact is None else float(np.degrees(exact.crank_angle)),
-        "root_sum_square_mm": 1e3 * rss,
+        "root_sum_square_mm": 1e3 * float(rss),
         "root_sum_square_angle_deg": float(np.degrees(at_square[0])),
         "contributions": [
             {
