@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem
+from tests.case_count import case_count
 
 RUNS = Path(__file__).parents[2] / "runs"
 SHIPPED = sorted(RUNS.glob("*.toml"))
@@ -60,7 +61,7 @@ def answered(job: Any) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=400)
+@settings(max_examples=case_count(150, 400))
 @given(st.data())
 def test_a_mutated_job_gives_a_problem_or_a_job_error(data: st.DataObject) -> None:
     job = deepcopy(data.draw(st.sampled_from(JOBS)))
@@ -82,7 +83,7 @@ def test_a_mutated_job_gives_a_problem_or_a_job_error(data: st.DataObject) -> No
     answered(job)
 
 
-@settings(max_examples=300)
+@settings(max_examples=case_count(120, 300))
 @given(VALUES)
 def test_any_data_gives_a_problem_or_a_job_error(data: Any) -> None:
     answered(data)
@@ -92,7 +93,7 @@ LENGTHS = st.one_of(st.floats(1e-9, 1e4), st.sampled_from([1e-9, 0.1, 0.2, 0.3, 
 BOUNDS = st.one_of(st.floats(0.0, 10.0), st.sampled_from([1.0, 1.5, 3.0, 3.2]))
 
 
-@settings(max_examples=120)
+@settings(max_examples=case_count(60, 120))
 @given(
     st.lists(LENGTHS, min_size=6, max_size=6),
     st.dictionaries(
@@ -108,7 +109,7 @@ def test_any_ranges_and_bounds_give_a_problem_or_a_job_error(
     answered(JOBS[0] | {"variables": variables, "constraints": constraints})
 
 
-@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=case_count(120, 300), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.sampled_from(SHIPPED), st.integers(0, 4000), st.integers(0, 12), st.binary(max_size=6))
 def test_a_damaged_file_gives_a_problem_or_a_job_error(
     tmp_path: Path, source: Path, begin: int, length: int, replacement: bytes

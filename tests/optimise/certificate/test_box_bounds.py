@@ -33,6 +33,7 @@ from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective
 from slidercrank.optimise.search.elimination import EliminationBranch, elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator
+from tests.case_count import ALL_CASES
 from tests.model.cases import STRENGTH
 from tests.optimise import problems
 from tests.optimise.problems import JOBS, Bounds, degrees, problem, shipped
@@ -261,10 +262,18 @@ def on_shaft(machine: Mechanism, parts: dict[str, Any]) -> Mechanism:
     return replace(machine, acceleration=0.0 if "speed_profile" in parts else machine.acceleration, **parts)
 
 
+TURNING = [
+    (shaft, machine, width)
+    for row, shaft in enumerate(SHAFTS)
+    for column, machine in enumerate(("bars", "all loads", "two turns", "crossed, clockwise"))
+    for rank, width in enumerate((0.1, 0.004))
+    if ALL_CASES or (row + column + rank) % 2 == 0
+]
+"""Every machine on every shaft, in wide boxes or in narrow ones; or in both."""
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("shaft", SHAFTS)
-@pytest.mark.parametrize("machine", ["bars", "all loads", "two turns", "crossed, clockwise"])
-@pytest.mark.parametrize("width", [0.1, 0.004])
+@pytest.mark.parametrize(("shaft", "machine", "width"), TURNING)
 def test_no_sample_of_a_shaft_is_better_than_its_box(shaft: str, machine: str, width: float) -> None:
     """Each cylinder of a bank feels gravity in its own direction; torques add up at one angle of the shaft."""
     several = on_shaft(MACHINES[machine], SHAFTS[shaft])
