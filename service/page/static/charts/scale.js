@@ -1,6 +1,7 @@
 /** Linear and logarithmic scales: conversion of values to pixels and back, and round numbers as ticks. */
 
 import { isConstant } from "../lib/constant.js";
+import { withPower } from "../lib/numbers.js";
 
 const WIDE = 1.5; // minimum ratio of the ends of a logarithmic axis
 
@@ -69,10 +70,8 @@ export function mayBeLog({ low, high }) {
 /** Return a tick as text, rounded to the digit of a power of ten. @param {number} tick @param {number} power */
 function tickText(tick, power) {
   const size = Math.abs(tick);
-  const text =
-    size >= 1e5
-      ? tick.toExponential(Math.max(0, Math.floor(Math.log10(size)) - power))
-      : tick.toFixed(Math.max(0, -power));
+  if (size >= 1e6) return withPower(tick, 1 + Math.max(0, Math.floor(Math.log10(size)) - power));
+  const text = tick.toFixed(Math.max(0, -power));
   return text.replace(/^-0(\.0*)?$/, "0").replace("-", "−");
 }
 

@@ -64,7 +64,7 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       row("time ratios", between(allowed.time_ratio, "")),
       row("transmission angles", between(allowed.transmission_angle_deg, "deg")),
       row(
-        allowed.unchecked.length ? "meets the others" : "meets everything",
+        allowed.unchecked.length ? "meets all checked" : "meets everything",
         share(allowed.feasible_share, example?.feasible),
         tried(allowed),
       ),

@@ -21,6 +21,10 @@ const SAID = [
     "drive.rated_torque: a motor gives it continuously, and greatest_torque briefly; got 20 N m, more than 10 N m; swap the two, or correct one",
     "rated torque: a motor gives it continuously, and greatest torque briefly; got 20 N m, more than 10 N m; swap the two, or correct one",
   ],
+  [
+    "the others lose in peak_torque max and rms_torque max",
+    "the others lose in the peak torque limit and the rms torque limit",
+  ],
   ["it is above 1; got max 0.5; raise it", "it is above 1; got at most 0.5; raise it"],
   [
     "a quantity with a fixed value cannot also be an objective; got constraints.time_ratio with equals; leave out one of the two",
