@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ class Amount(Quantity):
 
     value: float = _NONE
     choice: str = ""
+    turning: bool = field(default=False, compare=False)
 
     @property
     def constant(self) -> bool:

@@ -109,6 +109,16 @@ def test_numbers_of_the_cylinder_and_the_frame_may_vary_and_be_chosen() -> None:
     assert set(front.columns) >= {"choice_cylinder_bore", "frame_angle_deg", "peak_cylinder_force_N"}
 
 
+@pytest.mark.slow
+def test_cylinders_are_chosen_from_a_catalogue_by_price() -> None:
+    table = "name,cylinder.bore (mm),cylinder.rod (mm),price (EUR)\nA,12,8,100\nB,40,25,140\nC,50,28,200\n"
+    goals = {"price": "minimise", "peak_cylinder_force": "minimise"}
+    front = sc.solve(sc.problem(lever(choice=[{"name": "cylinder", "table": table}], objectives=goals)))
+    assert front.status == "done"
+    assert set(front.columns["price_EUR"].tolist()) <= {100.0, 140.0, 200.0}
+    assert (front.columns["pressure_margin"] >= 1.0 - 1e-9).all()
+
+
 def test_a_varying_cylinder_keeps_its_bore_above_the_piston_rod_and_its_stroke_below_the_closed_length() -> None:
     """Without limits the search would take a rod as thick as the bore, which no pressure loads."""
     ranges = {
