@@ -370,6 +370,9 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     page.get_by_label("Remove design 1").click()
     expect(page.locator(".machine .mechanism")).to_have_count(2)
     assert "beside=5" in page.url
+    preferred = page.get_by_role("link", name="Prefer Design 5").get_attribute("href")
+    assert preferred is not None
+    assert re.search(r"wish\.\w+=improve.*wish\.design=5", preferred)
 
 
 def test_a_design_is_put_beside_by_its_number(opened: Opened) -> None:

@@ -1,6 +1,7 @@
 /** Head of the view: location, links to the previous and the next design, and the designs beside it. */
 
 import { neighbours } from "../front/listed_order.js";
+import { wishesOfPreference, wishQuery } from "../front/wishes.js";
 import { lastAddress, link, read } from "../lib/address.js";
 import { first, h } from "../lib/dom.js";
 
@@ -13,7 +14,8 @@ export function focusLastStep(place) {
   if (words) first(place, `.design-head [aria-label="${words}"]`)?.focus({ preventScroll: true });
 }
 
-/** @typedef {{ job: string, number: number, named: HTMLElement, undo: HTMLElement, front: Api.Front, others: { number: number, name: string, series: number | string }[] }} Place */
+/** @typedef {{ number: number, name: string, series: number | string, row: Api.Row }} Shown A design of the view. */
+/** @typedef {{ job: string, number: number, named: HTMLElement, undo: HTMLElement, front: Api.Front, main: Shown, others: Shown[], objectives: Api.Objective[] }} Place */
 
 /** Return the part of the view on the screen, for any design. */
 function currentView() {
@@ -21,8 +23,9 @@ function currentView() {
   return { over: query.get("over"), tab: query.get("tab") };
 }
 
-/** Return the head. named: name of the design. undo: button that reverts a change. @param {Place} place */
-export function designHead({ job, number, named, undo, front, others }) {
+/** Return the head. named: name of the design. undo: button that reverts a change. @param {Place} shown */
+export function designHead(shown) {
+  const { job, number, named, undo, front, others } = shown;
   const beside = others.map((one) => one.number).join(",");
   const { place, count, before, after, listed } = neighbours(job, number, front.count);
   /** @param {number | null} to @param {string} words @param {string} sign */
@@ -63,13 +66,13 @@ export function designHead({ job, number, named, undo, front, others }) {
       undo,
       step(before, "Previous design", "‹"),
       step(after, "Next design", "›"),
-      compare({ job, number, front, others }),
+      compare(shown),
     ),
   );
 }
 
-/** @param {Pick<Place, "job" | "number" | "front" | "others">} place */
-function compare({ job, number, front, others }) {
+/** @param {Omit<Place, "named" | "undo">} place */
+function compare({ job, number, front, main, others, objectives }) {
   const numbers = others.map((one) => one.number);
   /** @param {number[]} list */
   const to = (list) => link(["jobs", job, "designs", number], { beside: list.join(",") || null });
@@ -115,5 +118,29 @@ function compare({ job, number, front, others }) {
           h("button", {}, "Compare"),
         )
       : null,
+    others.length === 1 &&
+      h(
+        "span",
+        {
+          class: "row prefer",
+          title:
+            "Computes the optimal design that goes on in the same direction, at most as far again",
+        },
+        "Which do you prefer?",
+        [main, ...others].map((one, n) =>
+          h(
+            "a",
+            {
+              class: "button",
+              "aria-label": `Prefer ${one.name}`,
+              href: link(["jobs", job], {
+                ...wishQuery(wishesOfPreference(objectives, one, [...others, main][n])),
+                show: "wishing",
+              }),
+            },
+            one.name,
+          ),
+        ),
+      ),
   );
 }

@@ -1,5 +1,6 @@
 /** Wishes for the objectives of a front: in the address, and in requests and responses of the service. */
 
+import { rankOf } from "../design/rank.js";
 import { capitalised } from "../lib/words.js";
 
 /**
@@ -9,6 +10,7 @@ import { capitalised } from "../lib/words.js";
  * @typedef {{ id: string, text: string }} Problem At an objective, at the "design", or about all: "".
  */
 
+const SAME = 1e-9; // relative difference of equal values
 const CLASSES = ["improve", "keep"];
 
 /**
@@ -40,6 +42,24 @@ export function wishQuery(wishes) {
       kind === "limit" ? `to ${value}` : kind === "value" ? String(value) : kind;
   if (wishes?.design) query["wish.design"] = String(wishes.design);
   return query;
+}
+
+/**
+ * Return the wishes of somebody who prefers a design to another one: improve what it is better at, at most as much again of what that costs.
+ * @param {readonly Api.Objective[]} objectives @param {{ number: number, row: Api.Row }} preferred @param {{ row: Api.Row }} other
+ * @returns {Wishes}
+ */
+export function wishesOfPreference(objectives, preferred, other) {
+  /** @type {[string, Wish][]} */
+  const wishes = objectives.flatMap((objective) => {
+    const [value, against] = [preferred, other].map(({ row }) => Number(row[objective.column]));
+    const gain = rankOf(against, objective) - rankOf(value, objective);
+    if (!(Math.abs(gain) > SAME * Math.abs(value))) return [];
+    const limit = Number((2 * value - against).toPrecision(5));
+    const wish = gain > 0 ? { kind: "improve" } : { kind: "limit", value: limit };
+    return [[objective.quantity, /** @type {Wish} */ (wish)]];
+  });
+  return { of: new Map(wishes), design: preferred.number };
 }
 
 /**

@@ -1,6 +1,6 @@
 /** Choice by wishes: a class or a value for each objective, and the nearest optimal design, found by a new search. */
 
-import { link } from "../lib/address.js";
+import { link, read } from "../lib/address.js";
 import { get, isAbort, post } from "../lib/api.js";
 import { fill, first, formOf, h, markInvalid, numberField } from "../lib/dom.js";
 import { attempt } from "../lib/notices.js";
@@ -38,6 +38,7 @@ const SAME = 1e-9; // relative tolerance of rounding
 export function wishingPanel(explorer) {
   const { data, chosen, job } = explorer;
   const { objectives } = data;
+  const shown = read().query.get("show") === "wishing"; // a link leads here
   const rows = objectives.map(row);
   const design = h("input", {
     type: "text",
@@ -432,7 +433,7 @@ export function wishingPanel(explorer) {
 
   showFields();
   drawOutcome();
-  if (chosen.wish) ask();
+  if (chosen.wish) ask().then(() => shown && place.scrollIntoView());
   else if (!place.hidden) askBefore();
   return { place, cells: () => answered?.design ?? null };
 }

@@ -115,7 +115,7 @@ export async function show(place, { parts, query, signal }) {
   const rename = () => {
     const { name, bookmark } = changed ?? requirements;
     const title = capitalised(name);
-    named.textContent = title === `Design ${number}` ? title : `${title} · ${number}`;
+    named.textContent = title.startsWith(`Design ${number}`) ? title : `${title} · ${number}`;
     undo.hidden = changed === null;
     remarks.show({ number: bookmark, title, faults: changed?.faults ?? [] });
   };

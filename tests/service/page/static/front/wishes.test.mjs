@@ -5,6 +5,7 @@ import {
   nearest,
   locationOfRefusal,
   wishesFrom,
+  wishesOfPreference,
   wishQuery,
   wishRequest,
   mistakesIn,
@@ -33,6 +34,26 @@ test("wishes come back from their address", () => {
     const back = wishesFrom(new URLSearchParams(wishQuery(made)), OBJECTIVES);
     assert.deepEqual(back, made.of.size ? made : null);
   }
+});
+
+test("a preferred design improves at most as far again as the other one is away", () => {
+  const objectives = [
+    { quantity: "time_ratio", column: "a", sense: "maximise" },
+    { quantity: "peak_torque", column: "b", sense: "minimise" },
+    { quantity: "stroke", column: "c", sense: "minimise", target: 80 },
+  ];
+  const [one, other] = [
+    { number: 3, row: { a: 1.4, b: 120, c: 80 } },
+    { number: 7, row: { a: 1.3, b: 100, c: 80 } },
+  ];
+  assert.deepEqual(
+    wishesOfPreference(objectives, one, other),
+    wishes({ time_ratio: { kind: "improve" }, peak_torque: { kind: "limit", value: 140 } }, 3),
+  );
+  assert.deepEqual(
+    wishesOfPreference(objectives, other, one),
+    wishes({ time_ratio: { kind: "limit", value: 1.2 }, peak_torque: { kind: "improve" } }, 7),
+  );
 });
 
 test("what an address cannot mean is left out", () => {
