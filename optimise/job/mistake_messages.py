@@ -169,11 +169,16 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
     return f"{place}: unknown {subject}; {choice}", key_of_location([*path, near]) if near else ""
 
 
+_RARE = ("[arm]", "[spring]")
+"""Tables of few jobs whose keys are common words, such as torque and force: a similar key is meant more often."""
+
+
 def where_key_belongs(key: str, schema: Schema) -> str:
     """Say where a key belongs that its table lacks; "" if no table has it either."""
     if key in schema["properties"] and not headings_with_keys([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
-    owners = sorted(_tables_with_all_keys([key], schema), key="[cylinder]".__eq__)  # which few jobs have
+    owners = [owner for owner in _tables_with_all_keys([key], schema) if owner not in _RARE]
+    owners.sort(key="[cylinder]".__eq__)
     return f"it belongs in {' or '.join(owners)}; move it there" if owners else ""
 
 
