@@ -68,7 +68,7 @@ class Search:
         m = len(problem.objectives)
         self.added = Candidates.empty(m)  # values scaled
         self.needy = [np.zeros((0, m))]  # corners of closed boxes that the front alone does not cover
-        self.made_periodic = 0.0  # largest excess of closed boxes over the set and over the front alone
+        self.closed_excess = 0.0  # largest excess of closed boxes over the set and over the front alone
         self.closed_by_front = 0.0
         self.gap, self.hole = 0.0, np.full(dimensions.shape[1], np.nan)
         self.stopped = False
@@ -162,7 +162,7 @@ class Search:
     def _record_closed_corners(self, corner: Array, gaps: Array) -> None:
         if not len(corner):
             return
-        self.made_periodic = max(self.made_periodic, float(gaps.max()))
+        self.closed_excess = max(self.closed_excess, float(gaps.max()))
         alone = excess_over_designs(corner, self.front, enough=self.epsilon)
         self.closed_by_front = max(self.closed_by_front, float(alone.max()))
         self.needy.append(corner[alone > self.epsilon])
@@ -175,7 +175,7 @@ class Search:
             )
 
     def _proven_epsilon(self) -> float:
-        return max(self.made_periodic, float(self.tree.excess.max(initial=0.0)))
+        return max(self.closed_excess, float(self.tree.excess.max(initial=0.0)))
 
     # ---- the result -----------------------------------------------------------------------------------------------
 
