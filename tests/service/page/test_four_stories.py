@@ -88,7 +88,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     of_head = downloaded(page, head.get_by_role("link", name="Report of the decision"), tmp_path)
     assert "Press for bushings: Rounded A" in of_head.read_text(encoding="utf-8")
     page.get_by_role("navigation", name="Main").get_by_role("link", name="Runs").press("Enter")
-    expect(page.get_by_role("listitem")).to_contain_text("decided for Rounded A", timeout=PATIENCE)
+    expect(page.locator("li.run")).to_contain_text("decided for Rounded A", timeout=PATIENCE)
     page.go_back()
     head.get_by_role("link", name="Decided: Rounded A").press("Enter", timeout=PATIENCE)
     expect(page.locator("h1")).to_contain_text("Rounded A", timeout=PATIENCE)
