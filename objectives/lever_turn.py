@@ -29,7 +29,6 @@ ARM_TIME_RATIO = _form(
     sentence="The time of the arm's slow stroke over that of its fast one, with the crank at constant speed.",
     advice="A rotating arm has a stroke from one normal of the line between both pivots to the other.",
     formula="(180 deg + a) / (180 deg - a), a = asin((m - e) / M) + asin((m + e) / M), m < M of crank and frame",
-    source="J. E. Shigley and J. J. Uicker, Theory of Machines and Mechanisms, quick-return mechanisms",
     example=1.6,
     better="high",
     domain=Domain(lower=1.0, rule="a time ratio is above 1", remedy="1.3 to 2 are usual"),

@@ -60,7 +60,7 @@ def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shap
     lengths = [float(machine.sizes.length(end)) for end in (swing.start, swing.end)]
     longest = machine.sizes.length_range[1] if swing.of_full_turn else max(lengths)
     end = longest / _NECK if swing.of_full_turn else barrel
-    circle = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
+    circle: list[Shape] = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
     rod: Shape = circle[0] if swing.of_full_turn else _strip(on.ROD, complex(barrel - longest), 0j, _ROD * size)
     lug = [Line(on.ACTUATOR, (0.0, 0.0), _point(foot))] if foot else []
     lever = bar(on.CRANK, (0.0, 0.0), _point(pin), _LEVER * size)

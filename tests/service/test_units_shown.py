@@ -135,13 +135,12 @@ def test_csv_in_inches_reads_back_to_the_metric_values(run: Path, command: Comma
     assert {"crank_in", "peak_torque_lbf_in"} <= set(inch[0])
     for one, other in zip(metric, inch, strict=True):
         for (key, value), (shown, told) in zip(one.items(), other.items(), strict=True):
-            if isinstance(value, str) or not math.isfinite(value or math.nan):
+            if value is None or isinstance(value, str) or not math.isfinite(value):
                 assert str(value) == str(told)
             else:
                 assert told is not None
-                assert float(told) / name_unit_and_factor_of_key(shown)[2] == pytest.approx(
-                    value / name_unit_and_factor_of_key(key)[2], rel=1e-12
-                )  # type: ignore[operator]
+                expected = value / name_unit_and_factor_of_key(key)[2]
+                assert float(told) / name_unit_and_factor_of_key(shown)[2] == pytest.approx(expected, rel=1e-12)
 
 
 def test_tables_json_and_the_environment_follow(run: Path, command: Command, monkeypatch: pytest.MonkeyPatch) -> None:

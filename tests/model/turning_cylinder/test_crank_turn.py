@@ -104,15 +104,16 @@ def test_the_fast_stroke_is_between_reversals_or_normals_of_the_frame(rotates: b
         )
 
 
-def test_a_textbooks_shaper_and_whitworth_have_the_printed_numbers() -> None:
-    """R. S. Khurmi and J. K. Gupta, Theory of Machines, chapter 5: slotted bar of 450 mm, Whitworth mechanism."""
+def test_a_shaper_and_a_whitworth_mechanism_have_the_numbers_of_their_triangles() -> None:
+    """A crank of half the frame swings its arm by 60 deg; 50 mm beside 75 mm leave 2 acos(2/3) for the fast stroke."""
     mechanism, _ = some_turn(np.random.default_rng(55))
     shaper = numbers_of(mechanism, np.array([[0.12, 0.24, 0.0]]))._replace(ram=0.45)
     assert float(np.real(arm_time_ratio(shaper))) == pytest.approx(2.0, rel=1e-12)
     assert math.degrees(float(np.real(arm_swing(shaper)))) == pytest.approx(60.0, rel=1e-12)
     assert 1e3 * float(ram_stroke(shaper)) == pytest.approx(450.0, rel=1e-12)
     whitworth = numbers_of(mechanism, np.array([[0.075, 0.05, 0.0]]))
-    assert float(np.real(arm_time_ratio(whitworth))) == pytest.approx(2.735, abs=2e-3)
+    fast = 2.0 * math.acos(0.05 / 0.075)
+    assert float(np.real(arm_time_ratio(whitworth))) == pytest.approx(2.0 * math.pi / fast - 1.0, rel=1e-12)
 
 
 def test_a_crank_that_locks_is_refused_with_its_sizes() -> None:
