@@ -80,7 +80,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     if _is_known(cylinder.dead_length):
         closed_length = cylinder.dead_length + (stroke if _is_known(stroke) else magnitude(last - first))
     length = closed_length if _is_known(closed_length) else np.where(rises, first, last)
-    found = (
+    numbers: tuple[Any, ...] = (
         *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
         *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
         *(cylinder.barrel_mass, length, cylinder.piston_rod_mass, length),
@@ -90,7 +90,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
         *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
         *(() if machine.lever is None or machine.lever.spring is None else map(part, SPRING)),
     )
-    return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in found))
+    return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in LeverNumbers(*numbers)))
 
 
 def _is_known(number: Any) -> bool:
