@@ -119,18 +119,18 @@ function overview(place, quantities, sought) {
       const all = parts.join(" ").toLowerCase();
       return words.every((word) => all.includes(word));
     };
-    const shownTerms = TERMS.filter(isMatch);
+    const matchingTerms = TERMS.filter(isMatch);
     fill(
       terms,
-      shownTerms.map(([term, meaning]) => [h("dt", {}, term), h("dd", {}, meaning)]),
+      matchingTerms.map(([term, meaning]) => [h("dt", {}, term), h("dd", {}, meaning)]),
     );
     const matches = quantities.filter(({ title: heading, name, column, sentence, advice }) =>
       isMatch([heading, name, column, sentence, advice]),
     );
     fill(list, matches.map(card));
     none.textContent =
-      matches.length || shownTerms.length
-        ? `${matches.length} of ${quantities.length} quantities, ${shownTerms.length} of ${TERMS.length} terms`
+      matches.length || matchingTerms.length
+        ? `${matches.length} of ${quantities.length} quantities, ${matchingTerms.length} of ${TERMS.length} terms`
         : "Nothing matches these words.";
   };
   fill(
