@@ -1,4 +1,4 @@
-"""What a crank turns by the line from the second pivot: a slotted arm with its ram, or an oscillating cylinder."""
+"""Arm that a rotating crank drives about a second pivot: slotted, with a ram, or an oscillating cylinder."""
 
 from __future__ import annotations
 

@@ -192,7 +192,7 @@ def _drive_train_numbers(mechanism: Mechanism, drive: Drive, designs: Array) -> 
 
 
 def motor_curve(mechanism: Mechanism, design: Array, crank_angle: Array, curve: MotorCurve) -> Array:
-    """Return a curve of the motor for one design (1, 3 + k) at crank angles (n,), rad, in the sense of rotation.
+    """Return a motor curve of one design (1, 3 + k) at crank angles (n,), rad, along the rotation.
 
     NaN where friction locks the design. Raises `InputError` without a drive.
     """

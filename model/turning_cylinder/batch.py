@@ -106,7 +106,7 @@ def _arm_numbers(part: Callable[[str], Any]) -> tuple[Any, ...]:
 
 
 def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
-    """Return which designs (n, 3 + k) make the whole swing without a dead point, or a full turn of the crank.
+    """Return which designs (n, 3 + k) make the swing without a dead point, or the full turn.
 
     Where they vary, the bore must exceed the piston rod, and the closed length the stroke, in each design.
     """

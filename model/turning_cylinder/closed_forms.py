@@ -62,7 +62,7 @@ def greatest_speed(c: LeverNumbers, fastest: float) -> Any:
 
 
 def arm_swing(c: LeverNumbers) -> Any:
-    """Return the angle, rad, that the line turns by in a stroke if the crank rotates fully; 2 pi if it rotates too.
+    """Return the swing of the line, rad, while the crank rotates fully; 2 pi if the line rotates too.
 
     At a reversal the line is a tangent of the pin's circle: its angle to OA has the sine (r - e) / f or (r + e) / f.
     """
@@ -73,23 +73,26 @@ def arm_swing(c: LeverNumbers) -> Any:
 
 
 def arm_time_ratio(c: LeverNumbers) -> Any:
-    """Return the time of the slow stroke over that of the fast one, if the crank rotates fully at constant speed."""
+    """Return the time of the slow stroke over that of the fast one at constant crank speed."""
     fast = sum(stroke_ends(c))
     return (2.0 * np.pi - fast) / fast
 
 
 def arm_transmission_angle(c: LeverNumbers) -> Any:
-    """Return the least angle, rad, between AB and the normal of the line, along which crank and arm push each other."""
+    """Return the least angle, rad, between AB and the normal of the line: the direction of the pin force."""
     return np.arccos(magnitude(c.offset) / magnitude(c.crank - c.frame))
 
 
 def ram_stroke(c: LeverNumbers) -> Any:
-    """Return the stroke, m, of a ram: R ((r - e) / f + (r + e) / f) if its arm swings, 2 R if it rotates."""
+    """Return the stroke of a ram, m.
+
+    A swinging arm has R ((r - e) / f + (r + e) / f), a rotating one 2 R.
+    """
     return 2.0 * c.ram * np.where(np.real(c.crank) < np.real(c.frame), c.crank / c.frame, 1.0)
 
 
 def turn_work(c: LeverNumbers) -> Any:
-    """Return the work of the crank in a full turn, J: that of the arm's torque, of the ram's force and of friction."""
+    """Return the work of the crank in a full turn, J, against arm torque, ram force and friction."""
     swing = arm_swing(c)
     angle = np.where(np.real(c.crank) < np.real(c.frame), 2.0 * swing, swing)
     return c.arm_torque * angle + c.ram_force * ram_stroke(c) + 2.0 * c.rub * travel(c)

@@ -110,7 +110,7 @@ def fill_curves_of_swing(
     probe: Row,
     out: ComplexTable,
 ) -> None:
-    """Fill the curves (p, k) of levers (p,) at fractions (p, k) of the time; probe (p,): between the same corners."""
+    """Fill the curves (p, k) of levers (p,) at time fractions (p, k); probe (p,): between the same corners."""
     for p in range(place.shape[0]):
         c = numbers_at(numbers, lever[p])
         for k in range(place.shape[1]):
@@ -122,7 +122,7 @@ def fill_curves_of_swing(
 def fill_curves_of_turn(
     numbers: ComplexTable, lever: Integers, curve: Integers, place: ComplexTable, probe: Row, out: ComplexTable
 ) -> None:
-    """Fill the curves (p, k) of levers (p,) at places (p, k) of their turns; probe (p,): in the same piece."""
+    """Fill the curves (p, k) of levers (p,) at places (p, k) in their turns; probe (p,): same piece."""
     for p in range(place.shape[0]):
         c = numbers_at(numbers, lever[p])
         for k in range(place.shape[1]):

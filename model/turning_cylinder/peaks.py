@@ -76,7 +76,7 @@ class LeverBatch:
         *,
         slow: bool = False,
     ) -> Complexes:
-        """Return curves (p, k) of levers (p,) by their codes (p,) at places (p, k); probe (p,): in the same piece.
+        """Return curves (p, k) of levers (p,), by code (p,), at places (p, k); probe (p,): in the same piece.
 
         table: one of `tables`. slow: whether to ignore the law.
         """

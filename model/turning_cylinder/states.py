@@ -145,8 +145,9 @@ def _forces(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -
 
 
 class Bodies(NamedTuple):
-    """What the accelerated bodies need. carried: force on the lever. rod, barrel: weight less m a of the cylinder.
+    """Forces and moments that accelerate the bodies.
 
+    carried: force on the lever. rod, barrel: weight less m a of both parts of the cylinder.
     about_o: moment of the lever about O. about_a: moment of `rod` and `barrel` about A less their I gamma''.
     """
 
@@ -159,7 +160,10 @@ class Bodies(NamedTuple):
 
 @analytic
 def bodies_at(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any) -> Bodies:
-    """Return what the bodies need at a lever angle. turn, rise: speed and acceleration of the lever."""
+    """Return the forces and moments that accelerate the bodies at a lever angle.
+
+    turn, rise: speed and acceleration of the lever.
+    """
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * turn, motion.turn_2 * turn * turn + motion.turn_1 * rise
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -1,4 +1,4 @@
-"""A crank that rotates fully about O and turns the line from A to its pin B: shaper, Whitworth, oscillating cylinder.
+"""A crank rotates fully about O and turns the line from A to B: shaper, Whitworth mechanism, oscillating cylinder.
 
 The crank turns at constant speed w. With psi from OA to OB, the direction gamma of the line turns by gamma' per angle
 of the crank and the length L along it changes by L'. Crank < frame: the line swings between two reversals, where it is
@@ -51,7 +51,7 @@ class TurnState(NamedTuple):
 
 @analytic
 def stroke_ends(c: Any) -> tuple[Any, Any]:
-    """Return the angles a and b, rad: the fast stroke lasts from psi = -a to psi = b, through 0.
+    """Return the angles a and b, rad; the fast stroke is from psi = -a to psi = b.
 
     c: `LeverNumbers` or `TurningCylinder`.
     """
@@ -64,7 +64,7 @@ def stroke_ends(c: Any) -> tuple[Any, Any]:
 
 @analytic
 def turn_state(c: LeverNumbers, place: Any, probe: Any) -> TurnState:
-    """Return the state at places, whose whole part is the piece of the turn and whose fraction is even in the angle.
+    """Return the state at places: piece of the turn plus the fraction of its angle.
 
     probe: places within the same piece. Place 0 and 4 are the start of the fast stroke.
     """
@@ -107,7 +107,7 @@ def _state(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
 
 @analytic
 def _arm(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector, Vector, Any, Any]:
-    """Return the weight of the arm less its m a, the force of the ram on the arm, their moment about A, and y'."""
+    """Return the arm's weight less m a, the ram's force on the arm, their moment about A, and y'."""
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * c.speed, motion.turn_2 * c.speed * c.speed
     centre = scaled(c.arm_moment, motion.line)

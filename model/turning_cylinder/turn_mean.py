@@ -17,7 +17,7 @@ _TURN = 2.0 * np.pi
 
 
 def rms_torque(batch: LeverBatch, *, gradients: bool = False) -> tuple[Array, Array]:
-    """Return the root mean square (n,) of the torque over a turn, N m, and its derivatives (n, v) by the variables."""
+    """Return the RMS torque (n,) over a turn, N m, and its derivatives (n, v) by the variables."""
     count = batch.count
     lever, piece = np.repeat(np.arange(count), PIECES), np.tile(np.arange(float(PIECES)), count)
     size, (torque, square) = np.zeros(count), batch.codes(("torque_up", "torque_over_place"))

@@ -64,7 +64,7 @@ class CylinderPart(Checked[Cylinder]):
 
 
 class ArmPart(Checked[Arm]):
-    """What a crank that rotates fully turns about the cylinder's pivot: a slotted arm, or an oscillating cylinder."""
+    """Slotted arm or oscillating cylinder that a rotating crank turns about the cylinder's pivot."""
 
     makes = Arm
 

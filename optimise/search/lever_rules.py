@@ -1,4 +1,4 @@
-"""Dimensions that give a lever's cylinder its exact lengths, or a crank's arm its swing or time ratio, in closed form.
+"""Dimensions in closed form for the exact lengths of a lever's cylinder, or an arm's exact swing or time ratio.
 
 With the angles psi at both ends, L^2 + e^2 = r^2 + f^2 - 2 r f cos(psi) is quadratic in the lever r and the frame f.
 The least length is at the end with the greater cosine. Two requirements give both lengths, hence r f and r^2 + f^2.
@@ -85,7 +85,7 @@ class LeverRule(Rule):
 
 @dataclass(frozen=True)
 class ArmRule(Rule):
-    """A rule of a crank that turns an arm: its swing a or time ratio Q, a = pi (Q - 1) / (Q + 1).
+    """Exact swing a or time ratio Q of an arm: a = pi (Q - 1) / (Q + 1).
 
     With m the lesser and M the greater of crank and frame, m^2 = sin(a/2)^2 (M^2 - e^2 / cos(a/2)^2). lesser: whether
     the target is m.

@@ -56,7 +56,7 @@ def raise_connection_limit() -> int:
 
 @dataclass
 class Gate:
-    """What the connections of one server share.
+    """State that all connections of one server share.
 
     limit: maximum number of connections. log_times: times of the logged events. ahead: continuations of connections
     whose clients have sent requests ahead.

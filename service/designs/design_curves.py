@@ -216,7 +216,7 @@ def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]
 
 
 def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[tuple[str, str, str, Array]]:
-    """Return key, title, unit and metric values of the curves of a crank that turns an arm, at crank angles, rad."""
+    """Return key, title, unit and metric values of each curve of a turning arm at crank angles, rad."""
     found, speed = crank_turn(mechanism, linkage, angles), mechanism.speed
     columns = [
         ("lever_angle_deg", "crank angle", "deg", np.degrees(angles)),
@@ -238,14 +238,14 @@ def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) ->
 
 
 def crank_turn_rows(mechanism: Mechanism, linkage: Linkage) -> list[dict[str, Any]]:
-    """Return a row for each crank angle over the full turn of a lever, metric; speeds and forces at the crank speed."""
+    """Return a metric row for each crank angle of a full turn; speeds and forces are at the crank speed."""
     angles = np.linspace(0.0, 2.0 * np.pi, _ANGLES, endpoint=False)
     columns = crank_turn_columns(mechanism, linkage, angles)
     return rows_of_columns({key: values.tolist() for key, _, _, values in columns})
 
 
 def design_csv(design: StoredDesign, system: System = "metric") -> str:
-    """Return the curves as CSV: those of `cycle_csv`, of both strokes of a swing, or of a lever's way or turn."""
+    """Return the curves as CSV: `cycle_csv`, both strokes of a swing, or the travel or turn of a lever."""
     if design.part.motion is None:
         return cycle_csv(design.mechanism, design.linkage, system)
     if design.mechanism.lever is not None:

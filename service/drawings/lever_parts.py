@@ -51,7 +51,7 @@ def moving_lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) 
 
 
 def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shape]]:
-    """Return piston rod, barrel or slotted arm, lever and pins, each in its own coordinates, by the name of a link.
+    """Return piston rod, barrel or slotted arm, lever and pins in their own coordinates, by link name.
 
     The piston rod lies behind its pin, barrel and arm before the cylinder's pivot, as the rod and slider of a linkage.
     """

@@ -60,7 +60,7 @@ def lever_figure(
 
 
 def _panels_of_turn(mechanism: Mechanism, linkage: Linkage) -> list[Panel]:
-    """Return torque on the crank, speed and acceleration of the arm and length along it over a turn of the crank."""
+    """Return crank torque, arm speed and acceleration, and the length along the arm over a crank turn."""
     angles = np.linspace(0.0, 2.0 * np.pi, 2 * POINTS + 1)
     found, degrees = crank_turn(mechanism, linkage, angles), np.degrees(angles)
     curves = (

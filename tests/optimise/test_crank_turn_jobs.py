@@ -1,4 +1,4 @@
-"""Jobs of a crank that rotates fully and turns an arm: from text to a front, exact ratios, and what is refused."""
+"""Jobs for a rotating crank that turns an arm: front, exact ratios and refusals."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ def asked_of(question: DesignQuestion, problem: sc.Problem, design: Sequence[flo
 
 
 def answers_of(name: str) -> Iterator[tuple[BoundQuestion, dict[str, Any]]]:
-    """Yield a question to a design, or to two, of every sort of machine that has an answer, and the numbers."""
+    """Yield each question, one or two designs of every kind of machine that it applies to, and the numbers."""
     random = np.random.default_rng(sum(map(ord, name)))
     for sort in SORTS:
         for _ in range(2):

@@ -19,7 +19,7 @@ CRANK, BARREL, ARM, ROD, RAM = range(5)
 
 
 class Forces(NamedTuple):
-    """Torque on the crank, N m, forces on it at B and O, and on arm and barrel at A, N; power of the loads, W."""
+    """Crank torque, N m, joint forces at B, O and A, N, and power of the loads, W."""
 
     torque: float
     pin: complex

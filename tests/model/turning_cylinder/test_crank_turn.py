@@ -105,7 +105,7 @@ def test_the_fast_stroke_is_between_reversals_or_normals_of_the_frame(rotates: b
 
 
 def test_a_shaper_and_a_whitworth_mechanism_have_the_numbers_of_their_triangles() -> None:
-    """A crank of half the frame swings its arm by 60 deg; 50 mm beside 75 mm leave 2 acos(2/3) for the fast stroke."""
+    """A crank half as long as the frame swings its arm by 60 deg. With 50 and 75 mm, the fast stroke is 2 acos(2/3)."""
     mechanism, _ = some_turn(np.random.default_rng(55))
     shaper = numbers_of(mechanism, np.array([[0.12, 0.24, 0.0]]))._replace(ram=0.45)
     assert float(np.real(arm_time_ratio(shaper))) == pytest.approx(2.0, rel=1e-12)

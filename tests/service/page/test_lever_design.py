@@ -60,7 +60,7 @@ def test_a_lever_moves_between_the_ends_of_its_swing(service: tuple[Page, str]) 
 
 
 def test_the_cylinder_is_drawn_to_scale(service: tuple[Page, str]) -> None:
-    """From the foot of its line to the pin it is as long as said, and the foot lies off the pivot by the offset."""
+    """The cylinder line has the stated length to the pin, and its distance from the pivot is the offset."""
     page, address = service
     page.goto(f"{address}/#/jobs/1/designs/1")
     move_slider(page, "Back and forth", 180)
