@@ -5,7 +5,7 @@
     |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
     |   |-- ForeignRecords  records of another search, from which this one cannot go on
     |   |-- JobError        a job file that cannot be used
-    |   |   `-- InfeasibleError     a valid job that no design can meet
+    |   |   `-- InfeasibleError     a valid job whose requirements no design can meet
     |   `-- NotFound        what was asked for by its name or number is not there
     |-- MissingExtra        an optional part of the software is not installed; also an ImportError
     |-- OutputLost          standard output that is closed or full

@@ -27,7 +27,7 @@ _OF_LEVER = {
     "swing_energy": "lever_work",
     "swing_transmission_angle": "lever_transmission_angle",
 }
-"""Quantities of a lever by their counterparts of a crank that swings."""
+"""Quantities of a lever, by the corresponding quantities of a crank that swings."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -32,7 +32,7 @@ Use other optimisers
 
 Errors
     SlidercrankError     base of all errors: `InputError`, `AssemblyError`, `JobError`, ...
-    InfeasibleError      a `JobError` for a valid job that no design can meet
+    InfeasibleError      a `JobError` for a valid job whose requirements no design can meet
 
 Every name is imported on first use. Values are in SI and radians unless a name or a column carries a unit.
 """

@@ -186,7 +186,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
 def compile_ahead(packages: str, modules: Iterable[str]) -> None:
     """Compile the kernels in modules ahead if none is compiled yet.
 
-    Processes that wait for them register their wait.
+    A process that needs one of them requests it and waits for it.
     """
     folder = kernel_folder() if os.environ.get("NUMBA_DISABLE_JIT", "0") == "0" else None
     begins = f"{packages.partition('.')[0]}.*.*"

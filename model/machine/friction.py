@@ -2,8 +2,8 @@
 
 In the guide the friction force is the coefficient times the magnitude of the guide force, against the slider's
 velocity. In a pin the friction moment is coefficient times radius times the magnitude of the pin force, against the
-relative rotation of the parts. The pin force passes the pin's centre at the distance coefficient times radius, the
-radius of its *friction circle*.
+relative rotation of the parts. The line of action of the pin force passes the pin's centre at a distance equal
+to coefficient times radius, the radius of the pin's *friction circle*.
 """
 
 from __future__ import annotations

@@ -22,9 +22,9 @@ STEEL = 210e9
 class Cylinder:
     """A single-stage hydraulic or pneumatic cylinder; None for what is not known.
 
-    closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: what the closed
-    cylinder is longer than its stroke, m. mounting: a clevis or an eye at the end of the barrel, or a trunnion along
-    it, beyond which the barrel extends, so that the stroke may exceed the closed length; the cylinder pivots on either.
+    closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: closed length
+    minus stroke, m. mounting: a clevis or an eye at the end of the barrel, or a trunnion along it, beyond which the
+    barrel extends, so that the stroke may exceed the closed length; the cylinder pivots on either.
     bore, rod: diameters, m. supply_pressure: Pa above that of the other side. seal_friction: N, against the motion.
     modulus: modulus of elasticity of the piston rod, Pa. barrel_mass, piston_rod_mass: kg, uniform bars as long as the
     closed cylinder, or as its least length in the swing. length_tolerance: of its length, m.

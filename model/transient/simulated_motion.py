@@ -29,7 +29,7 @@ assert set(_SAID) == set(get_args(Verdict))
 
 @dataclass(frozen=True, kw_only=True)
 class MotorRun:
-    """Crank under a motor, arrays (n,) in order of time, SI.
+    """Motion of a crank driven by a motor; arrays (n,) in time order, SI.
 
     motor_torque: motor torque on the crank, N m, counter-clockwise. torque: part that the mechanism absorbs; the
     flywheel and the rotor absorb the rest.

@@ -52,7 +52,7 @@ def extension_ratio(c: LeverNumbers) -> Any:
 
 
 def work_out(c: LeverNumbers) -> Any:
-    """Return the work of the slow cylinder from start to end, J: against gravity and the friction of the seal."""
+    """Return the work that a slow cylinder does from start to end, J, against gravity and seal friction."""
     return lift(c) + c.rub * travel(c)
 
 

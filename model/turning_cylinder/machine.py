@@ -39,7 +39,7 @@ def lever_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> LeverSw
         return LeverSwing(zero - before, zero + after, of_full_turn=True)
     placed = with_start_of_machine(mechanism, swing)
     if placed.law == "table":
-        raise InputError("the law of a lever's swing has a name; got a table; name a law such as cycloidal")
+        raise InputError("the law of a lever's swing must be given by name; got a table; name a law such as cycloidal")
     return LeverSwing(placed.start, placed.end, placed.law, placed.duration)
 
 

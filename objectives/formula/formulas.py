@@ -89,7 +89,7 @@ def is_formula(text: str, names: Iterable[str] = ()) -> bool:
 
 
 def identifiers_in(text: object) -> list[str]:
-    """Return the words in a formula, names and units; empty for anything but a text."""
+    """Return the words in a formula (names and units), or an empty list if it is not a string."""
     return _WORD.findall(text) if isinstance(text, str) else []
 
 
@@ -314,7 +314,7 @@ class Formulas:
             return f"keep variables.{name} away from zero: its range is {_ends_text(interval, self._kinds[name])}"
         instead = self._quantities[name].instead_of_quotient if name in self._quantities else ""
         if instead:
-            return f"use {instead} instead: work output divided by work input, also for machines that drive"
+            return f"use {instead} instead: work output divided by work input, also for prime movers such as engines"
         return "divide by a quantity that is never zero, or constrain the product instead"
 
 

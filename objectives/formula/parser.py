@@ -105,7 +105,7 @@ class _Reader:
         self.depth += 1
         if self.depth > DEEPEST:
             self.raise_error(
-                f"brackets, functions and signs lie within each other at most {DEEPEST} deep", "give parts of it names"
+                f"brackets, functions and signs must be nested at most {DEEPEST} deep", "give parts of it names"
             )
 
     def call(self, function: str, *arguments: Node) -> Call:

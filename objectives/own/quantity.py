@@ -312,7 +312,7 @@ def quantity_entry_points() -> dict[str, Any]:
 
 
 def installed_quantity(name: str) -> OwnQuantity:
-    """Return the quantity with a name that an installed package provides.
+    """Return the quantity of this name from an installed package.
 
     Raises `InputError` if the entry point is not a quantity.
     """

@@ -54,7 +54,7 @@ class Limits:
                 self.alive &= ~(lower - greatest > FEASIBLE * scale)
 
     def add_curve_constraint(self, constraint: Constraint, value: Enclosure) -> None:
-        """Require an upper bound on every part of a greatest value, or a lower bound on a least value."""
+        """Require an upper bound on every part of a maximum, or a lower bound on every part of a minimum."""
         if constraint.lower is None:
             self.add_constraint(constraint, value, None, None)
         else:

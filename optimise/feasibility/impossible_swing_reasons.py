@@ -61,14 +61,14 @@ def no_swing_reason(problem: Problem) -> str:
         )
     if not closing:
         return (
-            f"no design within the ranges closes over {movement}, which needs rod > |offset - crank sin(crank "
-            "angle)|; allow a longer rod or an offset nearer to the crank pin, or reduce the swing"
+            f"no design within the ranges can be assembled throughout {movement}, which needs rod > |offset - "
+            "crank sin(crank angle)|; allow a longer rod or an offset nearer to the crank pin, or reduce the swing"
         )
     if not passing:
         return (
-            f"in every design within the ranges that closes, {movement} passes a dead point, where crank and rod are "
-            "in line and the slider cannot drive the crank; stay on one side of it, change the ranges, or drive the "
-            "crank"
+            f"every design within the ranges that can be assembled throughout {movement} passes a dead point, where "
+            "crank and rod are in line and the slider cannot drive the crank; stay on one side of it, change the "
+            "ranges, or drive the crank"
         )
     return (
         f"friction may lock every design within the ranges that can make {movement}; "

@@ -52,9 +52,9 @@ def load_job(
 
     values: numbers that replace those in the file, by path ("mechanism.slider.mass"). allow_user_code: whether a job
     may name Python functions ([quantity]); they run when the problem is solved, with all the user's rights. Set it to
-    False for other people's jobs. require_feasible: whether to raise an error for a job that no design can meet. A
-    search requires this; the analysis of a given design does not. A minimum above the maximum of the same formula
-    always raises an error.
+    False for other people's jobs. require_feasible: whether to raise an error for an infeasible job. A search
+    requires this; the analysis of a given design does not. A minimum above the maximum of the same formula always
+    raises an error.
 
     Issues an `InputWarning` for probable mistakes, such as a number without a unit; the problem's `warnings` has the
     sentences. Raises JobError, naming file, key, rule, value and remedy, for a file that cannot be read, violates the

@@ -41,7 +41,8 @@ class CylinderPart(Checked[Cylinder]):
     closed_length: PositiveLength | None = optional_entry("least length between its pins; with it the stroke", "650 mm")
     stroke: PositiveLength | None = optional_entry("stroke of the cylinder; with it the closed length", "430 mm")
     dead_length: PositiveLength | None = optional_entry(
-        "instead of a closed length: what the closed cylinder is longer than its stroke, or than its travel", "210 mm"
+        "instead of a closed length: closed length minus stroke, or minus travel if no stroke is given",
+        "210 mm",
     )
     mounting: Mounting = optional_entry(
         "clevis or eye at the end of the barrel, or trunnion, beyond which the barrel extends",

@@ -54,7 +54,7 @@ def problem_of(
     """Return the problem that a job states. Raises JobError.
 
     folder: folder with the modules of its functions. installed: quantities from packages that it names.
-    require_feasible: whether to raise `InfeasibleError` if no design can meet the job; a search needs that, a given
+    require_feasible: whether to raise `InfeasibleError` if the job is infeasible; a search needs that, a given
     design does not.
     """
     require_parts_of_lever(job.mechanism, costs=job.costs, target_motion=job.target_motion)

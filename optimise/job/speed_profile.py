@@ -53,7 +53,7 @@ class SpeedProfilePart(Checked[Profile]):
         max_length=MOST_POINTS,
     )
     speeds: tuple[AngularSpeed, ...] | None = optional_entry(
-        "speed at each point, with the sign of the direction; only the shape counts if a cycle time is given",
+        "speed at each point, negative if clockwise; only the shape counts if a cycle time is given",
         ["300 rpm", "290 rpm", "310 rpm", "300 rpm"],
         max_length=MOST_POINTS,
     )
@@ -76,7 +76,7 @@ class SpeedProfilePart(Checked[Profile]):
 
 
 def speed_profile_file(data: Mapping[str, Any]) -> str | None:
-    """Return the file that a job's speed profile consists of; None if it names none."""
+    """Return the file from which a job's speed profile is read; None if it is not read from a file."""
     part = table_in(table_in(data, "mechanism"), "speed_profile")
     file = part.get("file") if len(part) == 1 else None
     return file if isinstance(file, str) else None

@@ -93,7 +93,9 @@ _SIGNS: tuple[Edit, ...] = (
     _edit_all("''", '"', _STRAIGHT),
     _edit_code("'", '"', "text must end with the quote it begins with"),
     _edit_code("[−–]", "-", "a minus sign must be the - of the keyboard"),
-    _edit_code(f"[{SPACES}]", " ", "a space must be an ordinary one, not a non-breaking one (␣) of Word or a web page"),
+    _edit_code(
+        f"[{SPACES}]", " ", "a space must be an ordinary space, not a non-breaking one (␣) from Word or a web page"
+    ),
 )
 """Edits to make before values are read."""
 _COMMAS = _edit_code(r"(?<!\d,\d)(?<!\d,\d\d)(?<!\d,\d\d\d)\s*;\s*(?!\s*(?:$|[+-]?\d+,\d))", ", ", _COMMA_RULE)

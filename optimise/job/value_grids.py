@@ -99,7 +99,7 @@ def read_grid(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid
 
 def _grid_of_list(table: Mapping[str, Any], read: Callable[[object], float]) -> Grid:
     if len(table) > 1:
-        raise InputError("a list of values must not have min or max; got them; leave them out")
+        raise InputError("a list of values must not be combined with min or max; got both; leave min and max out")
     values = table["values"]
     if not isinstance(values, list | tuple) or len(values) < 2:
         raise InputError(

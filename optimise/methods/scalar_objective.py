@@ -24,7 +24,7 @@ from ..search.evaluation import Evaluator
 from ..search.piece_rows import Rows, greatest_pieces, rows_of_designs
 
 SUM = 1e-4
-"""rho: excludes a design that loses less than 1e-4 of a range in one objective for a whole range of another."""
+"""rho: excludes a design if losing less than 1e-4 of one objective's range would gain the whole range of another."""
 _ABSENT = -1.0  # value of a row that a design lacks: fulfilled, without slope
 _OUT = 10.0  # violation where no linkage rotates fully, so that a line search turns back
 _CLOSE = 0.02  # rad, or a row's number: pieces of neighbouring points closer than this keep their order

@@ -6,7 +6,7 @@ The unknowns are K at the starts of the cells and the drive torque T there, line
 
 exactly. Limits on torque, speed and crank acceleration, peak and time are convex in K and T: the time per angle, sqrt(J
 / 2 K), is convex in K; T^2 sqrt(J / 2 K), whose integral is that of T^2 over time, is convex in both (the perspective
-of a square over a concave function). A lower limit on the time is not convex. It is replaced by the tangent of the time
+of a square over a concave function). A lower limit on the time is not convex. It is replaced by the tangent to the time
 at another law, which lies below every law's time (the convex-concave procedure: A. L. Yuille and A. Rangarajan, Neural
 Computation 15, 2003).
 """

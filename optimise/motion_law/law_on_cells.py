@@ -1,6 +1,6 @@
 """The best law on the cells of a turn.
 
-A required cycle time makes the problem non-convex only if the best law would be faster. Then the tangent of the time is
+A required cycle time makes the problem non-convex only if the best law would be faster. Then the tangent to the time is
 renewed until it changes nothing (`cone_programme`). The law is the convex combination of the slow and the fast law with
 exactly the cycle time. It is no worse, because limits, peak and RMS torque are convex.
 
@@ -177,8 +177,8 @@ class _Search:
     def _slow_reference_energies(self, fast: Solution, request: LawRequest) -> Array:
         """Return K of a law with the cycle time, found with torques above those of a faster law.
 
-        Without such a law, return K of constant speed. The tangent of the time at a law is at most 1.5 times the law's
-        own time, so no law satisfies it if that law is much too fast.
+        Without such a law, return K of constant speed. The tangent to the time at a law is at most 1.5 times that law's
+        own time. If that law is much too fast, the tangent therefore never reaches the cycle time.
         """
         torque, most = fast.value, request.torque_limit or math.inf
         for _ in range(_DOUBLINGS):
@@ -197,7 +197,7 @@ class _Search:
     def _solve_by_tangents(
         self, aim: Aim, needs: Requirement, reference: Array, *, prove: bool = False
     ) -> Solution | None:
-        """Return the best law of at least the cycle time near a reference, by tangents of the time."""
+        """Return the best law of at least the cycle time near a reference, with tangents to the time."""
         least = replace(needs, longest=None, least=self.cycle_time)
         last = None
         for _ in range(_RENEWALS):

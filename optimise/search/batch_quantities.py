@@ -84,7 +84,7 @@ def _join_pieces(parts: Sequence[Pieces]) -> Pieces:
 
 
 def _opposite_pieces(part: Pieces) -> Pieces:
-    """Return a quantity from its other side for designs without a kink there, with only its active piece."""
+    """Return a quantity's pieces from the other side; if the designs have none, only its active piece."""
     if part.opposite is not None:
         return part.opposite
     active = (np.argmin if part.least else np.argmax)(part.values, axis=1)

@@ -262,8 +262,8 @@ def _linear_rules(block: Block) -> Iterator[LinearRule]:
 def _fulfilled_requirements(steps: tuple[Rule, ...], block: Block) -> set[str]:
     """Return the requirements that hold exactly after these steps.
 
-    A combination's rule alone fulfils one relation between two requirements, but neither of them. Linear equalities
-    hold once all their rules are used.
+    On its own, a combination's rule enforces one relation between two requirements, but satisfies neither. Linear
+    equalities hold once all their rules are used.
     """
     single = {step.origin for step in steps if "+" not in step.origin and not isinstance(step, LinearRule)}
     if sum(isinstance(step, LinearRule) for step in steps) == len(block.targets):

@@ -88,7 +88,7 @@ class Archive(Candidates):
         )
 
     def add(self, *tables: Candidates) -> None:
-        """Add designs of any branches."""
+        """Add designs from any branch."""
         together = self.join(*tables)
         rows = _candidate_rows_to_keep(together)
         as_they_are = len(rows) == len(together) and bool((np.diff(rows) > 0).all())

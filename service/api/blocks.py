@@ -69,7 +69,7 @@ class AnswerBlock(BaseModel):
 
 
 def block_models(blocks: Sequence[Block], notes: Sequence[str] = ()) -> list[AnswerBlock]:
-    """Return blocks as data. notes: sentences to append as notes, without capital and full stop."""
+    """Return blocks as data. notes: sentences to append as notes, without an initial capital or a full stop."""
     note_blocks = (note(f"{text[:1].upper()}{text[1:]}.") for text in notes)
     return [_block_model(text) for text in (*blocks, *note_blocks)]
 

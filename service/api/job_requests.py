@@ -190,8 +190,8 @@ def problem_of_tables(
     """Return the problem that a job defines.
 
     allowed: functions, "module:function", that it may use as custom quantities. values: replacements for numbers in the
-    job, by path. require_feasible: whether to reject a job that no design can meet. Raises `JobError`, also for a job
-    that names a missing file.
+    job, by path. require_feasible: whether to reject an infeasible job. Raises `JobError`, also for a job that
+    names a missing file.
     """
     return with_time_limit_per_call(
         parse_with_allowed_functions(tables, allowed, values, require_feasible=require_feasible), LONGEST_WAIT

@@ -37,8 +37,8 @@ def polygon_figure() -> PanelFigure:
     return polygon_panels(
         polygons,
         title="Case 1: position, velocity and acceleration polygons (Boyle and Liu, Fig. 2)",
-        subtitle="crank 3, rod 8, offset 2 (no dimension); crank angle −30°, −15 rad/s, −10 rad/s²",
-        units=("no dimension", "1/s", "1/s²"),
+        subtitle="crank 3, rod 8, offset 2 (dimensionless); crank angle −30°, −15 rad/s, −10 rad/s²",
+        units=("dimensionless", "1/s", "1/s²"),
     )
 
 

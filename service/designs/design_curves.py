@@ -209,7 +209,7 @@ def lever_columns(curves: LeverCurves) -> list[tuple[str, str, str, Array]]:
 
 
 def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]:
-    """Return a row for each point of the way out of a lever, metric, at even times."""
+    """Return a row for each point of a lever's swing from start to end, metric, at even times."""
     found = lever_curves(machine, swing, np.linspace(0.0, 1.0, POINTS))
     time = {} if swing.duration is None else {"time_s": (swing.duration * found.share).tolist()}
     return rows_of_columns(time | {key: values.tolist() for key, _, _, values in lever_columns(found)})

@@ -9,7 +9,7 @@ from ..runs.result import Cell
 
 
 def format_number(value: float, digits: int = 4, *, zeros: bool = False) -> str:
-    """Return a number for people: significant digits as given, no exponent if avoidable, a real minus sign.
+    """Return a number formatted for reading: significant digits as given, no exponent if avoidable, a real minus sign.
 
     zeros: whether to keep trailing zeros, so that numbers in a column have the same precision.
     """
@@ -33,7 +33,7 @@ def title_with_unit(title: str, symbol: str, target: float | None = None) -> str
 
 
 def format_cell(cell: Cell) -> str:
-    """Return a value for people, with six significant digits."""
+    """Return a value formatted for reading, with six significant digits."""
     if cell is None:
         return "–"
     return cell if isinstance(cell, str) else format_number(cell, 6)
@@ -47,11 +47,11 @@ def format_cell_exactly(cell: Cell) -> str:
 
 
 def format_length(millimetres: float, system: System, digits: int = 4) -> str:
-    """Return a length, mm, for people, in the unit of a unit system."""
+    """Return a length, mm, formatted for reading in the unit of a unit system."""
     unit, factor = metric_unit_in("mm", system)
     return f"{format_number(millimetres * factor, digits)} {unit}"
 
 
 def format_cell_with_unit(cell: Cell, unit: str) -> str:
-    """Return a value for people with its unit."""
+    """Return a value with its unit, formatted for reading."""
     return f"{format_cell(cell)} {unit_text(unit)}".rstrip()

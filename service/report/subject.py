@@ -89,7 +89,7 @@ class Subject:
         return {key: factor * tolerances_mm[name] for name, (key, factor) in keys.items()}
 
     def format_cell(self, key: str, cell: Cell) -> str:
-        """Return a cell for people: a dimension with the decimals of its tolerance, anything else with six digits."""
+        """Return a cell as readable text: a dimension with the decimals of its tolerance, others with six digits."""
         if key not in self.tolerances or not isinstance(cell, float):
             return format_cell(cell)
         return format_toleranced(cell, self.tolerances[key]).partition(" ")[0].replace("-", "−")

@@ -216,7 +216,7 @@ def _lock_folder(folder: Path) -> int | None:
     except BlockingIOError:
         os.close(handle)
         raise InputError(
-            f"a run may only be used by one process; another one uses {folder}; wait for it, or stop it"
+            f"only one process may use a run at a time; another one is using {folder}; wait for it, or stop it"
         ) from None
     except OSError:  # some network disks have no locks
         os.close(handle)

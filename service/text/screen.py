@@ -52,7 +52,7 @@ def print_output(text: str) -> None:
 
 
 def print_record(json: bool, record: Any, show: Callable[[Console], None]) -> None:
-    """Write a result as JSON, or for people."""
+    """Write a result as JSON or as readable text."""
     if json:
         print_output(json_text(record))
     else:

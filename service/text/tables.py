@@ -1,4 +1,4 @@
-"""Tables for people: a front, one design, the numbers of an analysis."""
+"""Tables as readable text: a front, one design, the numbers of an analysis."""
 
 from __future__ import annotations
 

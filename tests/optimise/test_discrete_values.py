@@ -341,7 +341,7 @@ def test_requirements_over_the_cycle_that_no_combination_meets_are_told_with_the
         ({"values": ["20 mm"]}, 'got ["20 mm"]; give a single value without a list'),
         ({"min": "20 mm", "max": "60 mm", "steps": "1 mm"}, 'got "steps"; correct or remove it'),
         ({"values": ["20 mm", "2 cm"]}, "values must differ"),
-        ({"values": ["20 mm", "25 mm"], "min": "1 mm"}, "leave them out"),
+        ({"values": ["20 mm", "25 mm"], "min": "1 mm"}, "leave min and max out"),
         ({"min": "20 mm", "max": "nan mm", "step": "1 mm"}, "finite"),
     ],
 )

@@ -144,7 +144,10 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"motion": {"law": "harmonic"}}, "any other swing must have one"),
         ({"motion": {"from": "101 deg", "to": "290 deg"}, "variables": FITTED}, "passes a dead point"),
         ({"motion": {"from": "-170 deg"}}, "passes a dead point"),
-        ({"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}}, "no design within the ranges closes"),
+        (
+            {"variables": {"crank": "1.4 m", "rod": "0.5 m", "offset": "0 mm"}},
+            "no design within the ranges can be assembled",
+        ),
         ({"motion": {"driver": "crank", "actuator_tolerance": 0}}, "it needs a swing driven by the slider"),
         ({"motion": {"margin": "100 deg"}}, "motion.margin: must be more than 0 and less than 90 deg"),
         (

@@ -181,7 +181,7 @@ REFUSED = {
         'speed = "60 rpm"  # as drawn'
     ),
     '[mechanism]\nspeed\xa0= "60 rpm"\n': (
-        "line 2, mechanism.speed: a space must be an ordinary one, not a non-breaking one (␣) of Word or "
+        "line 2, mechanism.speed: a space must be an ordinary space, not a non-breaking one (␣) from Word or "
         'a web page; got speed␣= "60 rpm"; write speed = "60 rpm"'
     ),
     "[mechanism]\nspeed = −60 rpm\n": (

@@ -115,7 +115,7 @@ CONTRADICTIONS: dict[str, tuple[dict[str, Any], str]] = {
             "variables": {"crank": "100 mm", "rod": ["20 mm", "40 mm"], "offset": "0 mm"},
             "objectives": {"actuator_travel": "minimise"},
         },
-        "motion: no design within the ranges closes",
+        "motion: no design within the ranges can be assembled",
     ),
     "values of which none fits": (
         changed_job(

@@ -236,7 +236,7 @@ def test_what_cannot_go_on_is_refused_and_left_as_it_is(
 def test_a_run_that_still_goes_on_is_not_taken_up(tmp_path: Path) -> None:
     with (
         RunFolder(tmp_path, "x") as run,
-        pytest.raises(InputError, match="a run may only be used by one process; another one uses"),
+        pytest.raises(InputError, match="only one process may use a run at a time; another one is using"),
     ):
         RunFolder.reopen(run.path)
     with RunFolder.reopen(run.path) as again:

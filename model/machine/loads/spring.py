@@ -15,7 +15,7 @@ class Spring(Load):
     """A linear spring: force = -stiffness (position - free_position), N, position counted outward from the datum.
 
     stiffness: N/m. free_position: m. datum: a dead centre moves with the design. From the outer dead centre, both the
-    position and the restoring force count inward: the spring is the same, and only its rest point moves.
+    position and the restoring force are positive inward: the spring is the same, and only its rest point moves.
     """
 
     stiffness: float

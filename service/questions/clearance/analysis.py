@@ -42,9 +42,9 @@ ROWS = (
 )
 
 
-_Counted = Annotated[float | None, Note("mean over the turns that count; null if there are none")]
+_Counted = Annotated[float | None, Note("mean over the counted turns; null if there are none")]
 _Uncertain = Annotated[
-    float | None, Note("half the width of the 99 % confidence interval; null if fewer than two turns count")
+    float | None, Note("half the width of the 99 % confidence interval; null if fewer than two turns are counted")
 ]
 Impacts = Annotated[
     dict[str, Any],
@@ -65,7 +65,7 @@ Impacts = Annotated[
             **{f"{key}_uncertainty{unit}": _Uncertain for _, key, unit, *_ in ROWS},
             "fastest_impact_m_s": Annotated[float | None, Note("null if there is no impact")],
             "energy_residual_J": Annotated[
-                float | None, Note("greatest error of the energy balance in a turn; null if no turn counts")
+                float | None, Note("greatest error of the energy balance in a turn; null if no turns are counted")
             ],
         },
     ),

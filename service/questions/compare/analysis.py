@@ -265,7 +265,7 @@ def _difference_table(names: Sequence[str], places: Sequence[tuple[str, Sequence
 
 
 def _place_in_words(place: str) -> str:
-    """Return a path in a job for people: "load 1 force", "constraints time ratio min"."""
+    """Return a path in a job in words: "load 1 force", "constraints time ratio min"."""
     table, _, key = place.partition(".")
     parts = (table, *key.rpartition(".")[::2]) if table == "constraints" else place.split(".")  # formulas have points
     return " ".join(filter(None, parts)).replace("_", " ")

@@ -68,7 +68,7 @@ QUESTION = DesignQuestion(
             "dead_length",
             LENGTH,
             "Dead length",
-            "Instead of a closed length: what the closed cylinder is longer than its stroke, or than its travel.",
+            "Instead of a closed length: closed length minus stroke, or minus travel if no stroke is given.",
             sign="positive",
             example="210 mm",
         ),

@@ -164,7 +164,7 @@ def test_the_first_job_of_an_empty_form_can_be_solved_and_its_sketch_moves_until
     assert drawn.inner_html() == before
 
 
-IMPOSSIBLE = "Impossible: no design can meet this job."
+IMPOSSIBLE = "Impossible: no design can meet the requirements of this job."
 WRONG = [
     ("name", "", "is missing"),
     ("crank speed", "fast", "must be an angular speed"),
@@ -441,7 +441,7 @@ def test_a_submission_whose_answer_was_lost_is_sent_again_as_the_same(form: Open
 
     page.route("**/api/v1/jobs", lose, times=1)
     start(page)
-    expect(page.get_by_role("alert")).to_contain_text("does not answer")
+    expect(page.get_by_role("alert")).to_contain_text("is not responding")
     page.reload()
     ready(page)
     start(page)
@@ -509,7 +509,7 @@ def test_the_service_is_asked_when_typing_rests_and_again_when_it_was_away(form:
           }
         }"""
     )
-    expect(status(page)).to_contain_text("does not answer")
+    expect(status(page)).to_contain_text("is not responding")
     ready(page)
     assert len(asked) <= 4
 

@@ -19,11 +19,11 @@ const WORDS = [
   ["Back and forth", "Drag the crank, or use the arrow and page keys to move it back and forth."],
   [
     "Crank angle",
-    "Drag the crank, or use the arrow keys (1°) and the page keys (10°) on the crank angle.",
+    "Drag the crank, or change the crank angle with the arrow keys (1°) or Page Up and Page Down (10°).",
   ],
   [
     "Crank angle",
-    "Drag the crank, or use the arrow keys (2°) and the page keys (20°) on the crank angle; a cycle is two turns.",
+    "Drag the crank, or change the crank angle with the arrow keys (2°) or Page Up and Page Down (20°); a cycle is two turns.",
   ],
 ];
 const GRIPS =

@@ -48,7 +48,7 @@ export function overCycle(place, { path, rpm, turns, lever, over, turned, told: 
       class: "button",
       download: "",
       title: lever
-        ? "One way of the swing, all curves"
+        ? "The swing from start to end, all curves"
         : turns
           ? "A row for each degree, all curves"
           : "Both strokes, all curves",

@@ -253,7 +253,7 @@ function named(form, name, place) {
         called.dataset.wrong =
           "A name must have lower-case letters, digits and underscores, and begin with a letter.";
       else if (typed !== name && typed in /** @type {object} */ (form.at(["quantity"]) ?? {}))
-        called.dataset.wrong = `Another formula is called “${typed}” already.`;
+        called.dataset.wrong = `Another formula is already called “${typed}”.`;
       if (called.dataset.wrong) return form.put(path, form.at(path));
       if (typed === name) return;
       setTimeout(() => {

@@ -34,7 +34,7 @@ export function speedProfile(form) {
       { key: "crank_angles", label: "crank angle", kind: "angle" },
       { key: "speeds", label: "crank speed", kind: "angular speed" },
     ],
-    "Measured speeds, with the sign of the speed, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, the speeds are scaled to it",
+    "Measured speeds, negative if clockwise, at increasing crank angles that span less than a turn; a smooth curve joins them. Their mean must be the crank speed; if a cycle time is given, the speeds are scaled to it",
     { optional: true, title: "speeds over the turn, one per line" },
   );
   const file = form.at([...path, "file"]) === undefined ? null : byschema(form, [...path, "file"]); // a service does not open files

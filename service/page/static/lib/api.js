@@ -190,7 +190,7 @@ export async function fetchResponse(method, url, options = {}, left = 3) {
     response = await fetch(url, { method, ...options });
   } catch (error) {
     if (isAbort(error)) throw error;
-    throw new Problem(0, "The service does not answer; this page will continue when it is back.");
+    throw new Problem(0, "The service is not responding; this page will continue when it is back.");
   }
   const seconds = Number(response.headers.get("Retry-After"));
   if (response.status === 503 && method === "GET" && left > 0 && seconds > 0) {

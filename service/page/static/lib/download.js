@@ -57,7 +57,7 @@ async function fetched(link) {
     );
   } catch (error) {
     throw error instanceof TypeError || statusOf(error) === 0
-      ? new Problem(0, "The service does not answer; try again when it is back.")
+      ? new Problem(0, "The service is not responding; try again when it is back.")
       : error;
   } finally {
     clearTimeout(notice);

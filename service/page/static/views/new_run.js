@@ -18,7 +18,7 @@ import { system } from "../lib/numbers.js";
 import { sentenceOf } from "../lib/refusals.js";
 
 export const title = "New run";
-const IMPOSSIBLE = "Impossible: no design can meet this job.";
+const IMPOSSIBLE = "Impossible: no design can meet the requirements of this job.";
 
 /** Return the remedy for the marked fields. @param {Api.Wrong[]} wrong */
 const correction = (wrong) =>
