@@ -130,7 +130,7 @@ LEVER_WORK = _form(
     signed=True,
     place=349,
     picture="power",
-    sentence="The work of the slow cylinder on the way out; negative if it has to brake.",
+    sentence="The work that a slow cylinder does from start to end; negative if it has to brake.",
     formula="integral of P dL + friction of the seal * travel",
 )
 LEVER_PIN_FORCE = _pin(

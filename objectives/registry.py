@@ -65,7 +65,7 @@ def first_names_text(names: Collection[str]) -> str:
 
 
 def quantity(name: str, custom: Collection[Quantity] = ()) -> Quantity:
-    """Return the quantity with a name; raise `InputError` with the closest names for an unknown one.
+    """Return the quantity of a given name; raise `InputError` with the closest names for an unknown one.
 
     custom: a problem's quantities besides the built-in ones. With a problem at hand, use `Problem.quantity`, which
     includes its custom quantities.

@@ -64,7 +64,7 @@ class Commands(TyperGroup):
         self.commands = dict.fromkeys(_COMMANDS)  # type: ignore[assignment]
 
     def get_command(self, ctx: typer.Context, cmd_name: str) -> Any:  # type: ignore[override]
-        """Return the command with a name, or None."""
+        """Return the command of a given name, or None."""
         if cmd_name in self.commands and self.commands[cmd_name] is None:
             module = import_module(f"{__package__}.commands.{_MODULES.get(cmd_name, cmd_name)}")
             alone = typer.Typer(rich_markup_mode=None, add_completion=False)

@@ -26,7 +26,7 @@ _ROUNDING = 1e-13  # fraction of maximum torque times cycle angle: a smaller cha
 
 @dataclass(frozen=True, kw_only=True)
 class SteadyRunning(MotorRun):
-    """One cycle of steady running, arrays (n,) in order of time, SI and radians; extremes of the speed included.
+    """One cycle of steady running, arrays (n,) in time order, SI and radians; extremes of the speed included.
 
     crank_angle: from the first breakpoint on, decreasing if the crank turns clockwise. mean_speed: 2 pi / period, with
     its sign. work: work of the motor per turn, J. inertia: inertia of flywheel and motor at the crank, kg m^2. memory:

@@ -121,9 +121,9 @@ class LeverSwing:
 
 @dataclass(frozen=True)
 class LeverCurves:
-    """Curves over the way out, each (n,), SI and radians; vectors as complex numbers x + i y.
+    """Curves over the swing from start to end, each (n,), SI and radians; vectors as complex numbers x + i y.
 
-    The way back has the same forces at the same places, as every law is symmetric, and the opposite speeds. push: force
+    The return has the same forces at the same places, as every law is symmetric, and the opposite speeds. push: force
     P of the cylinder without friction, N, positive where it pushes. speed: dL/dt, m/s. pin, pivot, cylinder_pivot:
     forces on the lever at B and at O, and on the cylinder at A, N.
     """
@@ -164,7 +164,7 @@ def numbers_of_machine(
 
 
 def lever_curves(machine: LeverMachine, swing: LeverSwing, share: Array) -> LeverCurves:
-    """Return the curves at fractions (n,) of the time of the way out."""
+    """Return the curves at fractions (n,) of the duration from start to end."""
     state = lever_state(numbers_of_machine(machine, swing), swing.law, share, share)
     pin, pivot, cylinder_pivot = (part[0] + 1j * part[1] for part in (state.pin, state.pivot, state.cylinder_pivot))
     return LeverCurves(

@@ -93,8 +93,9 @@ class LeverBatch:
 class LeverPeaks:
     """Local peaks of n levers, in any order.
 
-    values: (n, k), -inf where absent. places: (n, k), fraction of the time of the way out, plus 2 for a cylinder that
-    holds the lever at an end, or place of `turn_state`; NaN where absent. gradients: (n, k, v), by the variables.
+    values: (n, k), -inf where absent. places: (n, k), fraction of the duration from start to end, plus 2 for a cylinder
+    that holds the lever at an end, or place of `turn_state`; NaN where absent. gradients: (n, k, v), with respect to
+    the variables.
     """
 
     values: Array

@@ -107,7 +107,7 @@ class LeverState(NamedTuple):
 
 
 def lever_state(c: LeverNumbers, law: LeverLaw, share: Any, probe: Any) -> LeverState:
-    """Return the state at fractions of the time of the way out.
+    """Return the state at fractions of the duration from start to end.
 
     probe: fractions on the same side of the law's corners.
     """

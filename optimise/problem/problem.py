@@ -264,7 +264,7 @@ class Problem:
         return f"<div><p>{escape(repr(self))}</p>{picture}<ul>{ranges}{requirements}</ul></div>"
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity with a name, including custom ones, or the quantity of a formula as in job files.
+        """Return the quantity of a given name, including custom ones, or the quantity of a formula as in job files.
 
         Raises `InputError` with the nearest names, or with the error in the formula.
         """

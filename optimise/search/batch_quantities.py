@@ -24,7 +24,7 @@ class QuantitySource(Protocol):
         ...
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity with a name."""
+        """Return the quantity of a given name."""
         ...
 
 

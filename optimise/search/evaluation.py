@@ -81,7 +81,7 @@ class Evaluator:
         return Evaluator, (self.problem, self.branch)
 
     def quantity(self, name: str) -> Quantity:
-        """Return the quantity with a name, looked up in the problem once."""
+        """Return the quantity of a given name, looked up in the problem once."""
         quantity = self._quantities.get(name)
         if quantity is None:
             quantity = self._quantities[name] = self.problem.quantity(name)

@@ -123,7 +123,7 @@ def design_curves(design: StoredDesign, count: int) -> DesignCurves:
     linkage = require_swing(design.mechanism, design.linkage, design.part.motion)
     swing = swing_between_crank_angles(design.mechanism, linkage, design.part.motion)
     ways = curves_at_even_times(design.mechanism, linkage, swing, require_even_point_count(count, MOST))
-    start, end = (1e3 * float(ways[0].slider_position[place]) for place in (0, -1))  # both on the way forth
+    start, end = (1e3 * float(ways[0].slider_position[place]) for place in (0, -1))  # both on the forward stroke
     return DesignCurves(
         0,
         None if swing.duration is None else 2.0 * swing.duration,

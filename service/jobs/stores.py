@@ -96,7 +96,7 @@ def existing_store(option: str | None) -> Iterator[Store]:
 
 
 def find_job(store: Store, name: str) -> Job:
-    """Return the job with a name. Raises `NotFound` if there is none, `InputError` for an invalid name."""
+    """Return the job of a given name. Raises `NotFound` if there is none, `InputError` for an invalid name."""
     if name == "latest":
         latest = store.jobs(limit=1)
         if not latest:

@@ -2,8 +2,8 @@
 /** @type {(id: string) => HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id)); // player.html has them all
 /**
- * Curves have a value each degree of one turn or two; of a crank that swings each 360th of the way forth and back, angles
- * are its own there. Lengths are mm, angles deg.
+ * Curves have a value for each degree of one turn or two. For a crank that swings, they have one for each 360th of the
+ * back-and-forth motion, and `angles` are its crank angles. Lengths are mm, angles deg.
  * @type {{ crank: number, offset: number, direction: number, turns: number, perSecond: number, times: string, angles?: number[], slider: number[], rod: number[], pin?: number, curves: Record<string, (number | null)[]> }}
  */
 const data = JSON.parse(at("data").textContent ?? "");

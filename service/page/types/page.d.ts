@@ -82,7 +82,7 @@ declare namespace Page {
     sliderEnds: Point;
     /** Crank angles between which it can move, deg; null for a whole turn. */
     arc?: Point | null;
-    /** Of the crank in a cycle; 0 of a swing forth and back. */
+    /** Crank revolutions per cycle; 0 for a swing. */
     turns: number;
     /** Extremes of its curves between their points too, by column; places in the cycle. Without them they are those of the points; null: none is shown. */
     exact?: Record<string, Ends | null>;

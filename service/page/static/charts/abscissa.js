@@ -51,7 +51,7 @@ export function wayAt({ curves, sliderEnds: [inner] }, angle) {
 }
 
 /**
- * Return the abscissa with a name. rpm: cycles per minute, signed by the direction of the crank. turns: crank revolutions per cycle, 0
+ * Return the abscissa of a given name. rpm: cycles per minute, signed by the direction of the crank. turns: crank revolutions per cycle, 0
  * for a swing.
  * @param {string} name @param {number} rpm @param {number} turns @returns {Abscissa}
  */
