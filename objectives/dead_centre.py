@@ -40,7 +40,7 @@ class NearDeadCentre(GreatestOfFormulas):
         return "its stroke is not longer than the distance from the dead centre"
 
 
-def _distances_near_dead_centre(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
+def _squared_distances_near_dead_centre(number: Number, distance: float, outer: bool) -> tuple[Any, ...]:
     """Return x, B^2, (l + r)^2 - B^2 and B^2 - (l - r)^2 near a dead centre.
 
     B: distance between the slider pin and the crank pivot. The results are products, so nothing cancels near the dead
@@ -61,7 +61,7 @@ def _travel_per_crank_angle(machine: Mechanism, number: Number, distance: Any) -
     """Return |x'|, m, before the dead centre: the area of the parallelogram of crank and rod divided by l cos(phi)."""
     r, l, e = number(Raw.CRANK), number(Raw.ROD), number(Raw.OFFSET)
     outer = machine.slider.dead_centre == "outer"
-    x, square, outer_product, inner_product = _distances_near_dead_centre(number, distance, outer)
+    x, square, outer_product, inner_product = _squared_distances_near_dead_centre(number, distance, outer)
     area = 0.5 * root(outer_product * inner_product)
     side = machine.sign * machine.direction * (1.0 if outer else -1.0)  # for the crank pin
     lever = (0.5 * x * (square + (l + r) * (l - r)) - side * area * e) / square
@@ -72,7 +72,7 @@ def _crank_angle_from_pin_line(machine: Mechanism, number: Number, distance: Any
     """Return the angle between the crank and the line from crank pivot to slider pin, rad, by the half-angle."""
     r, l = number(Raw.CRANK), number(Raw.ROD)
     outer = machine.slider.dead_centre == "outer"
-    _, square, outer_product, inner_product = _distances_near_dead_centre(number, distance, outer)
+    _, square, outer_product, inner_product = _squared_distances_near_dead_centre(number, distance, outer)
     b = root(square)
     share = outer_product / (l + r + b) * (l + b - r) if outer else inner_product / (b + l - r) * (b + l + r)
     return 2.0 * arcsine(root(share / (4.0 * r * b)))

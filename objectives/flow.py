@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..model.cycle.gas_cycle import cylinder_loads, gas_cycle_number
+from ..model.cycle.gas_work import cylinder_loads, gas_cycle_number
 from ..model.kernel.arithmetic import magnitude
 from ..model.kinematics.geometry import stroke
 from ..model.machine.cylinder_machines import cylinder_count

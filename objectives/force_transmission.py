@@ -51,7 +51,7 @@ def _force_ratios(line_peaks: Peaks, pin_peaks: Peaks) -> tuple[Array, Array]:
     return values, np.where(present[:, :, None], slopes, 0.0)
 
 
-def _has_force_on_slider(machine: Mechanism) -> bool:
+def _slider_needs_force(machine: Mechanism) -> bool:
     m = machine.with_largest_variables
     inert = m.slider_mass > 0.0 and (m.speed != 0.0 or m.acceleration != 0.0 or m.gravity[0] != 0.0)
     return inert or has_slider_loads(m) or (m.friction.acts and carries_linkage_forces(m))
@@ -74,7 +74,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     domain=Domain.share("force transmission", "0.5 to 0.9"),
     needs=(
         Need(
-            _has_force_on_slider,
+            _slider_needs_force,
             "it needs forces along the slider line; got none; add for example "
             '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
             consequence="undefined",

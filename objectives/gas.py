@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from ..model.cycle.gas_cycle import GasCycle, gas_cycle_number
+from ..model.cycle.gas_work import GasCycle, gas_cycle_number
 from ..model.machine.mechanism import Mechanism
 from .energy import EFFICIENCY
 from .kinds import ENERGY, PRESSURE, RATIO, VOLUME

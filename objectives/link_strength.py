@@ -59,7 +59,7 @@ class LinkStress(BarPeak):
         ]
 
 
-def eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
+def greatest_eye_stresses(mechanism: Mechanism, design: Array) -> dict[str, dict[str, tuple[float, float]]]:
     """Return the maximum stress, Pa, and its crank angle, rad, in the eyes of each bar, by pin.
 
     design: (1, 3 + k).

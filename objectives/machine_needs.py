@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
-from ..model.cycle.gas_cycle import compressors, cylinder_loads
+from ..model.cycle.gas_work import compressors, cylinder_loads
 from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism

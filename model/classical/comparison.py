@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
 from .lumped import mechanism_with_lumped_rod, rotating_and_reciprocating_masses
@@ -46,7 +46,7 @@ def compare_approximations(mechanism: Mechanism, linkage: Linkage, crank_angle: 
     Loads, gravity and the acceleration of the crank are left out. The formulas split the rod's mass at its mass centre.
     Raises `InputError` if the crank speed is zero, or if a mass centre is not between the pins.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     inert = _with_inertia_alone(mechanism)
     exact = cycle(inert, linkage, crank_angle)
     theta, speed = exact.crank_angle, mechanism.speed

@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.clearance import Clearance
 from ..machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ..machine.friction import require_frictionless
@@ -115,7 +115,7 @@ def simulate(
     """
     _require_simulable(mechanism, cycles, discard, tolerance)
     began = time.perf_counter()
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     # With the motion of the ideal linkage: zero gap and zero gap velocity.
     integrator = Integrator(
         *build_system(mechanism, linkage, clearance),

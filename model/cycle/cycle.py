@@ -17,7 +17,7 @@ from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
@@ -130,7 +130,7 @@ def cycle(
     zero speed. Torque and forces are NaN where friction locks the linkage (see `rubbing` for where they are
     undetermined). Raises `InputError` for arrays of linkages and for a linkage on another branch than the mechanism's.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angles = np.require(np.atleast_1d(crank_angle), np.float64, ["C", "W"])  # one compiled kernel serves all
     mechanism_motion = crank_speed_and_acceleration(mechanism, angles)
     speeds, accelerations = (
@@ -202,7 +202,7 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     There is at least one; in between, every curve is smooth. For a cycle of two turns, the angles are in [0, 4 pi).
     Raises `InputError` where friction locks the linkage.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     if cycle_turns(mechanism) > 1:
         angles = np.concatenate([breakpoints(half, linkage) for half in machines_of_both_turns(mechanism)])
         return np.unique(np.concatenate([angles, angles + TURN]))

@@ -23,7 +23,7 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import TURN, cycle_turns
 from ..signals.averages import signal_averages
@@ -75,7 +75,7 @@ def cycle_energies(mechanism: Mechanism, linkage: Linkage) -> Energies:
 
     Raises `InputError` where friction locks the linkage, `AssemblyError` where it does not rotate fully.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     cuts = breakpoints(mechanism, linkage)
     dimensions = np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
     kappa = crowding_parameter(*map(float, dimensions[0]))

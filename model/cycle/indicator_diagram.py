@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..dynamics.gas import compression_end_position, expansion_end_position
 from ..dynamics.segments import crank_angle_at
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.loads.cylinder import Cylinder
 from ..machine.loads.engine import LimitedPressure
 from ..machine.mechanism import Mechanism
@@ -33,7 +33,7 @@ class Indicator:
 
 def indicator_diagram(mechanism: Mechanism, linkage: Linkage, load: Cylinder, crank_angle: ArrayLike) -> Indicator:
     """Return volume and pressure in one of a machine's cylinders; at a dead centre, the pressure just before it."""
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     stroke, sign, top = _stroke_and_piston_top(linkage, load)
     z = np.clip(sign * (linkage.sign * linkage.at(theta).slider_position - top), 0.0, stroke)
@@ -60,7 +60,7 @@ def valve_events(mechanism: Mechanism, linkage: Linkage, load: Cylinder) -> tupl
 
     None if there is no such event.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     stroke = _stroke_and_piston_top(linkage, load)[0]
     if load.compression_exponent == 0.0 or isinstance(load, LimitedPressure):
         return None, None
@@ -83,7 +83,7 @@ def burning_end_angle(mechanism: Mechanism, linkage: Linkage, load: Cylinder) ->
     """
     if not isinstance(load, LimitedPressure):
         return None
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angle = _crank_angle_at_piston_distance(
         mechanism, linkage, load, load.burning_share * _stroke_and_piston_top(linkage, load)[0], away=True
     )

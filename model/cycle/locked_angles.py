@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..dynamics.torque import Balance, balance_before_pin_force
 from ..kinematics.position import motion
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.design import DESIGN, LOAD_ROWS, Design, derive_design, design_at
 from ..machine.friction import Friction
 from ..machine.mechanism import Mechanism
@@ -44,7 +44,7 @@ class Verdict:
 
 def locking_verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
     """Return whether friction locks one fully rotating linkage, and where."""
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     margin = float(locking_margin(mechanism.friction, np.array([_float_dimensions(linkage)]))[0][0])
     if margin > 0.0:
         return Verdict(margin, (), None)
@@ -62,7 +62,7 @@ def locking_verdict(mechanism: Mechanism, linkage: Linkage) -> Verdict:
 
 def locking_states(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> NDArray[np.str_]:
     """Return whether one linkage "drives", "locks" or "may jam" under its loads at each crank angle (n,), rad."""
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     design = _derived_design(mechanism, linkage)
     loads = cycle(mechanism, linkage, angles).load

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_added_masses_only, raw_vector
@@ -47,7 +47,7 @@ def shaking_curves(
     speed, acceleration: crank speed and acceleration at each angle, rad/s and rad/s^2, (n,); by default those of the
     mechanism, along its profile if it has one.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     _, structure = raw_inputs_with_added_masses_only(machine_of_first_turn(mechanism))
     raw = raw_vector(mechanism)[:, None]

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import Arrangement
 from ..machine.cylinder_machines import member_machines
 from ..machine.mechanism import Mechanism
@@ -109,7 +109,7 @@ def multi_cylinder_breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
 
 def multi_cylinder_cycle(mechanism: Mechanism, linkage: Linkage) -> MultiCylinderCycle:
     """Return the statistics for all cylinders together; raises as `cycle` and `breakpoints` do."""
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     cuts = multi_cylinder_breakpoints(mechanism, linkage)
     period = cycle_turns(mechanism) * TURN
     pieces = np.linspace(cuts[0], cuts[0] + period, 1 + _PIECES * cycle_turns(mechanism))

@@ -25,7 +25,7 @@ from ..kinematics import geometry
 from ..kinematics.position import motion
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Branch
-from .linkage_values import finite_numbers, first_marked_value
+from .linkage_values import first_marked_value, real_or_complex_array
 
 Solution = Literal["outward", "inward"]
 
@@ -191,7 +191,7 @@ def crank_from_stroke(stroke: ArrayLike, *, rod: ArrayLike, offset: ArrayLike = 
     stroke.
     """
     arguments = (("stroke", stroke), ("rod", rod), ("offset", offset))
-    s, l, e = np.broadcast_arrays(*(finite_numbers(value, name) for name, value in arguments))
+    s, l, e = np.broadcast_arrays(*(real_or_complex_array(value, name) for name, value in arguments))
     with np.errstate(invalid="ignore", divide="ignore"):
         r: Array = geometry.crank_from_stroke(s, l, e)
         real, rod_, off, crank = s.real, l.real, e.real, r.real

@@ -26,7 +26,7 @@ from .linkage_values import (
     dimension_arrays,
     dimensions_text,
     direction_angle,
-    finite_numbers,
+    real_or_complex_array,
     wrap_into_turn,
 )
 
@@ -169,7 +169,7 @@ class Linkage:
 
         All arguments broadcast with the dimensions. Raises `AssemblyError` where the linkage cannot be assembled.
         """
-        theta, speed, acceleration = (finite_numbers(value) for value in (crank_angle, speed, acceleration))
+        theta, speed, acceleration = (real_or_complex_array(value) for value in (crank_angle, speed, acceleration))
         if not (np.all(np.isfinite(speed)) and np.all(np.isfinite(acceleration))):
             raise InputError("crank speed and acceleration must be finite")
         m = self._motion(theta)
@@ -218,7 +218,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a point on the crank, `along` it from the pivot and `across` to its left, m."""
-        theta = finite_numbers(crank_angle)
+        theta = real_or_complex_array(crank_angle)
         sine, cosine = np.sin(theta), np.cos(theta)
         arm = np.stack([along * cosine - across * sine, along * sine + across * cosine], axis=-1)
         normal = np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
@@ -234,7 +234,7 @@ class Linkage:
         acceleration: float = 0.0,
     ) -> PointMotion:
         """Return the motion of a rod point, `along` from the crank pin and `across` to the left, m."""
-        theta = finite_numbers(crank_angle)
+        theta = real_or_complex_array(crank_angle)
         m = self._motion(theta)
         pin = self.crank_point(theta, along=1.0, speed=speed, acceleration=acceleration)
         unit = np.stack(np.broadcast_arrays(m.l_cos / self.rod, m.l_sin / self.rod), axis=-1)
@@ -251,7 +251,7 @@ class Linkage:
 
     def error_influences(self, crank_angle: ArrayLike) -> Influences:
         """Return first-order influences of crank, rod, offset (m/m) and crank angle (m/rad) on slider position."""
-        theta = finite_numbers(crank_angle)
+        theta = real_or_complex_array(crank_angle)
         per_dimension: Influences = influences(np.sin(theta), np.cos(theta), self._motion(theta), self.rod)
         return per_dimension
 
@@ -279,7 +279,7 @@ class Linkage:
 
     def _pose(self, crank_angle: float) -> Pose:
         self._require_single_linkage("a picture")
-        theta = finite_numbers(crank_angle, "a crank angle")
+        theta = real_or_complex_array(crank_angle, "a crank angle")
         if theta.ndim:
             raise InputError(
                 f"a picture can only show one crank angle; got an array of shape {theta.shape}; choose one"

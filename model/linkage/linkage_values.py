@@ -42,7 +42,7 @@ class PointMotion:
     acceleration: Array
 
 
-def finite_numbers(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
+def real_or_complex_array(value: ArrayLike, argument: str = "a crank angle, speed or acceleration") -> Array:
     """Return real or complex numbers, typed as real, which all are except complex steps. Raises `InputError`."""
     kind = np.complex128 if np.iscomplexobj(value) else np.float64
     try:
@@ -59,7 +59,7 @@ def dimension_arrays(crank: ArrayLike, rod: ArrayLike, offset: ArrayLike) -> tup
     """
     values = []
     for name, length in zip(DIMENSIONS, (crank, rod, offset), strict=True):
-        value = finite_numbers(length, name)
+        value = real_or_complex_array(length, name)
         if not np.all(np.isfinite(value)):
             raise InputError(f"{name} must be finite; got {length!r}")
         values.append(value)

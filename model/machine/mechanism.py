@@ -203,7 +203,7 @@ class Mechanism:
         return self.with_values([item.largest_magnitude_bound for item in self.varying]) if self.varying else self
 
     @property
-    def at_lower_and_upper_bounds(self) -> tuple[Mechanism, Mechanism]:
+    def at_bounds_of_variables(self) -> tuple[Mechanism, Mechanism]:
         """The machines with all variables at their lower and at their upper bounds."""
         lower, upper = ([getattr(item, end) for item in self.varying] for end in ("lower", "upper"))
         return self.with_values(lower), self.with_values(upper)
@@ -211,7 +211,7 @@ class Mechanism:
     @property
     def load_texts(self) -> list[str]:
         """Each load in a sentence, with the ranges of its variables."""
-        low, high = self.at_lower_and_upper_bounds
+        low, high = self.at_bounds_of_variables
         return [
             join_range_ends(at_low.text, at_high.text) for at_low, at_high in zip(low.loads, high.loads, strict=True)
         ]

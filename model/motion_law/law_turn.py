@@ -19,7 +19,7 @@ from numpy.polynomial import legendre
 from ..arrays import Array, IntArray, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import cycle_turns
@@ -62,7 +62,7 @@ class LawTurn:
         equation: with friction, several cylinders, a two-turn cycle, or speed-dependent loads.
         """
         self.machine = with_drive_inertia(mechanism)
-        self.linkage = single_rotating_linkage(self.machine, linkage)
+        self.linkage = require_single_rotating_linkage(self.machine, linkage)
         _require_torque_from_energy_alone(self.machine)
         equation = CrankEquation(self.machine, self.linkage, marks=marks)
         equation.require_inertia(0.0)

@@ -173,7 +173,7 @@ def _sample_squared_rss_error(
 
 
 @analytic
-def sample_row_of_signal(kind: Any) -> Any:
+def row_number_of_signal(kind: Any) -> Any:
     """Return the row that holds the samples of a signal."""
     return 0 if kind == _TORQUE else (1 if kind == _WORST else 2)
 
@@ -189,7 +189,7 @@ def sample_curves(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> Non
     for squares in (False, True):
         is_needed = False
         for kind in kinds:
-            is_needed = is_needed or (sample_row_of_signal(kind) == 2) == squares
+            is_needed = is_needed or (row_number_of_signal(kind) == 2) == squares
         for k in range(angles // 2 + 1 if is_needed else 0):
             # If an angle is its own mirror image, the other row is a spare one, because writing one row twice would be
             # slow.
@@ -199,7 +199,7 @@ def sample_curves(kinds: Any, tau: Any, crowd: Any, b: Any, samples: Any) -> Non
             else:
                 _sample_torque_and_worst_case(tau[0, k], tau[1, k], crowd, b, samples[:, k + 1], samples[:, w])
     for kind in kinds:
-        q = sample_row_of_signal(kind)
+        q = row_number_of_signal(kind)
         for j in range(LANES):
             samples[q, 0, j] = samples[q, angles, j]
 

@@ -31,7 +31,7 @@ from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
 from ..machine.two_turn_machine import machine_of_first_turn
 from .coarse_peaks import LANES as LANES
-from .coarse_peaks import ROWS, fill_curve_numbers, find_two_highest, sample_curves, sample_row_of_signal
+from .coarse_peaks import ROWS, fill_curve_numbers, find_two_highest, row_number_of_signal, sample_curves
 from .signal_inputs import cycle_window
 from .signals import Signal, design_motion, signal_without_friction
 
@@ -334,7 +334,7 @@ def _screen(task: Screening, designs: Table, first: int, out: ScreenedArrays) ->
         for j in range(last if out.still.shape[0] else 0):
             out.still[here + j] = slope[j]
         for q in range(signals):
-            rivals = find_two_highest(samples[sample_row_of_signal(task.kinds[q])], scaled, mark, tops)
+            rivals = find_two_highest(samples[row_number_of_signal(task.kinds[q])], scaled, mark, tops)
             peak = _Tops(peaks[q, 0], peaks[q, 1], peaks[q, 2])
             _fill_higher_maximum(task.kinds[q], tau, tops, rivals, lanes, work, found, peak)
             for j in range(last):

@@ -43,9 +43,9 @@ from .stress_search import (
     SampledStress,
     choose_highest_candidates,
     climb_to_maxima,
-    empty_candidates,
     first_candidates,
     list_maximum_candidates,
+    uninitialised_candidates,
 )
 
 STORED_MAXIMA = 8
@@ -112,7 +112,7 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
     candidate_count = n * len(sides) * len(criteria) * (STATIONS + 1) // 2 * LISTED**2
     space = np.empty((STATIONS, int(np.diff(start).max(initial=1)))), np.empty((2, LISTED), np.int64)
     best = np.empty((len(sides), len(criteria), STATIONS))
-    candidates = empty_candidates(candidate_count)
+    candidates = uninitialised_candidates(candidate_count)
     samples = SampledStress(theta, first, stress, sides)
     count = list_maximum_candidates(start, samples, criteria, margin, *space, best, candidates)
     candidates = first_candidates(candidates, count)

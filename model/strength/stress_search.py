@@ -39,7 +39,7 @@ class Candidates(NamedTuple):
     share: Row
 
 
-def empty_candidates(count: int) -> Candidates:
+def uninitialised_candidates(count: int) -> Candidates:
     """Return empty arrays for candidates."""
     columns = [np.empty(count, np.int64) for _ in range(3)]
     return Candidates(columns[0], columns[1], columns[2], np.empty((count, 2), np.int64), np.empty(count))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import require_slider, single_linkage
+from ..linkage.require_single_linkage import require_single_linkage, require_slider
 from ..machine.mechanism import Mechanism
 from ..tolerance.error_sources import SOURCES, limits_of_sources
 from .swing import Swing
@@ -27,7 +27,7 @@ def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_ang
     crank angle, with the actuator among the sources. Sources without tolerance are left out.
     """
     require_slider(mechanism)
-    checked = single_linkage(mechanism, linkage)
+    checked = require_single_linkage(mechanism, linkage)
     i, source_limits = checked.error_influences(crank_angle), limits_of_sources(mechanism, checked)
     crank, rod, offset, turn = (abs(float(share)) for share in (i.crank, i.rod, i.offset, i.crank_angle))
     rates = (crank, rod, offset, turn, rod, rod, rod, offset)

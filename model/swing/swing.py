@@ -16,7 +16,7 @@ from ..arrays import Array
 from ..checks import require_all_finite, require_numbers, store_as_tuples
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import require_slider, single_linkage
+from ..linkage.require_single_linkage import require_single_linkage, require_slider
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .angle_remedy import smaller_swing
@@ -226,7 +226,7 @@ def require_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linka
     counted from a dead centre that the linkage does not have; `AssemblyError` where it does not close.
     """
     require_slider(mechanism)
-    checked = single_linkage(mechanism, linkage)
+    checked = require_single_linkage(mechanism, linkage)
     if swing.driver == "cylinder":
         raise InputError(
             "a cylinder drives a lever; got one as the driver of a slider-crank; drive the crank or the slider, or set "

@@ -11,7 +11,7 @@ from ..arrays import Array
 from ..dynamics.segments import crank_angle_at, crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ..errors import AssemblyError, InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_linkage, single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_linkage, require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
 
 SOURCES = (
@@ -28,7 +28,7 @@ _TURN = 2.0 * math.pi
 
 def limits_of_sources(mechanism: Mechanism, linkage: Linkage) -> Array:
     """Return the limit of each source, (8,), m; that of the crank angle in rad."""
-    linkage, t = single_linkage(mechanism, linkage), mechanism.tolerances
+    linkage, t = require_single_linkage(mechanism, linkage), mechanism.tolerances
     lengths = (
         tolerance.limit(float(length))
         for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
@@ -43,7 +43,7 @@ def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: Array
     A pin's clearance acts as an error in the rod, that of the guide as an error in the offset: see `position_error`.
     """
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
-    i = single_rotating_linkage(mechanism, linkage).error_influences(angles)
+    i = require_single_rotating_linkage(mechanism, linkage).error_influences(angles)
     return np.stack([i.crank, i.rod, i.offset, i.crank_angle, i.rod, i.rod, i.rod, i.offset])
 
 
@@ -53,7 +53,7 @@ def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
     Clearances widen the range of the rod (pins) and of the offset (guide). Raises `AssemblyError` unless every linkage
     in the box rotates fully, `InputError` if the crank angle may be off by half a turn.
     """
-    linkage, limits = single_rotating_linkage(mechanism, linkage), limits_of_sources(mechanism, linkage)
+    linkage, limits = require_single_rotating_linkage(mechanism, linkage), limits_of_sources(mechanism, linkage)
     half = np.add(limits[:4], [0.0, limits[PINS].sum(), limits[GUIDE], 0.0])
     if half[3] >= math.pi:
         raise InputError(
@@ -77,7 +77,7 @@ def angle_ranges_where_error_counts(mechanism: Mechanism, linkage: Linkage, *, c
     count: angles per turn, concentrated where the linkage is close to locking. The ends of a part are among its angles;
     the whole cycle is one part that ends one turn after its start.
     """
-    linkage, window = single_rotating_linkage(mechanism, linkage), mechanism.tolerances.window
+    linkage, window = require_single_rotating_linkage(mechanism, linkage), mechanism.tolerances.window
     r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
     kappa = crowding_parameter(r, l, e)
 

@@ -34,7 +34,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..signals.first_of_equal_maxima import angle_in_cycle
 from .error_sources import angle_ranges_where_error_counts, limit_box
@@ -71,7 +71,7 @@ def position_deviation_extremes(mechanism: Mechanism, linkage: Linkage, crank_an
     Along +x, from the position of the nominal linkage at the nominal angle. Raises `AssemblyError` unless every linkage
     within the tolerances rotates fully.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     if angles.ndim != 1:
         raise InputError(f"crank angles must be one number or a list of them; got an array of shape {angles.shape}")

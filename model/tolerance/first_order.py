@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..cycle.cycle import cycle
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from .error_sources import limit_box, limits_of_sources, source_influences
 
@@ -39,7 +39,7 @@ def first_order_position_errors(mechanism: Mechanism, linkage: Linkage, crank_an
     The fractions of the variance assume that all limits are the same number of standard deviations. They are squares of
     the contributions divided by the square of the root-sum-square.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     curves = cycle(mechanism, linkage, angles)
     parts = np.abs(source_influences(mechanism, linkage, angles)) * limits_of_sources(mechanism, linkage)[:, None]
@@ -69,7 +69,7 @@ def higher_order_bound(mechanism: Mechanism, linkage: Linkage, crank_angle: Arra
     h^3, h_ll = -q^2 / h^3, h_lq = l q / h^3; |q| is bounded by |q_0| + T_e + T_r + r T_theta, l and r by their limits,
     |sin| and |cos| by 1.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     box = limit_box(mechanism, linkage)
     t = 0.5 * (box[:, 1] - box[:, 0])

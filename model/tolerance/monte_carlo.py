@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
 from .error_distributions import Draw, Spreads
@@ -83,7 +83,7 @@ def simulate(
     of finished and of all machines. cancelled: function called between chunks; if it returns true, the machines so far
     are returned. The same seed gives the same machines. Raises `InputError` for arguments that are out of range.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     spreads = Spreads() if spreads is None else spreads
     theta = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
     _require_integer("samples", samples, least=1)
@@ -180,7 +180,7 @@ def variance_contributions(
     mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike, *, spreads: Spreads | None = None
 ) -> Array:
     """Return the first-order variance that each source adds to the position error, (8, m), m^2, at angles (m,), rad."""
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     limits = limits_of_sources(mechanism, linkage)
     per_source: Array = (
         source_influences(mechanism, linkage, crank_angle) ** 2

@@ -39,7 +39,7 @@ from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
@@ -253,7 +253,7 @@ class CrankEquation(Equation):
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
-        linkage = single_rotating_linkage(mechanism, linkage)
+        linkage = require_single_rotating_linkage(mechanism, linkage)
         self.rubs = mechanism.friction.acts
         if self.rubs:
             require_no_locking(mechanism.friction, linkage)

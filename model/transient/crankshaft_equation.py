@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.cylinder_machines import Member, member_machines
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import cycle_turns, half_of_cycle_at, machines_of_both_turns
@@ -77,7 +77,7 @@ class ShaftEquation(Equation):
     """
 
     def __init__(self, mechanism: Mechanism, linkage: Linkage, *, marks: tuple[float, ...] = ()) -> None:
-        self._linkage = single_rotating_linkage(mechanism, linkage)
+        self._linkage = require_single_rotating_linkage(mechanism, linkage)
         turns = cycle_turns(mechanism)
         self.period = turns * TURN
         self.direction = -1.0 if mechanism.speed < 0.0 else 1.0

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from .crank_equation import TURN, Equation, Span
@@ -114,7 +114,7 @@ class Recorder:
 
     def __init__(self, equation: Equation, drive: Drive, linkage: Linkage, mechanism: Mechanism, samples: int) -> None:
         self._equation, self._drive, self._samples = equation, drive, samples
-        self._linkage = single_rotating_linkage(mechanism, linkage)
+        self._linkage = require_single_rotating_linkage(mechanism, linkage)
         self._parts: list[Array] = []
 
     def add_solution(self, stretch: Span, turn: int, solution: Any) -> None:

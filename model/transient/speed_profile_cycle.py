@@ -23,7 +23,7 @@ from ..cycle.cycle import Cycle, breakpoints, cycle
 from ..cycle.moving_mass_effects import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
-from ..linkage.single_linkage import single_rotating_linkage
+from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import TURN, cycle_turns
 from ..signals.first_of_equal_maxima import angle_in_cycle
@@ -116,7 +116,7 @@ def speed_profile_cycle(mechanism: Mechanism, linkage: Linkage, motion: CrankMot
     motion: crank motion that replaces the machine's own, in its direction. Raises `InputError` for a machine at rest or
     under a constant acceleration, and if friction locks the linkage.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     if not mechanism.speed or (mechanism.acceleration and mechanism.speed_profile is None):
         raise InputError(
             f"a repeating turn must have a speed and no constant acceleration; got {mechanism.speed:g} rad/s and "

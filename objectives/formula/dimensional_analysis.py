@@ -75,7 +75,7 @@ class _Dimensions:
                         "only values of "
                         "one kind can be combined; correct the names, or give numbers their units"
                     )
-            return _Part(first.powers, written, _constant_exponent(function, arguments))
+            return _Part(first.powers, written, _constant_value(function, arguments))
         if function in "*/":
             sign = 1 if function == "*" else -1
             powers = {base: Fraction(0) for base in (*first.powers, *last.powers)}
@@ -84,7 +84,7 @@ class _Dimensions:
             return _Part(
                 {base: power for base, power in powers.items() if power},
                 written,
-                _constant_exponent(function, arguments),
+                _constant_value(function, arguments),
             )
         if function == "**":
             return _Part(_raised_to_power(first, last, text), written)
@@ -105,7 +105,7 @@ class _Dimensions:
                     "divide by a value of the same kind"
                 )
             return _Part(_powers_of(dimension_of(ANGLE.unit)), written)
-        return _Part(first.powers, written, _constant_exponent(function, arguments))  # neg, abs
+        return _Part(first.powers, written, _constant_value(function, arguments))  # neg, abs
 
 
 def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
@@ -125,7 +125,7 @@ def _raised_to_power(base: _Part, exponent: _Part, text: str) -> Powers:
     return {name: power * exponent.value for name, power in base.powers.items() if exponent.value}
 
 
-def _constant_exponent(function: str, arguments: list[_Part]) -> Fraction | None:
+def _constant_value(function: str, arguments: list[_Part]) -> Fraction | None:
     """Return the value of an exponent such as 1/3; None if it is not a number, or is too large."""
     values = [item.value for item in arguments]
     first, last = values[0], values[-1]

@@ -97,7 +97,7 @@ class TwoSided:
         return same if width == 1 else _choose_side(slope >= 0.0, same.padded(width), swapped.padded(width))
 
 
-def two_sided_pieces(pieces: Pieces, factor: float, sign: int) -> TwoSided:
+def pieces_from_above_and_below(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     """Return a quantity's pieces from both sides. factor: label factor, which makes the labels of sums distinct."""
     least = pieces.least
     places = np.argsort(pieces.values if least else -pieces.values, axis=1, kind="stable")
@@ -105,7 +105,7 @@ def two_sided_pieces(pieces: Pieces, factor: float, sign: int) -> TwoSided:
     side = Side(ordered.values, ordered.gradients, factor * ordered.labels, np.isfinite(ordered.values))
     if pieces.opposite is None:
         return TwoSided(side.active, side, sign) if least else TwoSided(side, side.active, sign)
-    opposite = two_sided_pieces(pieces.opposite, factor, sign)
+    opposite = pieces_from_above_and_below(pieces.opposite, factor, sign)
     return TwoSided(opposite.from_above, side, sign) if least else TwoSided(side, opposite.from_below, sign)
 
 

@@ -17,7 +17,7 @@ from ...model.machine.varying_numbers import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
 from .expression import Call, Name, Node, evaluate_in_algebra
-from .kinks import Kinks, TwoSided, pieces_of_formula, single_smooth_piece, two_sided_pieces
+from .kinks import Kinks, TwoSided, pieces_from_above_and_below, pieces_of_formula, single_smooth_piece
 from .linear import Linear, linear_of, linear_unknown
 from .slopes import Slopes
 
@@ -129,7 +129,7 @@ class FormulaQuantity(Quantity):
         n, d = dimensions.shape
         leaves: dict[str, TwoSided] = {}
         for place, part in enumerate(self.parts):
-            leaves[part.name] = two_sided_pieces(
+            leaves[part.name] = pieces_from_above_and_below(
                 part.pieces(mechanism, dimensions), 1.0 + _GOLDEN * place, 0 if part.signed else 1
             )
         for name, values, column in self._values_of_numbers(mechanism, dimensions):

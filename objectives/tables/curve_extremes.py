@@ -21,7 +21,7 @@ from ...model.cycle.multi_cylinder import multi_cylinder_breakpoints
 from ...model.cycle.self_locking import locking_margin
 from ...model.dynamics.segments import crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.friction import Friction
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
@@ -90,7 +90,7 @@ def curve_extremes(mechanism: Mechanism, linkage: Linkage) -> list[CurveExtremes
     For a spike narrower than a few hundred-millionths of a radian, the values beside it count. Raises `InputError` for
     arrays of linkages and for a linkage on another branch than the mechanism's.
     """
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     first = defined_curves(mechanism, linkage, np.zeros(1))
 
     def values(angles: Array) -> Array:

@@ -14,7 +14,7 @@ from ...model.cycle.multi_cylinder import multi_cylinder_curves
 from ...model.errors import InputError
 from ...model.kinematics.position import Motion, motion, third_slider_derivative
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.linkage_values import direction_angle, finite_numbers
+from ...model.linkage.linkage_values import direction_angle, real_or_complex_array
 from ...model.machine.cylinder_machines import cylinder_count
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
@@ -144,7 +144,7 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
     if isinstance(angles, int | np.integer) and not isinstance(angles, bool):
         theta = cycle_turns(mechanism) * even_angles(int(angles))
     else:
-        theta = finite_numbers(angles, "a crank angle")
+        theta = real_or_complex_array(angles, "a crank angle")
     if theta.ndim != 1 or np.iscomplexobj(theta):
         raise InputError(
             f"crank angles must be a list of real numbers in rad, or a number of angles; got {angles!r:.60}; write for "

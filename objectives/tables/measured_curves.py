@@ -115,7 +115,7 @@ def meaningful_columns(
     return columns
 
 
-def measured_samples(
+def samples_of_measured_table(
     table: Table | pd.DataFrame, mechanism: Mechanism, linkage: Linkage, units: Units | None = None
 ) -> Measured:
     """Return the samples in a table; columns without any number are left out.

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...model.kinematics.negligible_offset import offset_without_rounding
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.arm import Arm
 from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
@@ -119,7 +119,7 @@ def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
     """
     require_same_driver(mechanism, swing)
     if swing is None:
-        return single_rotating_linkage(mechanism, linkage)
+        return require_single_rotating_linkage(mechanism, linkage)
     return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
 
 

@@ -173,8 +173,8 @@ class CycleCurve:
                 select_by_mask(jump, enclosure_of_ends(side, side, len(outward.slopes)), outward)
                 for side in (jump + 0.0, -1.0 * jump)
             ]
-            return [self._cylinder_components_on_stroke(member, designs, d, place, side, read) for side in sides]
-        x, y = self._cylinder_components_on_stroke(member, designs, d, place, outward, read)
+            return [self._member_components_on_stroke(member, designs, d, place, side, read) for side in sides]
+        x, y = self._member_components_on_stroke(member, designs, d, place, outward, read)
         if self.partial and not self.shares:
             low, high = outward.ends()
             counts = low > 0.0 if self.watch.strokes == 1 else high < 0.0
@@ -193,7 +193,7 @@ class CycleCurve:
         square = d.speed * d.speed
         return d._replace(speed=d.speed * ratio, acceleration=d.acceleration + square * (ratio * slope))
 
-    def _cylinder_components_on_stroke(
+    def _member_components_on_stroke(
         self, member: Member, designs: list[tuple[Design, Any]], d: Design, place: Any, outward: Enclosure, read: Read
     ) -> tuple[Enclosure, Enclosure]:
         """Return the components of one cylinder; a shaking signal is in the axes of the shaft."""

@@ -12,7 +12,7 @@ from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Sense, Word, merge_constraints
 from ..problem.restatement import restate_constraint
 from .best_value import Best, with_single_objective
-from .safe_side_rounding import isolated_value_text, round_to_safe_side
+from .safe_side_rounding import isolated_value_in_full_digits, round_to_safe_side
 
 _LOWEST = 0.02
 """Fraction of a floor that remains when it is dropped. Values closer to locking are not worth reporting."""
@@ -41,7 +41,7 @@ class Relaxation:
     def rounded_value(self) -> str:
         """The reachable value, in digits that can be required."""
         if self.alone:
-            return isolated_value_text(self.reachable)
+            return isolated_value_in_full_digits(self.reachable)
         return round_to_safe_side(self.reachable, "down" if self.reachable < self.requested else "up")
 
     @property

@@ -29,7 +29,7 @@ def round_to_safe_side(value: float, side: Side, *, digits: int = DIGITS) -> str
     return _number_text(rounded.plus(Decimal(repr(float(value))) + (size if side == "down" else -size)))
 
 
-def isolated_value_text(value: float) -> str:
+def isolated_value_in_full_digits(value: float) -> str:
     """Return an isolated possible value, in all digits that rounding errors leave certain."""
     return _number_text(Context(prec=_EXACT).plus(Decimal(repr(float(value)))))
 

@@ -24,7 +24,7 @@ from ..problem.problem import Problem
 from .catalogue import catalogue_files, with_catalogues, with_options
 from .custom_quantities import declared_quantities, function_module_files
 from .drive import motor_torque_warnings
-from .job_file import LARGEST, read_job_file, require_plain_data
+from .job_file import LARGEST, read_job_file, require_few_values_and_no_nulls
 from .load_file import names_of_load_files, with_load_points
 from .mistake_messages import LONGEST, MOST, sentences_on_mistakes
 from .mistake_order import first_mistakes
@@ -158,7 +158,7 @@ def parse_job(
     folder: a folder with the modules of its custom functions, besides the working directory. Other arguments are those
     of `load_job`.
     """
-    require_plain_data(data)
+    require_few_values_and_no_nulls(data)
     data, _ = with_options(data)
     custom = declared_quantities(data, allowed=allow_user_code)
     job = job_type_with_quantities(custom)

@@ -33,7 +33,7 @@ from ..search.elimination import offset_signs, require_offset_for_slow_stroke
 from .impossible_options import require_possible_option
 from .linear_contradictions import require_compatible_linear_requirements
 from .mistake_messages import key_of_location
-from .possible_values import Box, require_reachable
+from .reachable_values import Box, require_reachable
 
 
 def require_no_contradiction(problem: Problem) -> None:

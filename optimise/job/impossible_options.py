@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ...model.errors import InfeasibleError, InputError
 from ..problem.problem import Problem
-from .possible_values import SLACK, Box
+from .reachable_values import SLACK, Box
 
 _MOST = 5  # combinations to report one by one
 

@@ -158,7 +158,7 @@ def require_few_values(tables: object) -> None:
         raise _too_many_values_error(f"{count}")
 
 
-def require_plain_data(value: object, at: tuple[object, ...] = ()) -> None:
+def require_few_values_and_no_nulls(value: object, at: tuple[object, ...] = ()) -> None:
     """Reject data with too many values or too many levels, keys that are not text, and nulls. Raises JobError.
 
     at: path of the data in the job.
@@ -175,7 +175,7 @@ def require_plain_data(value: object, at: tuple[object, ...] = ()) -> None:
                 raise JobError(f"a key must be text; got {quote(key)}")
             if item is None:
                 raise JobError(f"{key_of_location((*at, key))}: must have a value; got null; leave the key out instead")
-            require_plain_data(item, (*at, key))
+            require_few_values_and_no_nulls(item, (*at, key))
     elif isinstance(value, list | tuple):
         for place, item in enumerate(value):
-            require_plain_data(item, (*at, place))
+            require_few_values_and_no_nulls(item, (*at, place))

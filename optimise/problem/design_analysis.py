@@ -15,7 +15,7 @@ from ...model.errors import InputError
 from ...model.input_warning import reading_in_both_units, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.linkage_values import finite_numbers
+from ...model.linkage.linkage_values import real_or_complex_array
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
@@ -34,7 +34,7 @@ from ...objectives.tables.design_input import (
     short_text,
     warn_of_lengths,
 )
-from ...objectives.tables.measured_curves import measured_samples
+from ...objectives.tables.measured_curves import samples_of_measured_table
 from ...objectives.tables.missing_value_reasons import missing_value_reason
 from ...objectives.tables.swing_columns import quantities_for_swing, require_motion, require_quantities_of_motion
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
@@ -147,7 +147,7 @@ class Analysis(Mapping[str, float]):
         """
         if self.swing is not None:
             return swing_table(self.mechanism, self.linkage, self.swing, angles)
-        for angle in () if np.ndim(angles) == 0 else finite_numbers(angles, "a crank angle").real.flat:
+        for angle in () if np.ndim(angles) == 0 else real_or_complex_array(angles, "a crank angle").real.flat:
             if math.isfinite(angle) and not ANGLE.is_plausible(angle):
                 usual = ANGLE.metric
                 doubt = reading_in_both_units("crank angle", angle, ANGLE.unit, usual.symbol, usual.factor)
@@ -171,7 +171,7 @@ class Analysis(Mapping[str, float]):
             )
         import pandas as pd
 
-        given = measured_samples(measured, self.mechanism, self.linkage)
+        given = samples_of_measured_table(measured, self.mechanism, self.linkage)
         rows = {}
         for found in deviations(self.mechanism, self.linkage, given.crank_angle, given.values):
             fit = (found.fit.crank_angle, found.fit.value, found.fit.rms) if found.fit else (np.nan,) * 3
@@ -215,7 +215,7 @@ class Analysis(Mapping[str, float]):
         """Drawing of the linkage and table of its quantities, for notebooks."""
         picture = "" if self.mechanism.lever is not None else self.linkage._repr_html_() or ""
         table = self.table().to_html(float_format="{:.5g}".format, na_rep="")
-        lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._violation_text()) if line)
+        lines = "".join(f"<p>{escape(line)}</p>" for line in (self.title, self._exceeded_allowables_text()) if line)
         return f"<div>{lines}{picture}{table}</div>"
 
     def __repr__(self) -> str:
@@ -227,11 +227,11 @@ class Analysis(Mapping[str, float]):
         parts = [
             numbers,
             f"{len(self.quantity_values)} quantities, {len(self.undefined)} undefined",
-            self._violation_text(),
+            self._exceeded_allowables_text(),
         ]
         return f"Analysis({self.linkage.label}: {'; '.join(filter(None, parts))})"
 
-    def _violation_text(self) -> str:
+    def _exceeded_allowables_text(self) -> str:
         titles = [QUANTITIES[name].title for name in self.violated]
         return f"beyond the allowable value: {', '.join(titles)}" if titles else ""
 

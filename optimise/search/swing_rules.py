@@ -92,7 +92,7 @@ def _offset_from_travel(
     return sign * (0.5 * (y_0 + y_1) + away * (x_1 - x_0))
 
 
-def _slider_pin_bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
+def _bisector_of_slider_pins(root: int, angle: float, ends: tuple[Any, Any], e: Any) -> tuple[Any, Any, Any, Any]:
     """Return a point and the direction of the bisector between the slider pin's start and its turned-back end."""
     first, last = ends
     turn = _root_signs(root)[0] * angle
@@ -104,7 +104,7 @@ def _slider_pin_bisector(root: int, angle: float, ends: tuple[Any, Any], e: Any)
 def _crank_from_swing_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, l: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _slider_pin_bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
+    x, y, u, v = _bisector_of_slider_pins(root, angle, _swing_ends(start, end, follows, free), sign * a)
     away = _root_signs(root)[1] * np.sqrt(l * l / (u * u + v * v) - 0.25)
     return np.sqrt((x + away * u) ** 2 + (y + away * v) ** 2)
 
@@ -112,7 +112,7 @@ def _crank_from_swing_angle(
 def _rod_from_swing_angle(
     root: int, angle: float, sign: float, start: float, end: float, follows: float, r: Any, a: Any, *free: Any
 ) -> Any:
-    x, y, u, v = _slider_pin_bisector(root, angle, _swing_ends(start, end, follows, free), sign * a)
+    x, y, u, v = _bisector_of_slider_pins(root, angle, _swing_ends(start, end, follows, free), sign * a)
     square = u * u + v * v
     projection = (x * u + y * v) / square
     away = -projection + _root_signs(root)[1] * np.sqrt(projection * projection + (r * r - x * x - y * y) / square)

@@ -33,7 +33,7 @@ from ...model.arrays import Array
 from ...model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
@@ -148,7 +148,7 @@ def best_balance(
     """
     require_word("measure", measure, Measure)
     require_single_cylinder_at_constant_speed(mechanism, "the balance of a counterweight")
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     for name, value in (("arm", arm), ("radius", radius), ("greatest_moment", greatest_moment)):
         if value is not None and not (math.isfinite(value) and value > 0.0):
             raise InputError(f"{name} must be positive and finite; got {value:g}")

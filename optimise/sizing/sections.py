@@ -21,7 +21,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
 from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
@@ -84,7 +84,7 @@ def size_sections(mechanism: Mechanism, linkage: Linkage, material: Material, li
     """
     require_frictionless(mechanism.friction, "section sizing")
     require_single_cylinder_at_constant_speed(replace(mechanism, arrangement=None), "section sizing")
-    linkage = single_rotating_linkage(mechanism, linkage)
+    linkage = require_single_rotating_linkage(mechanism, linkage)
     task = _Task(mechanism, linkage, material, limits, greatest_rod_accelerations(mechanism, linkage))
     sizes = np.log([limits.width[0], limits.depth[0]] * 2)
     programme = _Programme(task, list(task.joint_load_terms(sizes)))

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
-from ...model.linkage.single_linkage import single_rotating_linkage
+from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism, Window
 from ...model.optional_packages import import_extra
@@ -115,7 +115,9 @@ def allocate_tolerances(
     given = Mechanism(branch=linkage.branch) if mechanism is None else mechanism
     if window is not None:
         given = replace(given, tolerances=replace(given.tolerances, window=window))
-    return _Programme(ErrorRows(given, single_rotating_linkage(given, linkage), costs, limit, kind), costs).solve()
+    return _Programme(
+        ErrorRows(given, require_single_rotating_linkage(given, linkage), costs, limit, kind), costs
+    ).solve()
 
 
 @dataclass(frozen=True)
@@ -153,7 +155,7 @@ class _Programme:
         for count in range(1, ROUNDS + 1):
             x, carried = self._cone(angles)
             values, at = self.error.peaks(x)
-            rough = self._group_at_peaks(x, angles, carried, at[values > 1.0 - _NEAR])
+            rough = self._collect_multipliers_at_peaks(x, angles, carried, at[values > 1.0 - _NEAR])
             point = self._solve_optimality_conditions(rough) if values.max() <= 1.0 + _NEAR else None
             if point is not None or values.max() <= 1.0 + _EXCESS or count == ROUNDS:
                 # Without an exact point, the case is degenerate: as exact as the cone solver, which the residual shows.
@@ -185,7 +187,7 @@ class _Programme:
             )
         return np.clip(x.value, self.least, self.greatest), size * np.maximum(within.dual_value, 0.0)
 
-    def _group_at_peaks(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
+    def _collect_multipliers_at_peaks(self, x: Array, angles: Array, carried: Array, at: Array) -> _Point:
         """Return the multipliers of sampled angles, collected at the nearest peaks."""
         multipliers = np.zeros(len(at))
         if len(at):

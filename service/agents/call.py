@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InfeasibleError, InputError, NotFound
 from ...optimise.job import parse_job, read_job, with_file_contents
-from ...optimise.job.job_file import require_plain_data, toml_tables
+from ...optimise.job.job_file import require_few_values_and_no_nulls, toml_tables
 from ..jobs.find_run import find_run
 from ..jobs.stores import open_store
 from ..jobs.submission import (
@@ -23,7 +23,7 @@ from ..jobs.submission import (
 )
 from ..presets.jobs import shipped_jobs
 from ..runs.result import Result
-from ..runs.stored_runs import job_file, problem_of, read_run
+from ..runs.runs_on_disk import job_file, problem_of, read_run
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -144,7 +144,7 @@ def tables_with_files(job: Job, files: Mapping[str, str]) -> dict[str, Any]:
             )
         job = jobs[job.strip()]
     tables = toml_tables(job) if isinstance(job, str) else job
-    require_plain_data(tables)
+    require_few_values_and_no_nulls(tables)
     return with_file_contents(tables, files)
 
 

@@ -21,7 +21,7 @@ from ...model.file_name_encoding import path_from_text
 from ..questions.discovery import FRONT_OR_JOB_QUESTIONS
 from ..runs.result import Result, Row, row_from_json
 from ..runs.run_folder import write_file
-from ..runs.stored_runs import result_from
+from ..runs.runs_on_disk import result_from
 from .connection import Connection, Record, events_until_end, without_none
 from .designs import Designs
 

@@ -11,7 +11,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ..designs.design_selection_options import require_single_choice
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.selection import plain_number
-from ..runs.stored_runs import problem_of
+from ..runs.runs_on_disk import problem_of
 from ..text.options import Dimensions
 from .exit_and_interruption import NoDesigns
 from .run_choice import folder_and_result

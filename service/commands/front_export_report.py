@@ -17,7 +17,7 @@ from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import slug, write_file
-from ..runs.stored_runs import problem_of
+from ..runs.runs_on_disk import problem_of
 from ..text.design_options import Selection
 from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Units, option_value, require_ending
 from ..text.screen import console, print_message, print_output, show_activity

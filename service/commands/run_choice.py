@@ -18,7 +18,7 @@ from ..designs.selection import chosen_rows, no_match_message
 from ..jobs.find_run import find_run
 from ..runs.result import Result
 from ..runs.run_folder import runs_folder
-from ..runs.stored_runs import problem_of, read_run
+from ..runs.runs_on_disk import problem_of, read_run
 from ..text.design_options import Pick
 from .exit_and_interruption import NoDesigns, end_without_design
 

@@ -95,12 +95,14 @@ def _parse_lexicographic_order(text: str, objectives: Sequence[StoredObjective])
     for part in _comma_separated_parts(text, _LEXICOGRAPHIC):
         name, colon, value = part.partition(":")
         column = _position_of_objective(name, objectives)
-        absolute, share = _parse_tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
+        absolute, share = (
+            _absolute_and_relative_tolerance(part, value.strip(), objectives[column]) if colon else (0.0, 0.0)
+        )
         order.append((column, absolute, share))
     return order
 
 
-def _parse_tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
+def _absolute_and_relative_tolerance(part: str, value: str, objective: StoredObjective) -> tuple[float, float]:
     from ...objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 
     try:

@@ -10,7 +10,7 @@ import numpy as np
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
-from ...objectives.tables.measured_curves import Measured, meaningful_columns, measured_samples
+from ...objectives.tables.measured_curves import Measured, meaningful_columns, samples_of_measured_table
 from ...objectives.units import to_si, unit_in_heading
 from ...optimise.job.text_table import decode_file_text, read_file_bytes, read_table
 
@@ -34,7 +34,9 @@ def parse_measured_curves(text: str, mechanism: Mechanism, linkage: Linkage) -> 
     places = [place for place, name in enumerate(table.heads) if name in curve_names]
     columns = dict(zip((table.heads[place] for place in places), table.numbers(places, missing=places), strict=True))
     nothing = np.full(len(table), np.nan)
-    measured = measured_samples({name: columns.get(name, nothing) for name in names}, mechanism, linkage, _unit_in_si)
+    measured = samples_of_measured_table(
+        {name: columns.get(name, nothing) for name in names}, mechanism, linkage, _unit_in_si
+    )
     return replace(measured, understood=table.summary_text(places))
 
 

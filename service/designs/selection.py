@@ -230,11 +230,11 @@ def no_match_message(result: Result, texts: Collection[str]) -> str:
     rows = result.designs
     conditions = " and ".join(text.strip() for text in texts)
     parsed = (parse_condition(text, list(rows[0]), rows[0]) for text in texts if rows)
-    reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_never_met(condition, rows)))
+    reasons = dict.fromkeys(reason for condition in parsed if (reason := _why_no_value_helps(condition, rows)))
     return "; ".join((f"none of the {count_with_noun(len(rows), 'design')} meets {conditions}", *reasons))
 
 
-def _why_never_met(condition: Condition, rows: Sequence[Row]) -> str | None:
+def _why_no_value_helps(condition: Condition, rows: Sequence[Row]) -> str | None:
     """Return why a condition cannot hold for any design, whatever its value; None if another value may help."""
     name, cells = condition.column.key, [condition.compared_value(row) for row in rows]
     if all(sort_key(cell)[0] for cell in cells):

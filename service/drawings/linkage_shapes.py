@@ -6,7 +6,7 @@ import itertools
 import math
 from dataclasses import dataclass, replace
 
-from ...model.cycle.gas_cycle import cylinder_loads
+from ...model.cycle.gas_work import cylinder_loads
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import Bar

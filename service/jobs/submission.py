@@ -39,9 +39,9 @@ def parse_with_allowed_functions(
     meet. Raises `JobError`.
     """
     from ...optimise.job import parse_job
-    from ...optimise.job.job_file import require_plain_data
+    from ...optimise.job.job_file import require_few_values_and_no_nulls
 
-    require_plain_data(tables)
+    require_few_values_and_no_nulls(tables)
     require_allowed_functions(tables, allowed)
     return parse_job(tables, values, require_feasible=require_feasible)
 

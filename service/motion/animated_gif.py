@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.cycle.gas_cycle import cylinder_loads
+from ...model.cycle.gas_work import cylinder_loads
 from ...model.cycle.indicator_diagram import indicator_diagram
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
-from ...model.cycle.gas_cycle import cylinder_loads
+from ...model.cycle.gas_work import cylinder_loads
 from ...model.cycle.indicator_diagram import indicator_diagram
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism

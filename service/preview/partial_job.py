@@ -27,7 +27,7 @@ _MOST_POINTS = 100
 """Maximum points of tabulated loads: each is a breakpoint of every curve, and adds to the cost of every sample."""
 
 
-def geometry_problem(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
+def problem_in_crank_rod_offset(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
     """Return the problem in crank, rod and offset that a job states; None while there is none.
 
     None while their ranges cannot be read, and for a swing.

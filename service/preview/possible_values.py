@@ -89,7 +89,7 @@ class Possible(Feasibility):
 
 
 def possible_values(problem: Problem) -> Possible:
-    """Return the values that the ranges of a problem from `partial_job.geometry_problem` allow."""
+    """Return the values that the ranges of a problem from `partial_job.problem_in_crank_rod_offset` allow."""
     free = replace(problem, constraints=())
     box, is_uniform = sampled_designs(free)
     turning = _rotates_fully(box)

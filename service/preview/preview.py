@@ -18,13 +18,13 @@ from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, form
 from ...optimise.job.job_file import require_few_values
 from ...optimise.job.mistake_messages import where_key_belongs
 from ...optimise.job.plain_numbers import numbers_without_unit
-from ...optimise.job.possible_values import STROKE_RATIOS, ratio_and_angle_conflict
+from ...optimise.job.reachable_values import STROKE_RATIOS, ratio_and_angle_conflict
 from ...optimise.job.schema import schema_of
 from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.job_remark import Change, Remark
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint, Word
-from .partial_job import geometry_problem, omitted_requirements
+from .partial_job import omitted_requirements, problem_in_crank_rod_offset
 from .possible_swing import PossibleSwing, possible_swing
 from .possible_values import Ends, Possible, possible_values
 
@@ -102,7 +102,7 @@ def _with_formula_mistakes(wrong: list[Wrong], formulas: list[StatedFormula]) ->
 def _preview_without_formulas(tables: Mapping[str, Any], read: Callable[[Mapping[str, Any]], Problem]) -> JobPreview:
     """Return the findings about a job except those on its formulas."""
     try:
-        stated = geometry_problem(tables, None)
+        stated = problem_in_crank_rod_offset(tables, None)
     except InputError:
         stated = None
     full_problem, wrong, rest = None, list[Wrong](), tables
@@ -121,7 +121,7 @@ def _preview_without_formulas(tables: Mapping[str, Any], read: Callable[[Mapping
     try:
         full_problem = read(rest)
         if not sentences_by_name and stated is not None:
-            stated = geometry_problem(tables, full_problem)
+            stated = problem_in_crank_rod_offset(tables, full_problem)
     except InputError as error:
         wrong += _mistakes_in(error)
     if sentences_by_name:

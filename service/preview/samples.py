@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ...model.errors import InputError
 from ...model.swing.end_angles import swing_start_column
 from ...objectives.registry import QUANTITIES
-from ...optimise.job.possible_values import Box
+from ...optimise.job.reachable_values import Box
 from ...optimise.problem.constraint_violation import FEASIBLE
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint

@@ -119,11 +119,11 @@ class DesignQuestion:
         self, mechanism: Mechanism, linkage: Linkage, problem: Problem | None, inputs: Mapping[str, object]
     ) -> dict[str, Any]:
         """Return the numbers as JSON, metric; called by `optimise.problem.question_registry`."""
-        from ...model.linkage.single_linkage import single_rotating_linkage
+        from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 
         bound = self.bind_to_problem(mechanism, linkage, problem, inputs)
         if self.command is None:
-            single_rotating_linkage(mechanism, linkage)
+            require_single_rotating_linkage(mechanism, linkage)
         record: dict[str, Any] = json_ready(bound.numbers())
         return record
 
@@ -150,7 +150,7 @@ class BoundQuestion:
 
     def numbers(self, cancelled: Callable[[], bool] = lambda: False) -> dict[str, Any]:
         """Return the numbers, ready for JSON. Raises `InputError` if the design has none."""
-        self._add_shared_options(cancelled)
+        self._add_options_shared_by_numbers_and_figure(cancelled)
         record: dict[str, Any] = self._analysis_module.numbers(self.mechanism, self.linkage, **self.options)
         return record
 
@@ -189,10 +189,10 @@ class BoundQuestion:
         """Return the figure without computed numbers. Raises `InputError` if there is none."""
         from ..figures.panel_drawing import draw_figure
 
-        self._add_shared_options(cancelled)
+        self._add_options_shared_by_numbers_and_figure(cancelled)
         return draw_figure(self._figure_source(), units)
 
-    def _add_shared_options(self, cancelled: Callable[[], bool]) -> None:
+    def _add_options_shared_by_numbers_and_figure(self, cancelled: Callable[[], bool]) -> None:
         module = self._analysis_module
         if hasattr(module, "compute_shared_options"):
             inputs = {**self.options, "cancelled": cancelled}

@@ -12,7 +12,7 @@ from ...objectives.kinds import System
 from ..designs.measured_curves_file import parse_measured_curves
 from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import Result
-from ..runs.stored_runs import problem_of
+from ..runs.runs_on_disk import problem_of
 from .alternatives import alternatives_of, bookmarks_of_run
 from .design_report import design_report
 from .subject import Subject

@@ -13,7 +13,7 @@ from sqlalchemy import Connection, and_, delete, func, select, update
 from ...model.errors import InputError, NotFound, StoreError
 from ..runs.result import Result
 from ..runs.run_folder import run_name
-from ..runs.stored_runs import result_from
+from ..runs.runs_on_disk import result_from
 from . import queue
 from .claim import Claim
 from .database_clock import ClockJumps, now

@@ -118,7 +118,7 @@ def _degrees_of_freedom(branch: EliminationBranch) -> int:
 
 def _machine_lines(problem: Problem) -> list[str]:
     """Return the machine of a problem line by line, with the ranges of its variables."""
-    low, high = (machine_in_words(problem, end) for end in problem.mechanism.at_lower_and_upper_bounds)
+    low, high = (machine_in_words(problem, end) for end in problem.mechanism.at_bounds_of_variables)
     if len(low) != len(high):  # a number that is zero at one end would omit its line
         return machine_in_words(problem, problem.mechanism)
     return [join_range_ends(lowest, highest) for lowest, highest in zip(low, high, strict=True)]

@@ -164,7 +164,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
     rich_table.add_column("", no_wrap=True)
     best = {(row, objective.column) for objective in result.objectives for row in _best_rows(result, objective)}
     designs = [row_without_noise(result.designs[row]) for row in rows]
-    texts = [_align_decimals([design[column.key] for design in designs]) for column in columns]
+    texts = [_format_with_same_decimals([design[column.key] for design in designs]) for column in columns]
     for row, line in zip(rows, zip(*texts, strict=True), strict=True):
         knee = row == result.knee and len(result.objectives) > 1
         tops = [(row, column.key) in best for column in columns]
@@ -186,7 +186,7 @@ def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
     return best if len(best) < max(len(ranks), 2) else []
 
 
-def _align_decimals(values: Sequence[Cell]) -> list[str]:
+def _format_with_same_decimals(values: Sequence[Cell]) -> list[str]:
     """Return numbers with the same decimals: four significant digits for the largest."""
     sizes = [abs(value) for value in values if isinstance(value, float) and math.isfinite(value)]
     top = max(sizes, default=0.0)

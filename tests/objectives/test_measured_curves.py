@@ -12,7 +12,7 @@ import pytest
 
 from slidercrank import InputError, Linkage, Mechanism, analyse
 from slidercrank.objectives.tables.curve_extremes import every_curve
-from slidercrank.objectives.tables.measured_curves import meaningful_columns, measured_samples
+from slidercrank.objectives.tables.measured_curves import meaningful_columns, samples_of_measured_table
 from tests.model.cases import SMOOTH, TABLES
 
 LINKAGE = Linkage(0.05, 0.2, 0.03)
@@ -36,7 +36,7 @@ def test_every_curve_is_read_as_tables_in_metric_inch_and_si_call_it() -> None:
 
 @pytest.mark.parametrize("name", ["temperature_C", "time_of_day", "load_cell_V", "torque_filtered_Nm", "", "x"])
 def test_other_columns_are_left_out(name: str) -> None:
-    found = measured_samples({"crank_angle_deg": [0.0], "torque_Nm": [1.0], name: [5.0]}, MACHINE, LINKAGE)
+    found = samples_of_measured_table({"crank_angle_deg": [0.0], "torque_Nm": [1.0], name: [5.0]}, MACHINE, LINKAGE)
     assert found.left_out == (name,)
     assert list(found.values) == ["torque"]
 
@@ -106,16 +106,16 @@ def test_columns_that_cannot_be_are_refused(names: list[str], words: str) -> Non
 )
 def test_values_that_cannot_be_are_refused(table: dict[str, list[float]], words: str) -> None:
     with pytest.raises(InputError, match=re.escape(words)):
-        measured_samples(table, MACHINE, LINKAGE)
+        samples_of_measured_table(table, MACHINE, LINKAGE)
 
 
 def test_time_is_a_crank_angle_at_constant_speed() -> None:
     backwards = Mechanism(speed=-30.0)
-    found = measured_samples({"time_s": [0.0, 0.01], "slider_position_mm": [1.0, 2.0]}, backwards, LINKAGE)
+    found = samples_of_measured_table({"time_s": [0.0, 0.01], "slider_position_mm": [1.0, 2.0]}, backwards, LINKAGE)
     assert found.by_time
     assert found.crank_angle == pytest.approx([0.0, -0.3], rel=1e-12)
     both = {"time_s": [0.0], "crank_angle_deg": [90.0], "slider_position_mm": [1.0]}
-    found = measured_samples(both, backwards, LINKAGE)
+    found = samples_of_measured_table(both, backwards, LINKAGE)
     assert found.crank_angle == pytest.approx([0.5 * math.pi], rel=1e-12)
     assert found.left_out == ("time_s",)
     for machine, words in (

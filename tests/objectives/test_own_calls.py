@@ -273,15 +273,15 @@ SUSPENDED = """
 import sys, time
 import numpy as np
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own import worker
+from slidercrank.objectives.own import function_process_client as client
 
 def read_late(stream, length):
     content = read(stream, length)
     time.sleep(0.2)  # as on a busy machine: who asks wakes up before who listens
     return content
 
-read, worker._read, worker._GRACE = worker._read, read_late, 0.5
-asked = worker.Worker("loops:marks", [sys.argv[1]], 1.0)
+read, client._read_bytes, client._GRACE = client._read_bytes, read_late, 0.5
+asked = client.Worker("loops:marks", [sys.argv[1]], 1.0)
 for size in (1.0, 2.0, 3.0, 4.0):
     print(*asked(Mechanism(), size * np.array([[0.03, 0.1, 0.01]]), None).values.ravel(), flush=True)
 """

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from slidercrank.model.kinematics import geometry
 from slidercrank.objectives.registry import quantity
-from slidercrank.optimise.job.possible_values import Box, greatest_time_ratio
+from slidercrank.optimise.job.reachable_values import Box, greatest_time_ratio
 from slidercrank.optimise.problem.requirements import Range
 
 ANY = Range(lower=0.0, upper=1.0)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import kind_of_symbol, to_si
-from slidercrank.optimise.feasibility.safe_side_rounding import Side, isolated_value_text, round_to_safe_side
+from slidercrank.optimise.feasibility.safe_side_rounding import Side, isolated_value_in_full_digits, round_to_safe_side
 
 UNITS = sorted({(quantity.unit.symbol, quantity.unit.factor) for quantity in QUANTITIES.values()})
 
@@ -51,5 +51,5 @@ def test_limits_read_as_people_write_numbers(value: float, side: Side, text: str
 
 def test_a_value_that_is_possible_alone_is_told_to_rounding() -> None:
     value = 1e3 * (math.sqrt(0.4**2 - 0.05**2) - math.sqrt(0.2**2 - 0.05**2))
-    assert float(isolated_value_text(value)) == pytest.approx(value, rel=1e-11)
-    assert isolated_value_text(240.0) == "240"
+    assert float(isolated_value_in_full_digits(value)) == pytest.approx(value, rel=1e-11)
+    assert isolated_value_in_full_digits(240.0) == "240"

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.model.errors import RunError
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from tests.service import fronts
 from tests.service.conftest import Command
 

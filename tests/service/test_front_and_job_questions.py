@@ -27,7 +27,7 @@ from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.questions.discovery import FRONT_OR_JOB_QUESTIONS
 from slidercrank.service.runs.result import json_ready
-from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service import fronts
@@ -417,7 +417,7 @@ package.__path__.append(sys.argv[1])
 from pathlib import Path
 from slidercrank.service.agents.server import TOOLS
 from slidercrank.service.designs.stored_designs import front_of
-from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service.test_front_and_job_questions import ASK, call_in
 
 folder = Path(sys.argv[2])

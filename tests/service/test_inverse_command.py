@@ -13,7 +13,7 @@ import pytest
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import load_job
 from slidercrank.service.designs.stored_designs import stored_design
-from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.model.cases import random_designs
 from tests.service import fronts
 from tests.service.conftest import Command

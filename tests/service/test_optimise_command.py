@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from slidercrank.service.commands.optimise import Places
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.test_result import DESIGN_KEYS, KEYS

@@ -20,7 +20,7 @@ from slidercrank.service.runs.result import (
     row_from_json,
     rows_from_csv,
 )
-from slidercrank.service.runs.stored_runs import result_from
+from slidercrank.service.runs.runs_on_disk import result_from
 from tests.service import fronts
 
 DESIGN_KEYS = [

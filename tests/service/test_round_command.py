@@ -18,7 +18,7 @@ from slidercrank.optimise.job import parse_job
 from slidercrank.service.cli import app
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.questions.round.analysis import steps_of
-from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service import fronts
 from tests.service.conftest import Command
 from tests.service.weak_pins import TABLES

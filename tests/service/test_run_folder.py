@@ -14,7 +14,7 @@ from slidercrank.model.errors import InputError, RunError
 from slidercrank.service.runs import run_folder
 from slidercrank.service.runs.result import Result, result_of
 from slidercrank.service.runs.run_folder import MARK, RunFolder, runs_folder, slug, write_file
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from tests.service import fronts
 
 

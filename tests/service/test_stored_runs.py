@@ -13,7 +13,7 @@ from slidercrank.model.errors import InputError, RunError
 from slidercrank.service.jobs.find_run import find_run
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import MARK
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from tests.service import fronts
 
 NAMES = ("20260101-100000-sieve", "20260101-100000-sieve-2", "20260102-090000-feeder", "20260102-090001-feeder")

@@ -13,7 +13,7 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
-from slidercrank.objectives.tables.measured_curves import measured_samples
+from slidercrank.objectives.tables.measured_curves import samples_of_measured_table
 from slidercrank.service.motion.playback import turn_playback
 from tests.service.api.fixed_front import API, Solved, client_of
 from tests.service.conftest import Command
@@ -99,5 +99,7 @@ def test_curves_over_time_are_refused_along_a_profile() -> None:
         InputError,
         match="needs a constant speed; got a speed profile, 2 harmonics of the crank angle; give",
     ):
-        measured_samples(table, problem.mechanism, linkage)
-    assert len(measured_samples(table, replace(problem.mechanism, speed_profile=None), linkage).crank_angle) == 4
+        samples_of_measured_table(table, problem.mechanism, linkage)
+    assert (
+        len(samples_of_measured_table(table, replace(problem.mechanism, speed_profile=None), linkage).crank_angle) == 4
+    )

@@ -21,7 +21,7 @@ from slidercrank.service.report.document import Paragraph
 from slidercrank.service.report.subject import Subject
 from slidercrank.service.runs.result import Result
 from slidercrank.service.runs.run_folder import RunFolder
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import client_of, store_result
 from tests.service.conftest import Command

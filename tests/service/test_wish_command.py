@@ -14,7 +14,7 @@ from slidercrank.optimise.decisions.wish import wish
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.stored_designs import front_of
 from slidercrank.service.jobs.stores import open_store
-from slidercrank.service.runs.stored_runs import problem_of, read_run
+from slidercrank.service.runs.runs_on_disk import problem_of, read_run
 from tests.service.api.serving import serving
 from tests.service.conftest import Command
 

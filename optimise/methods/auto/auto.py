@@ -124,7 +124,7 @@ def add_projected(candidates: FrontCandidates, chosen: Candidates, evaluators: l
         candidates.add(index, project_recorded(evaluators[index], valid, candidates.span))
 
 
-def _candidate_count(problem: Problem) -> int:
+def _polished_design_count(problem: Problem) -> int:
     return max(_FEWEST, int(1.3 * problem.settings.designs))
 
 
@@ -137,7 +137,7 @@ def _rows_to_polish(problem: Problem, group: Archive, evaluator: Evaluator, run:
     values, report = group.values[rows], run.stage_reporter(SELECTING)
 
     def compute() -> tuple[IntArray]:
-        return (choose_designs(values, _candidate_count(problem), always=always, report=report),)
+        return (choose_designs(values, _polished_design_count(problem), always=always, report=report),)
 
     return rows[evaluator.step("choice", (values,), compute)[0]]
 
@@ -209,7 +209,7 @@ def points_to_polish_next(
     report(0, 1)
     # Samples within a band around the constraints prove nothing.
     rows = np.flatnonzero(better & archive.is_feasible)[:_FILLING]
-    wanting = _candidate_count(problem) - len(front) if front.shape[1] > 1 else 0
+    wanting = _polished_design_count(problem) - len(front) if front.shape[1] > 1 else 0
     starts = archive[_best_contributors(screened, rows, front, max(wanting, 32), report)].by_branch(evaluators)
     if wanting > 0:
         rows = np.flatnonzero(uncovered & ~better)
@@ -278,7 +278,7 @@ def auto(problem: Problem, evaluators: list[Evaluator], run: Run) -> Archive:
     # This holds if no gaps need filling and every branch has an extreme design for each objective.
     m = len(problem.objectives)
     extremes = (m + 1) * len(evaluators) if m > 1 else 0
-    run.plan_rounds(1 + len(WIDTHS) + extremes + -(-_candidate_count(problem) // BATCH))
+    run.plan_rounds(1 + len(WIDTHS) + extremes + -(-_polished_design_count(problem) // BATCH))
     return explore(problem, evaluators, run)
 
 

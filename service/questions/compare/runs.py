@@ -10,7 +10,7 @@ from typing import Any
 
 from ....model.errors import SlidercrankError
 from ...runs.result import Result
-from ...runs.stored_runs import job_file
+from ...runs.runs_on_disk import job_file
 
 
 @dataclass(frozen=True)

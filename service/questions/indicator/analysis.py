@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.gas_cycle import cylinder_loads
+from ....model.cycle.gas_work import cylinder_loads
 from ....model.cycle.indicator_diagram import burning_end_angle, indicator_diagram, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage

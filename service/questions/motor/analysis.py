@@ -70,7 +70,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
     averages, moves = torque_averages(mechanism, design), SPEED.is_met(mechanism)
 
-    least, least_angle = _least_inertia(mechanism, linkage)
+    least, least_angle = _least_reflected_inertia(mechanism, linkage)
     mean_power = mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]
     return {
         "peak_torque_Nm": finite_or_none(torque.value),
@@ -88,7 +88,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     }
 
 
-def _least_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
+def _least_reflected_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:
     """Return the minimum of the moving inertia and its crank angle, rad; the first of equal minima."""
     angles_sampled = np.linspace(0.0, TURN, _SAMPLES, endpoint=False)
     values, step = _reflected_inertia(mechanism, linkage, angles_sampled), TURN / _SAMPLES

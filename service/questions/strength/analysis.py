@@ -18,7 +18,7 @@ from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody
 from ....objectives.bar_pieces import LINKS, NEAR, STATIC
 from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
-from ....objectives.link_strength import STATIC_SAFETY, eye_stresses
+from ....objectives.link_strength import STATIC_SAFETY, greatest_eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
 from ....objectives.tables.missing_value_reasons import missing_value_reason
@@ -79,7 +79,7 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> StrengthNumbers:
         ):
             value = float(quantity.unit.factor * quantity.evaluate(mechanism, design).values[0])
             record[quantity.field] = None if missing_value_reason(quantity, value, mechanism, linkage) else value
-    eyes, cycle = eye_stresses(mechanism, design), TURN * cycle_turns(mechanism)
+    eyes, cycle = greatest_eye_stresses(mechanism, design), TURN * cycle_turns(mechanism)
     bars: dict[str, dict[str, Any]] = {name: _bar_extremes(mechanism, linkage, name) for name in _bar_names(mechanism)}
     for name, bar in bars.items():
         for pin, (stress, angle) in eyes[name].items():

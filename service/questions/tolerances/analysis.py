@@ -119,7 +119,7 @@ def numbers(
     spread = (
         summarise_sample(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     )
-    deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
+    deviation_limits = {"root-sum-square": float(rss), "worst case": float(worst_case)} if limit is None else {"given": limit}
     return {
         "worst_case_mm": 1e3 * float(worst_case),
         "worst_case_angle_deg": float(np.degrees(at[0])),

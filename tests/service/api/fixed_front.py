@@ -18,7 +18,7 @@ from slidercrank.service.api.settings import DEFAULT, Settings
 from slidercrank.service.cli import app as command_line
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import Result, Row
-from slidercrank.service.runs.stored_runs import read_run
+from slidercrank.service.runs.runs_on_disk import read_run
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
 from tests.service import fronts as made

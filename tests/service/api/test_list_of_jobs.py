@@ -100,7 +100,7 @@ def test_a_row_is_part_of_the_job(client: httpx.Client, store: Store) -> None:
     assert row()["progress"] == {"stage": "evolving", "round": 3, "rounds": 9, "feasible": 3, "step": 0, "steps": 0}
     claim.finish(replace(result(), extremes={"time_ratio": 0}))
     assert row()["progress"] is None
-    assert row()["summary"] == {"designs": 2, "best": {"time_ratio": 1.25}}
+    assert row()["summary"] == {"designs": 2, "best": {"time_ratio": 1.25}, "seconds": 0.1}
     job = client.get("/jobs/1").json()
     assert (job["summary"]["points"], job["progress"]["front"]) == ([[1.25], [1.0]], front_progress())
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from slidercrank.objectives.tables.measured_curves import Measured, measured_samples
+from slidercrank.objectives.tables.measured_curves import Measured, samples_of_measured_table
 from slidercrank.optimise.problem.design_analysis import Analysis
 from slidercrank.service.designs.design_curves import cycle_csv
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves
@@ -38,7 +38,7 @@ def samples(subject: Subject) -> Measured:
     analysis = Analysis(design.mechanism, design.linkage, {}, {}, ())
     cycle = analysis.cycle(40)
     table = {"crank_angle_rad": cycle.crank_angle_rad + 0.1, "torque_Nm": cycle.torque_Nm - 3.0, "room": cycle.load_N}
-    return measured_samples(table, design.mechanism, design.linkage)
+    return samples_of_measured_table(table, design.mechanism, design.linkage)
 
 
 @pytest.mark.parametrize("system", ["metric", "inch"])

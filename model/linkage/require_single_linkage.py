@@ -10,7 +10,7 @@ from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
 
-def single_rotating_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+def require_single_rotating_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one fully rotating linkage, with dimensions as floats.
 
     Raises `InputError` for an array of linkages, for a linkage on another branch than the mechanism's, and for a spring
@@ -19,13 +19,13 @@ def single_rotating_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     require_slider(mechanism)
     linkage.require_full_rotation()
     require_loads_repeating_each_turn(mechanism)
-    return single_linkage(mechanism, linkage)
+    return require_single_linkage(mechanism, linkage)
 
 
-def single_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
+def require_single_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one linkage that need not rotate fully, with dimensions as floats.
 
-    Raises `InputError` as `single_rotating_linkage` does.
+    Raises `InputError` as `require_single_rotating_linkage` does.
     """
     if np.ndim(linkage.rotates_fully):
         raise InputError(
