@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 Turning = Annotated[float | None, Note("null where all but one of the machines are stuck")]
 Exact = Annotated[float | None, Note("null where a linkage within the tolerances does not rotate fully")]
 SAMPLES = 20_000
+_ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 BINS = 40  # of the histogram
 
 
@@ -106,8 +107,9 @@ def numbers(
     if not np.any(source_limits):
         raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
     design = lengths_row(linkage)
-    (worst_case,), at = first_peaks(mechanism, Signal.POSITION_ERROR, design)
-    (rss,), at_square = first_peaks(mechanism, Signal.POSITION_ERROR_RSS, design)
+    (worst_case, at), (rss, at_square) = (
+        (float(values[0]), angles) for values, angles in (first_peaks(mechanism, signal, design) for signal in _ERRORS)
+    )
     try:
         exact = worst_position_error(mechanism, linkage)
     except AssemblyError:
@@ -119,13 +121,13 @@ def numbers(
     spread = (
         summarise_sample(simulation.greatest, percents=(50.0, 95.0, 99.73)) if samples > 1 + simulation.stuck else None
     )
-    deviation_limits = {"root-sum-square": float(rss), "worst case": float(worst_case)} if limit is None else {"given": limit}
+    deviation_limits = {"root-sum-square": rss, "worst case": worst_case} if limit is None else {"given": limit}
     return {
-        "worst_case_mm": 1e3 * float(worst_case),
+        "worst_case_mm": 1e3 * worst_case,
         "worst_case_angle_deg": float(np.degrees(at[0])),
         "exact_worst_case_mm": None if exact is None else 1e3 * exact.size,
         "exact_worst_case_angle_deg": None if exact is None else float(np.degrees(exact.crank_angle)),
-        "root_sum_square_mm": 1e3 * float(rss),
+        "root_sum_square_mm": 1e3 * rss,
         "root_sum_square_angle_deg": float(np.degrees(at_square[0])),
         "contributions": [
             {
