@@ -46,7 +46,7 @@ class Outcome:
         return self.short is None or self.short <= _ROUNDING * self.range_
 
     @property
-    def is_improved(self) -> bool:
+    def gained(self) -> bool:
         """Whether the new design is better than the previous one."""
         return self.changed is not None and self.changed < -_ROUNDING * self.range_
 
@@ -128,7 +128,7 @@ class Wished:
     def _first_sentence(self) -> str:
         wished = [outcome for outcome in self.outcomes if outcome.kind == "value"]
         if not wished:
-            if any(outcome.kind == "improve" and outcome.is_improved for outcome in self.outcomes):
+            if any(outcome.kind == "improve" and outcome.gained for outcome in self.outcomes):
                 return "the objectives to improve do so as far as the others allow"
             return "nothing improves while the other objectives stay as required"
         if not self.possible:

@@ -27,7 +27,8 @@ def findings(page: Page, rules: Sequence[str] = ()) -> list[tuple[str, list[str]
 def require_accessible(page: Page) -> None:
     """Fail with what axe-core finds, in either scheme; and if the page is wider than a small phone."""
     page.emulate_media(color_scheme="light")
-    assert findings(page) == []
+    found = findings(page)
+    assert found == [], found
     page.emulate_media(color_scheme="dark")
     assert findings(page, _OF_COLOURS) == []
     page.emulate_media(color_scheme="light")

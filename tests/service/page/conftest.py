@@ -146,6 +146,11 @@ def ready(page: Page) -> None:
     expect(status).to_have_text("Ready to start.", timeout=30_000)
 
 
+def checked(page: Page) -> None:
+    """Wait until the form of a new run says what its check found."""
+    expect(page.get_by_role("complementary").get_by_role("status")).not_to_have_text("Checking …", timeout=30_000)
+
+
 def text_of(page: Page) -> dict[str, Any]:
     """Return the tables of the job in the form."""
     found: dict[str, Any] = json.loads(page.locator("#job-text").input_value())

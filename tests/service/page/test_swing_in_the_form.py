@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.store import Store
 from tests.service.page.accessibility import require_accessible
-from tests.service.page.conftest import Open, ready, text_of
+from tests.service.page.conftest import Open, checked, ready, text_of
 
 
 @pytest.mark.slow
@@ -52,7 +52,7 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     ready(page)
     page.get_by_label("the crank", exact=True).select_option("swing")
     expect(page.locator("#notices")).to_contain_text("stroke, least transmission angle, time ratio, peak torque")
-    ready(page)
+    checked(page)
     job = text_of(page)
     assert job["motion"] == {"kind": "swing", "from": "0 deg", "to": "60 deg", "driver": "slider"}
     assert job["objectives"] == {"peak_actuator_force": "minimise"}
