@@ -37,6 +37,15 @@ class LeverQuantity(SwingQuantity):
     known: tuple[str, ...] = field(default=(), compare=False)
     moved_by: tuple[SwingDriver, ...] = field(default=("cylinder",), compare=False)
 
+    @property
+    def required(self) -> str:
+        """Requirements on a job, in words; see `Quantity`."""
+        if "turning crank" not in self.moved_by:
+            return super().required
+        turning = "" if "cylinder" in self.moved_by else ", and no table [motion]"
+        needs = (need.rule for need in self.needs)
+        return "; ".join([f'it needs [mechanism] inversion = "turning cylinder"{turning}', *needs])
+
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if not swing.of_lever:
