@@ -84,8 +84,9 @@ def store_file_exists(file: Path) -> bool:
     would delete the log too, with the latest jobs in it.
     """
     log = Path(f"{file}-wal")
-    logged = log.exists()  # before the size: SQLite writes a new file first, then creates its log
+    logged = False
     try:
+        logged = log.exists()  # before the size: SQLite writes a new file first, then creates its log
         size = file.stat().st_size
     except FileNotFoundError:
         size = 0

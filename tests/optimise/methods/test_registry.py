@@ -153,8 +153,9 @@ def test_a_contradiction_is_explained_whatever_the_method() -> None:
 def test_no_package_that_a_method_computes_with_is_imported_before_it_is_used() -> None:
     code = (
         "import sys; from slidercrank import load_job, solve; load_job; solve;"
-        "from slidercrank.optimise.methods.registry import methods;"
-        "used = {name for method in methods().values() for name in method.uses} - {'scipy'};"  # numba imports scipy
+        "from slidercrank.optimise.methods.registry import methods_by_name;"
+        "methods = methods_by_name().values();"
+        "used = {name for method in methods for name in method.uses} - {'scipy'};"  # numba imports scipy
         "used |= {'scipy.optimize', 'scipy.stats', 'scipy.spatial', 'pandas'};"
         "print(sorted(used & set(sys.modules)))"
     )
