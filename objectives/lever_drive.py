@@ -7,6 +7,8 @@ from .kinds import ANGLE, ENERGY, FORCE, POWER, PRESSURE, RATIO, SPEED, VOLUME_F
 from .lever_quantity import LeverForm, LeverPeak
 from .position_error import POSITION_ERROR
 from .quantity import Group
+from .swing_accuracy import SWING_ANGLE_ERROR
+from .swing_drive import PEAK_ACTUATOR_FORCE, PEAK_ACTUATOR_POWER, SWING_ENERGY
 
 _peak = partial(LeverPeak, group=Group.DRIVE, picture="cylinder")
 _form = partial(LeverForm, group=Group.DRIVE, picture="cylinder")
@@ -14,6 +16,7 @@ _pin = partial(LeverPeak, kind=FORCE, group=Group.FORCES, example="5 kN", moved_
 
 PEAK_CYLINDER_FORCE = _peak(
     name="peak_cylinder_force",
+    swing_counterpart=PEAK_ACTUATOR_FORCE.name,
     kind=FORCE,
     curves=("push", "pull"),
     least_value=0.0,
@@ -113,6 +116,7 @@ CYLINDER_FLOW = _form(
 )
 PEAK_CYLINDER_POWER = _peak(
     name="peak_cylinder_power",
+    swing_counterpart=PEAK_ACTUATOR_POWER.name,
     kind=POWER,
     curves=("push_power", "pull_power"),
     least_value=0.0,
@@ -124,6 +128,7 @@ PEAK_CYLINDER_POWER = _peak(
 )
 LEVER_WORK = _form(
     name="lever_work",
+    swing_counterpart=SWING_ENERGY.name,
     title="work of the cylinder from start to end",
     kind=ENERGY,
     forms=(lambda c, _: work_out(c),),
@@ -162,6 +167,7 @@ CYLINDER_PIVOT_FORCE = _pin(
 )
 LEVER_ANGLE_ERROR = _peak(
     name="lever_angle_error",
+    swing_counterpart=SWING_ANGLE_ERROR.name,
     kind=ANGLE,
     curves=("angle_error",),
     tolerated=True,

@@ -14,12 +14,14 @@ from ..model.turning_cylinder.closed_forms import (
 from .kinds import ANGLE, LENGTH, RATIO
 from .lever_quantity import LeverForm
 from .quantity import Domain, Group
+from .swing_geometry import ACTUATOR_TRAVEL, SWING_TRANSMISSION_ANGLE
 
 _form = partial(LeverForm, group=Group.MOTION, picture="cylinder")
 _length = partial(_form, moved_by=("cylinder", "turning crank"))
 
 LEVER_TRANSMISSION_ANGLE = _form(
     name="lever_transmission_angle",
+    swing_counterpart=SWING_TRANSMISSION_ANGLE.name,
     title="least transmission angle of the lever",
     short="transmission angle",
     kind=ANGLE,
@@ -76,6 +78,7 @@ GREATEST_CYLINDER_LENGTH = _length(
 )
 CYLINDER_TRAVEL = _length(
     name="cylinder_travel",
+    swing_counterpart=ACTUATOR_TRAVEL.name,
     title="travel of the cylinder",
     kind=LENGTH,
     forms=(lambda c, _: travel(c),),

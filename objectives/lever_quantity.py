@@ -32,10 +32,12 @@ class LeverQuantity(SwingQuantity):
     """A number of a lever's motion.
 
     known: numbers of its cylinder or arm that it needs, or either of two. moved_by: drivers of motions that have it.
+    swing_counterpart: name of the same quantity for a slider-crank that swings; empty if there is none.
     """
 
     known: tuple[str, ...] = field(default=(), compare=False)
     moved_by: tuple[SwingDriver, ...] = field(default=("cylinder",), compare=False)
+    swing_counterpart: str = field(default="", compare=False)
 
     @property
     def required(self) -> str:

@@ -125,7 +125,7 @@ PEAK_RAM_SPEED = _fast(
     curves=("ram_speed",),
     known=("ram",),
     place=369,
-    sentence="The greatest speed of the ram.",
+    sentence="The greatest speed of the ram over a turn of the crank.",
     formula="max over the turn of |omega R cos(gamma - direction of OA) d gamma / d theta|",
     example="1 m/s",
 )

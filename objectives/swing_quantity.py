@@ -19,16 +19,6 @@ from ..model.swing.work import swing_efficiency, swing_work
 from .machine_needs import Consequence
 from .quantity import MECHANICS, Array, Pieces, Quantity, Values
 
-_OF_LEVER = {
-    "actuator_travel": "cylinder_travel",
-    "peak_actuator_force": "peak_cylinder_force",
-    "peak_actuator_power": "peak_cylinder_power",
-    "swing_angle_error": "lever_angle_error",
-    "swing_energy": "lever_work",
-    "swing_transmission_angle": "lever_transmission_angle",
-}
-"""Quantities of a lever, by the corresponding quantities of a crank that swings."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class SwingQuantity(Quantity):
@@ -57,8 +47,10 @@ class SwingQuantity(Quantity):
     def unfit(self, swing: Swing) -> str | None:
         """Return rule, value and remedy if a swing does not define the quantity; None if it does."""
         if swing.of_lever:
-            counterpart = _OF_LEVER.get(self.name)
-            remedy = f"use {counterpart}" if counterpart else "leave it out"
+            from .registry import FACTS
+
+            counterparts = (fact.name for fact in FACTS.values() if getattr(fact, "swing_counterpart", "") == self.name)
+            remedy = next((f"use {name}" for name in counterparts), "leave it out")
             return f"it needs a crank with rod and slider; got a lever moved by a cylinder that turns; {remedy}"
         if self.driver is not None and swing.driver != self.driver:
             return (

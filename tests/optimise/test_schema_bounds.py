@@ -27,6 +27,7 @@ CLASSES: dict[str, type[BaseModel]] = {
     if isinstance(one, type) and issubclass(one, BaseModel)
 } | {part.__name__: part for part in PARTS.values()}
 GIVEN: dict[str, Node] = {
+    "ArmPart": {"ram": "500 mm"},
     "ChoicePart": {"file": None, "option": [{"name": "a"}, {"name": "b"}]},
     "DrivePart": {"rated_torque": "5 N m"},
     "EngineLoad": {"peak_pressure": "40 bar"},

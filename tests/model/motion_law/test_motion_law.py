@@ -88,7 +88,7 @@ def test_forward_dynamics_under_the_torque_of_the_law_give_the_law(law: MotionLa
 
         def rate(angle: float, square: Any, span: Any = span) -> Any:
             terms = span.terms_at(np.array([angle]))
-            static = terms.torque(0.0, 0.0) + terms.spin * square
+            static = terms.required_torque(0.0, 0.0) + terms.spin * square
             return 2.0 * (law.torque_at(np.array([angle])) - static) / terms.inertia
 
         run = solve_ivp(rate, (first, last), [reached], rtol=1e-10, atol=0.0, max_step=0.02)
