@@ -114,7 +114,7 @@ class Claim:
                 {"reason": database_text(self.waits)} if self.waits else {}, [], keep=False, patient=_no_patience
             )
 
-    def refresh_cancel_asked(self) -> None:
+    def refresh_cancellation(self) -> None:
         """Check for cancellation of the job without writing. Raises `LeaseLost` if another worker has claimed it."""
         left = (jobs.c.lease_until - now()).label("left")
         query = select(jobs.c.cancel_asked, left).where(self._is_held_row, jobs.c.state == "running")

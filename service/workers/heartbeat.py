@@ -117,7 +117,7 @@ class Heartbeat:
                 if self.claim.seconds_since_renewal > lease / 3.0 or self.claim.astray:
                     self.claim.renew()
                 else:
-                    self.claim.refresh_cancel_asked()
+                    self.claim.refresh_cancellation()
                 self._check_cancellation()
             except LeaseLost:
                 if not self._end.is_set():  # at the end of a job the claim is released on purpose

@@ -242,7 +242,7 @@ def test_the_worker_of_a_cancelled_job_hears_of_it_and_the_job_can_go_on(hears: 
     assert not claim.cancel_asked
     assert store.cancel(job.id).cancel_asked
     assert store.cancel(job.id).state == "running"
-    claim.refresh_cancel_asked() if hears == "look" else WRITES[hears](claim)
+    claim.refresh_cancellation() if hears == "look" else WRITES[hears](claim)
     assert claim.cancel_asked
     claim.finish(result("cancelled"))
     assert (store.job(job.id).state, len(store.result(job.id).designs)) == ("cancelled", len(ROWS))
