@@ -70,10 +70,10 @@ def search_rounded_neighbours(
     named = texts_by_name(allow, words["allow"], _ALLOW.form, _ALLOW.example)
     allowed = {metric_key(name): amount for name, amount in named.items()}
     for at in front.rounding(row, steps, count=count, allow=allowed):
-        yield _rounding_answer(at, row) if isinstance(at, Rounded) else at
+        yield _record_of_rounding(at, row) if isinstance(at, Rounded) else at
 
 
-def _rounding_answer(rounded: Rounded, row: int) -> Answer:
+def _record_of_rounding(rounded: Rounded, row: int) -> Answer:
     record = _rounding_record(rounded)
     return Answer(
         record=lambda units: _record_in_units(units, record, rounded),
