@@ -146,16 +146,20 @@ export function showProgress(place, job, { signal, changed }) {
     // once for all events replayed together
     drawing ??= requestAnimationFrame(() => {
       drawing = null;
-      fill(
-        curve,
-        history(
-          rounds.map(({ round, hypervolume }) => [round, hypervolume]),
-          "Hypervolume",
-          data.rounds,
-          curve.clientWidth,
-        ),
-      );
+      drawCurve();
     });
+  }
+
+  function drawCurve() {
+    fill(
+      curve,
+      history(
+        rounds.map(({ round, hypervolume }) => [round, hypervolume]),
+        "Hypervolume",
+        rounds[rounds.length - 1].rounds,
+        curve.clientWidth,
+      ),
+    );
   }
 
   /** Show a state; an event within a round keeps the estimate. @param {Api.Progress} data @param {boolean} running */
@@ -349,9 +353,18 @@ export function showProgress(place, job, { signal, changed }) {
     showState(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
   } else fill(curve, h("p", { class: "quiet" }, "The curve begins with the first round."));
+  let drawnWidth = front.clientWidth;
+  const sizes = new ResizeObserver(() => {
+    if (front.clientWidth === drawnWidth) return;
+    drawnWidth = front.clientWidth;
+    if (rounds.length) drawCurve();
+    if (latest) drawFront(latest);
+  });
+  sizes.observe(front);
   return () => {
     over = true;
     rest();
+    sizes.disconnect();
     stop();
   };
 }
