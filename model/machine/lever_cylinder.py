@@ -22,6 +22,7 @@ STEEL = 210e9
 class Cylinder:
     """A single-stage hydraulic or pneumatic cylinder; None for what is not known.
 
+    Each number is checked by itself; `require_sizes_to_agree` compares them.
     closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: closed length
     minus stroke, m. mounting: a clevis or an eye at the end of the barrel, or a trunnion along it, beyond which the
     barrel extends, so that the stroke may exceed the closed length; the cylinder pivots on either.
@@ -51,11 +52,14 @@ class Cylinder:
         require_numbers(self, "seal_friction", phrase="the friction of a seal", least=0.0, unit="N")
         require_numbers(self, "barrel_mass", "piston_rod_mass", phrase="the {} of a cylinder", least=0.0, unit="kg")
         require_numbers(self, "length_tolerance", phrase="the {} of a cylinder", least=0.0, unit="m")
-        self._require_lengths_to_agree()
-        if self.bore is not None and self.rod is not None and self.rod >= self.bore:
+
+    def require_sizes_to_agree(self, least: Cylinder) -> None:
+        """Raise `InputError` unless some sizes from those of the least cylinder to these belong to one cylinder."""
+        self._require_lengths_to_agree(least)
+        if self.bore is not None and least.rod is not None and least.rod >= self.bore:
             raise InputError(
                 f"the bore must exceed the piston rod; got a bore of {1e3 * self.bore:.6g} mm and a piston rod of "
-                f"{1e3 * self.rod:.6g} mm; enlarge the bore"
+                f"{1e3 * least.rod:.6g} mm; enlarge the bore"
             )
         if self.supply_pressure is not None and self.bore is None:
             raise InputError(
@@ -63,7 +67,7 @@ class Cylinder:
                 "give the bore"
             )
 
-    def _require_lengths_to_agree(self) -> None:
+    def _require_lengths_to_agree(self, least: Cylinder) -> None:
         """Raise `InputError` for lengths that do not belong to one cylinder, or of which one is missing."""
         if self.dead_length is not None and self.mounting == "trunnion":
             raise InputError(
@@ -80,12 +84,12 @@ class Cylinder:
             raise InputError(
                 f"a cylinder needs both a closed length and a stroke, or neither; got {given}; give both, or neither"
             )
-        if self.stroke is None or self.closed_length is None or self.mounting == "trunnion":
+        if least.stroke is None or self.closed_length is None or self.mounting == "trunnion":
             return
-        if self.stroke >= self.closed_length:
+        if least.stroke >= self.closed_length:
             raise InputError(
                 "the stroke of a single-stage cylinder must be less than its closed length; got a stroke of "
-                f"{1e3 * self.stroke:.6g} mm and a closed length of {1e3 * self.closed_length:.6g} mm; shorten the "
+                f"{1e3 * least.stroke:.6g} mm and a closed length of {1e3 * self.closed_length:.6g} mm; shorten the "
                 'stroke, or for a barrel that extends beyond its pivot set mounting = "trunnion"'
             )
 

@@ -202,7 +202,7 @@ class Mechanism:
         """The machine with each variable at its bound of larger magnitude: it has all features of any design."""
         return self.with_values([item.largest_magnitude_bound for item in self.varying]) if self.varying else self
 
-    @property
+    @cached_property
     def at_bounds_of_variables(self) -> tuple[Mechanism, Mechanism]:
         """The machines with all variables at their lower and at their upper bounds."""
         lower, upper = ([getattr(item, end) for item in self.varying] for end in ("lower", "upper"))

@@ -79,6 +79,7 @@ def summarise(
     """
     sizes = machine.sizes
     sizes.require_swing(swing.start, swing.end)
+    cylinder.require_sizes_to_agree(cylinder)
     first, last = (float(sizes.length(angle)) for angle in (swing.start, swing.end))
     shortest, longest = sorted((first, last))
     fitting = _fitting_sizes(machine, swing, cylinder)

@@ -84,16 +84,27 @@ def require_same_driver(mechanism: Mechanism, swing: Swing | None) -> None:
         return
     if swing.of_full_turn:
         _require_nothing_of_a_driving_cylinder(mechanism)
-        return
-    if mechanism.with_largest_variables.speed:
+    elif mechanism.with_largest_variables.speed:
         raise InputError(
             "mechanism.speed: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave "
             "it out, and give [motion] a law and a duration"
         )
-    if mechanism.lever.arm != Arm():
+    elif mechanism.lever.arm != Arm():
         raise InputError(
             "arm: is for a crank that rotates fully; got it with a lever that its cylinder swings; leave it out"
         )
+    require_possible_cylinder(mechanism)
+
+
+def require_possible_cylinder(mechanism: Mechanism) -> None:
+    """Raise `InputError` if the cylinder of a lever is impossible in every design within the ranges."""
+    least, greatest = (machine.lever for machine in mechanism.at_bounds_of_variables)
+    if least is None or greatest is None:
+        return
+    try:
+        greatest.cylinder.require_sizes_to_agree(least.cylinder)
+    except InputError as error:
+        raise InputError(f"cylinder: {error}") from None
 
 
 def _require_nothing_of_a_driving_cylinder(mechanism: Mechanism) -> None:

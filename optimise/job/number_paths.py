@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ...model.machine.loads.load import StrokePart
-from ...model.machine.raw_numbers_of_designs import DRIVE
+from ...model.machine.raw_numbers_of_designs import DRIVE, LEVER
 from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import closest_word
 from .crank_speed import SPEED_KEYS
@@ -43,9 +43,9 @@ def unknown_path_message(path: str, tables: Mapping[str, Any]) -> str:
     several = _not_one_value_message(path, tables)
     if several:
         return several
-    is_number_of_drive = table == "drive" and key in DRIVE
+    is_known = path in LEVER or (table == "drive" and key in DRIVE)
     known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_settable_value(value)]
-    near = None if is_number_of_drive else closest_word(path, known_paths)
+    near = None if is_known else closest_word(path, known_paths)
     hint = (
         f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
     )

@@ -14,7 +14,7 @@ from ...objectives.formula.formulas import Formulas
 from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.tables.swing_columns import swing_quantities
+from ...objectives.tables.swing_columns import require_possible_cylinder, swing_quantities
 from ..discrete.unmeetable_requirements import require_meetable
 from ..methods.registry import require_supported_settings
 from ..problem.constraint_violation import FEASIBLE, relative_violation
@@ -189,7 +189,9 @@ def _possible_variants(
     quantities: quantities by name. required: amounts that a variant must have.
     """
     reasons = [
-        _missing_amount(variant, required) or _contradiction_of(variant, constraints, quantities)
+        _missing_amount(variant, required)
+        or _impossible_cylinder(variant)
+        or _contradiction_of(variant, constraints, quantities)
         for variant in variants
     ]
     left_out = tuple(
@@ -204,6 +206,15 @@ def _missing_amount(variant: Variant, required: Iterable[Quantity]) -> str | Non
     return next(
         (f"no {quantity.title}, which the job requires" for quantity in required if quantity.name not in amounts), None
     )
+
+
+def _impossible_cylinder(variant: Variant) -> str | None:
+    """Say which sizes of a lever's cylinder do not belong to one cylinder with a variant; None if they do."""
+    try:
+        require_possible_cylinder(variant.mechanism)
+    except InputError as error:
+        return str(error).split("; ")[1].removeprefix("got ")
+    return None
 
 
 def _contradiction_of(

@@ -139,6 +139,39 @@ def test_a_varying_cylinder_keeps_its_bore_above_the_piston_rod_and_its_stroke_b
     assert not rejected[can_exist].all()
 
 
+@pytest.mark.parametrize("nominal", [{}, {"bore": "12 mm"}, {"closed_length": "180 mm"}])
+def test_ranges_of_a_cylinder_are_refused_only_if_no_design_within_them_can_exist(nominal: dict[str, str]) -> None:
+    wide = {
+        **{"cylinder.bore": ["10 mm", "60 mm"], "cylinder.rod": ["8 mm", "70 mm"]},
+        **{"cylinder.closed_length": ["150 mm", "700 mm"], "cylinder.stroke": ["140 mm", "900 mm"]},
+    }
+    assert set(wide) < set(sc.problem(lever(cylinder=nominal, variables=wide)).ranges)
+    for name, ends, part in (
+        ("rod", ["60 mm", "70 mm"], "cylinder: the bore must exceed the piston rod; got a bore of 60 mm and a piston"),
+        ("stroke", ["700 mm", "900 mm"], "cylinder: the stroke .* got a stroke of 700 mm and a closed length of 700"),
+    ):
+        with pytest.raises(JobError, match=part):
+            sc.problem(lever(cylinder=nominal, variables=wide | {f"cylinder.{name}": ends}))
+
+
+def test_a_choice_of_a_bore_below_its_piston_rod_is_left_out() -> None:
+    choices = {"cylinder.bore": {"choices": ["20 mm", "40 mm"]}, "cylinder.rod": {"choices": ["15 mm", "25 mm"]}}
+    problem = sc.problem(lever(variables=choices))
+    assert problem.left_out == (("20 mm, 25 mm", "a bore of 20 mm and a piston rod of 25 mm"),)
+    assert [variant.labels for variant in problem.variants] == [
+        ("20 mm", "15 mm"),
+        ("40 mm", "15 mm"),
+        ("40 mm", "25 mm"),
+    ]
+
+
+def test_a_number_of_a_cylinder_that_varies_is_given_first() -> None:
+    given = lever(variables={"cylinder.bore": ["40 mm", "50 mm"]})
+    del given["cylinder"]["bore"]
+    with pytest.raises(JobError, match=r"got cylinder\.bore; give it in \[cylinder\] first"):
+        sc.problem(given)
+
+
 def random_job(random: np.random.Generator) -> Problem:
     """Return a random job of a lever that some design meets."""
     while True:

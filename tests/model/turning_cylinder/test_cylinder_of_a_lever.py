@@ -184,8 +184,8 @@ def test_on_a_trunnion_the_stroke_may_exceed_the_closed_length() -> None:
     assert found.buckling_margin is not None
     assert found.buckling_margin == summarise(carrying_80_kg(0.4, 0.6), SLOW, Cylinder(rod=0.022)).buckling_margin
     with pytest.raises(InputError, match=r'less than its closed length.* set mounting = "trunnion"'):
-        replace(cylinder, mounting="clevis")
+        summarise(TIPPER, SLOW, replace(cylinder, mounting="clevis"))
     with pytest.raises(InputError, match=r"a dead length belongs to a cylinder on a clevis.*; give closed_length and"):
-        Cylinder(dead_length=0.1, mounting="trunnion")
+        summarise(TIPPER, SLOW, Cylinder(dead_length=0.1, mounting="trunnion"))
     with pytest.raises(InputError, match="got both a closed length and a dead length; leave out one"):
-        Cylinder(dead_length=0.1, closed_length=0.5, stroke=0.4)
+        summarise(TIPPER, SLOW, Cylinder(dead_length=0.1, closed_length=0.5, stroke=0.4))
