@@ -7,8 +7,6 @@ A command module is imported only when the command is invoked. Slow imports are 
 command modules: `--help`, which lists all commands, stays fast.
 """
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import gc

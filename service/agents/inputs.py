@@ -1,7 +1,5 @@
 """Groups of inputs that several tools share; their descriptions for agents come from declarations elsewhere."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple

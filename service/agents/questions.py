@@ -1,7 +1,5 @@
 """Tools that do not search: list and explain names, analyse designs, check jobs."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress

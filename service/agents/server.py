@@ -1,7 +1,5 @@
 """Server for agents: the Model Context Protocol over standard input and output."""
 
-from __future__ import annotations
-
 import asyncio
 import logging
 import math

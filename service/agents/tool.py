@@ -1,7 +1,5 @@
 """A tool is a function; its input schema and validation follow from its parameters."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, dataclass, fields, is_dataclass

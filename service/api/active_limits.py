@@ -1,7 +1,5 @@
 """Active constraints among the designs of a front."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from fastapi import APIRouter

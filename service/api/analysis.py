@@ -1,7 +1,5 @@
 """Analyses of single designs, from a front or not, with topics and trade-offs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated, Any

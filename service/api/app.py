@@ -1,7 +1,5 @@
 """ASGI application that serves the API; it shares nothing but a store and settings."""
 
-from __future__ import annotations
-
 import asyncio
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager

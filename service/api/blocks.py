@@ -1,7 +1,5 @@
 """Sentences and tables of an answer as data: the client selects the units and formats the numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Literal
 

@@ -1,7 +1,5 @@
 """Bookmarked designs of a front, each with name, note, star and the reasons for a decision."""
 
-from __future__ import annotations
-
 from http import HTTPStatus
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Process that answers computing requests one after another; the counterpart of `computing`."""
 
-from __future__ import annotations
-
 import asyncio
 import os
 import signal

@@ -4,8 +4,6 @@ Requests rejected here never reach the application: anyone can open a connection
 one client could take all connections, or keep the server busy with an endless request.
 """
 
-from __future__ import annotations
-
 import asyncio
 import logging
 from collections import deque

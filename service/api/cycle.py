@@ -1,7 +1,5 @@
 """Curves of a design over its cycle, and its outlines for drawings, as JSON."""
 
-from __future__ import annotations
-
 from pydantic import BaseModel, Field
 
 from ...model.cycle.stroke_times import slow_stroke

@@ -5,8 +5,6 @@ streams. A stream remembers the number of the last event that it sent. It takes 
 ones, or from the store if it is further behind.
 """
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

@@ -1,7 +1,5 @@
 """Fronts as files: CSV, JSON, Parquet."""
 
-from __future__ import annotations
-
 import io
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Questions about one or several fronts, answered as by the commands `like`, `round`, `certify` and `compare`."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 import json

@@ -3,8 +3,6 @@
 All data comes from the result of a job; nothing is computed.
 """
 
-from __future__ import annotations
-
 import gzip
 import math
 from collections.abc import Iterable, Sequence

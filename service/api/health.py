@@ -1,7 +1,5 @@
 """Health of the service: whether it answers and is ready for work, and its metrics for Prometheus."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Address or body parameters for the inputs of a question."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Collection, Iterable
 from typing import Annotated, Any, get_origin

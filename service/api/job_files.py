@@ -3,8 +3,6 @@
 Nothing is queued, and no file on the server is read.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 from typing import Annotated, Any

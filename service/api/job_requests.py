@@ -1,7 +1,5 @@
 """Jobs sent by clients: JSON with options or a job file, its content, its problem."""
 
-from __future__ import annotations
-
 from base64 import b64decode
 from collections.abc import Collection, Mapping
 from dataclasses import astuple, dataclass

@@ -1,7 +1,5 @@
 """Jobs: list, show, cancel, resume and delete them, and get their files."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """JSON models for the API's answers about jobs; the API schema follows from them."""
 
-from __future__ import annotations
-
 import re
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Problem documents (RFC 9457) that explain to a client why a request was refused or failed."""
 
-from __future__ import annotations
-
 import logging
 import time
 from collections.abc import Mapping, Sequence

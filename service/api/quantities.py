@@ -1,7 +1,5 @@
 """Meanings and display units of dimensions and quantities, and the topics available for designs."""
 
-from __future__ import annotations
-
 from typing import get_args, get_origin
 
 from fastapi import APIRouter

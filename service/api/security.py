@@ -1,7 +1,5 @@
 """Access to the service: only with the token, not from pages of other sites, and not under another host name."""
 
-from __future__ import annotations
-
 import hashlib
 import hmac
 import logging

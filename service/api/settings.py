@@ -1,7 +1,5 @@
 """API settings chosen by the operator, and how requests reach them and the store."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated, Any
 

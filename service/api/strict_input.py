@@ -1,7 +1,5 @@
 """Rejection of oversized bodies, and of JSON that no job contains, before anything else reads them."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import json

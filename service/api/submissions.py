@@ -1,7 +1,5 @@
 """Submissions: a job as sent, or a copy with changes, with wider limits, or with ranges around a design."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass

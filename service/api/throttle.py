@@ -1,7 +1,5 @@
 """Limits on simultaneous requests and on requests per minute, to keep the service responsive."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 import time

@@ -1,7 +1,5 @@
 """Single designs: their curves and requirements, also with other lengths while a user changes them."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query

@@ -1,7 +1,5 @@
 """Wishes: finds the optimal design nearest to desired values by a new search."""
 
-from __future__ import annotations
-
 from typing import Any, Literal
 
 from fastapi import APIRouter

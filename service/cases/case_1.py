@@ -1,7 +1,5 @@
 """Case 1: Mechanism in row c of Norton's table, as analysed by Boyle and Liu, with lengths taken as metres."""
 
-from __future__ import annotations
-
 import math
 
 from ...model.classical.polygons import Polygons, motion_polygons

@@ -1,7 +1,5 @@
 """Case 2: the vibrating sieve, with the offset of the mirror image."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Case 3: the in-line slider-crank. The report prints formulas only; both sides are evaluated for one example."""
 
-from __future__ import annotations
-
 import math
 
 from ...model.classical.static_forces import static_forces

@@ -1,7 +1,5 @@
 """Case 4: position error of the tilting support. Lengths fitted to its Table 1, with the offset of the mirror image."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Case 5: the feeder, with the offset of the mirror image, and the paper's experiment."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

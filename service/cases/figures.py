@@ -1,7 +1,5 @@
 """Figures of the five publications, redrawn: their data and their files."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial

@@ -5,8 +5,6 @@ exact value comes from the model by the row's key. A number that the model contr
 by the project. Only this module decides whether a number is confirmed.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """Requests to a service, and events of a job: retried if safe; refusals keep the service's wording."""
 
-from __future__ import annotations
-
 import json
 import time
 from collections.abc import Iterator, Mapping

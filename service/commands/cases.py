@@ -1,7 +1,5 @@
 """`slidercrank cases`: published mechanisms, with printed and exact values."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

@@ -1,7 +1,5 @@
 """`slidercrank front`, `export` and `report`: the designs of a run, on screen and as files."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated

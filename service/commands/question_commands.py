@@ -1,7 +1,5 @@
 """Commands for questions about one design, such as `slidercrank inverse`, and for sizing its parts."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from pathlib import Path

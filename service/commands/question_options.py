@@ -1,7 +1,5 @@
 """Command-line options for the inputs of a question."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Design of a stored front with other numbers: quantities, unmet requirements, comparison with the front."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Jobs derived from a front: wider limits for its active constraints, and a search near one of its designs."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy

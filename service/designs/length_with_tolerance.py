@@ -1,7 +1,5 @@
 """Lengths with the digits that their tolerances justify: 73.33 ± 0.05 for 73.33253 mm."""
 
-from __future__ import annotations
-
 from decimal import Decimal
 
 from ...model.linkage.dimensions import DIMENSIONS

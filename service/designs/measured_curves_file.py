@@ -1,7 +1,5 @@
 """Measured curves in a file, as written by data loggers and spreadsheets."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Facts about dimensions and quantities, for forms and agents: meaning, formula, unit, source."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from ...objectives.kinds import LENGTH

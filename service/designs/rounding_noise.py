@@ -1,7 +1,5 @@
 """Numbers of a design that differ from zero only by rounding."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -1,7 +1,5 @@
 """Formulas over the columns of stored designs, for conditions and sorting."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Collection

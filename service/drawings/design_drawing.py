@@ -1,7 +1,5 @@
 """Design at true scale, fully rotating or swinging: one position, with end positions, paths and dimensions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

@@ -1,7 +1,5 @@
 """Dimensions with their graphics: extension lines, dimension line with arrows, and text."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Layers of a linkage drawing. CAD users switch layers on and off, so the names must never change."""
 
-from __future__ import annotations
-
 from .shapes import Layer
 
 INK, MUTED, BLUE = "#1a1a1a", "#7a7a7a", "#0072b2"

@@ -1,7 +1,5 @@
 """A lever and its turning cylinder at true scale, with dimensions, both ends of the swing and the pin's path."""
 
-from __future__ import annotations
-
 import math
 
 from ...model.errors import InputError

@@ -1,7 +1,5 @@
 """Shapes of a linkage in one position, and of its fixed surroundings: in mm, on their layers."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Sizes and positions of the drawn parts of a design, mm, for clients that draw it."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import dataclass

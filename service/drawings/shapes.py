@@ -1,7 +1,5 @@
 """Elements of a drawing: lines, circles, outlines, labels and dimensions on layers, in millimetres, y upward."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field

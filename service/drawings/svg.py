@@ -1,7 +1,5 @@
 """Drawing as an SVG file, true to scale when printed at 100 %, with a group for each layer."""
 
-from __future__ import annotations
-
 import math
 from xml.sax.saxutils import escape, quoteattr
 

@@ -1,7 +1,5 @@
 """Shapes of a swinging linkage: both ends, paths of its pins, its cylinder, the body on its crank."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

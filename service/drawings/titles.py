@@ -1,7 +1,5 @@
 """Title and notes below a drawing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from ...objectives.kinds import System

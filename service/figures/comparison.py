@@ -1,7 +1,5 @@
 """Several fronts in one scatter matrix, each with its marker: fronts of runs, or robust and nominal fronts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any

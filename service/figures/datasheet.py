@@ -1,7 +1,5 @@
 """Datasheet of one design: scale drawing, numbers, and curves over the cycle."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Designs marked in the same way in every figure of a front: the best in each objective, and the knee."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

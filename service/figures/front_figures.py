@@ -1,7 +1,5 @@
 """Figures of a front by name, each drawn on request."""
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass

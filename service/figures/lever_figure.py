@@ -1,7 +1,5 @@
 """Figure of a lever with its pivoting cylinder: scale drawing above force, length and angle against lever angle."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

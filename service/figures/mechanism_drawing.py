@@ -1,7 +1,5 @@
 """Mechanism drawn to scale for readers: the linkage of `service.drawings`, with annotations."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

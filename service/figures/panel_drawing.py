@@ -1,7 +1,5 @@
 """Drawing of panels with curves as a figure."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from pathlib import Path

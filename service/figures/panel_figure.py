@@ -1,7 +1,5 @@
 """Figure of panels with curves, as data: for a topic or a published case."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 

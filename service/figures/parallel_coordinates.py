@@ -1,7 +1,5 @@
 """Parallel coordinates: dimensions and objectives of every design on a front, one line per design."""
 
-from __future__ import annotations
-
 import textwrap
 from typing import Any
 

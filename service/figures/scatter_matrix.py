@@ -1,7 +1,5 @@
 """Scatter matrix: every pair of objectives of a front, coloured by one of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shapes of a drawing on matplotlib axes, and a whole drawing as a figure."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -4,8 +4,6 @@ Figures are `matplotlib.figure.Figure` objects with their own Agg canvas. Neithe
 matplotlib are used, so that drawing never affects the caller's own plots.
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from pathlib import Path

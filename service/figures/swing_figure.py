@@ -1,7 +1,5 @@
 """Figure of a swing: the machine to scale, and drive, slider, angles and error against crank angle, both strokes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

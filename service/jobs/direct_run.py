@@ -1,7 +1,5 @@
 """Job that the command line solves itself: claimed in the store, and exported to its run folder during the search."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import socket

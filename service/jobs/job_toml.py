@@ -1,7 +1,5 @@
 """Jobs as TOML: writes the tables of a job so that reading them gives the same tables."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Motion of a linkage for playback on a page, fully rotating or swinging."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Animated linkage as one HTML file with embedded drawing, curves and script, without downloads."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The description of the API as a page to read and try: Swagger UI, from an installed package."""
 
-from __future__ import annotations
-
 import hashlib
 import re
 from base64 import b64encode

@@ -6,8 +6,6 @@ JavaScript's module syntax; anything else is rejected when the service starts: `
 `import("./file.js")`, and `export` before a function, class or const.
 """
 
-from __future__ import annotations
-
 import posixpath
 import re
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """The page and its files: HTML, style, modules, typeface."""
 
-from __future__ import annotations
-
 import gzip
 import hashlib
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Page that asks for the token in browsers without it."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 from functools import cache

@@ -1,7 +1,5 @@
 """The page's typeface: Inter, from its package, with the characters that the page needs."""
 
-from __future__ import annotations
-
 import io
 from functools import cache
 from importlib.resources import files

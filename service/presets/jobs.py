@@ -1,7 +1,5 @@
 """Included job files, and an example design for each."""
 
-from __future__ import annotations
-
 from functools import cache
 from importlib.resources import as_file, files
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Content of an incomplete job: ranges, requirements, and the machine as soon as it can be read."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace

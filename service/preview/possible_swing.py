@@ -1,7 +1,5 @@
 """Values that the ranges of a swing job allow, from samples: closing, travel, feasible fraction, an example."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any

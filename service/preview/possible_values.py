@@ -5,8 +5,6 @@ Fractions are those of uniform samples; others lie on faces and edges of the box
 around the best samples and polished: each belongs to an actual design.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from collections.abc import Callable, Iterator

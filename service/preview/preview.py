@@ -1,7 +1,5 @@
 """Preview of a job during editing: its mistakes, and sentences on requirements that its ranges cannot meet."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence

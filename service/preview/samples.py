@@ -4,8 +4,6 @@ Half of them are spread uniformly, and fractions count these alone. The others l
 where extremes are.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterator, Sequence

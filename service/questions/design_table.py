@@ -1,7 +1,5 @@
 """Tables of designs, with a row for each quantity, for answers to questions about a front."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 
 from ...objectives.column_keys import kind_of_key

@@ -1,7 +1,5 @@
 """Questions found in their folders, and the requested topics."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from importlib import import_module
 from pkgutil import iter_modules

@@ -1,7 +1,5 @@
 """Peaks of one design over the cycle, as topics report them."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

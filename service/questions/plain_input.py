@@ -1,7 +1,5 @@
 """Inputs with a plain type instead of a physical kind: numbers, texts, texts by name."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Annotated, Any, get_origin

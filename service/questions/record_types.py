@@ -4,8 +4,6 @@ The function `numbers` of a question returns the answer as a `Record`, a typed d
 follow from data, the answer is a dictionary with `Keys`. The key of a number ends with its unit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, NotRequired

@@ -1,7 +1,5 @@
 """Table with the minimum and maximum of curves and their positions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Formatting of values and blocks in a unit system: the only place where numbers in answers become text."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

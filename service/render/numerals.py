@@ -1,7 +1,5 @@
 """Numbers and units in the style of figures and reports."""
 
-from __future__ import annotations
-
 import math
 
 from ...objectives.kinds import System, metric_unit_in, unit_text

@@ -1,7 +1,5 @@
 """Section on the decision: the chosen design, its reason, the reasons against the others, and earlier decisions."""
 
-from __future__ import annotations
-
 from datetime import UTC, datetime
 
 from ...model.linkage.dimensions import DIMENSIONS

@@ -1,7 +1,5 @@
 """Report on one design, from its summary to the versions of the software that computed it."""
 
-from __future__ import annotations
-
 import time
 
 from ...model.linkage.dimensions import DIMENSIONS

@@ -1,7 +1,5 @@
 """Chosen design in a report: drawing, requirements, stationarity, trade-offs, and all its numbers."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import get_args

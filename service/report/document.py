@@ -1,7 +1,5 @@
 """Report as a document: its content before rendering to HTML or PDF."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal

@@ -1,7 +1,5 @@
 """Report as one HTML file with embedded style and figures, without scripts or downloads, for screen and print."""
 
-from __future__ import annotations
-
 import base64
 import re
 from html import escape

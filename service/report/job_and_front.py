@@ -1,7 +1,5 @@
 """Sections of a report on the job, and on the search for its front."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 

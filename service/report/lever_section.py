@@ -1,7 +1,5 @@
 """Section of a report on a lever moved by a cylinder: the numbers of its swing."""
 
-from __future__ import annotations
-
 from ...model.swing.swing import Swing
 from ..questions.lever.analysis import blocks, compute_shared_options, numbers
 from ..render.blocks import Table as Numbers

@@ -1,7 +1,5 @@
 """Measured curves beside the computed curves of the design."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Report as tagged PDF on A4 pages, typeset by typst, with searchable text and vector figures."""
 
-from __future__ import annotations
-
 import json
 import re
 import shutil

@@ -1,7 +1,5 @@
 """Report on a design of a run on disk."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Sensitivity of the design to its dimensions and to the tolerances of the job."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Sections of a report on a swinging design: its numbers, extremes of its curves, sources of its errors."""
 
-from __future__ import annotations
-
 import math
 from functools import cached_property
 

@@ -1,7 +1,5 @@
 """Disk space: detection of a full disk in an error, and the free space at a location."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import os

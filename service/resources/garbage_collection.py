@@ -1,7 +1,5 @@
 """Suspension of garbage collection while very many lasting objects are created."""
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager

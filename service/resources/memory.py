@@ -1,7 +1,5 @@
 """Memory: amounts as people write them, and the memory that jobs of a worker use and leave behind."""
 
-from __future__ import annotations
-
 import contextlib
 import re
 

@@ -1,7 +1,5 @@
 """Store of jobs: one database, SQLite or PostgreSQL, shared by all processes that submit, watch and solve jobs."""
 
-from __future__ import annotations
-
 from .claim import Claim
 from .records import NO_LIMITS, NOT_DONE, RESUMABLE, Artefact, Event, Job, Limits, News, Queueing, State, Worker
 from .store import LEASE, MOST_QUEUED, Store

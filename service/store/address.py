@@ -1,7 +1,5 @@
 """Addresses of stores: the database at an address, and its text without secrets."""
 
-from __future__ import annotations
-
 import re
 from os import PathLike
 from pathlib import Path

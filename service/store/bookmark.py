@@ -1,7 +1,5 @@
 """Bookmark of a design with its history: notes, reasons and decisions."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """History of the bookmarks of a job: notes, reasons, decisions and deletions, each with author and time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Remarks of people on the front of a job: bookmarked designs with their decisions, and wishes."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Maintenance of a store: its damage, clock and server, and a copy of it."""
 
-from __future__ import annotations
-
 import contextlib
 import json
 import os

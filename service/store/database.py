@@ -4,8 +4,6 @@ SQLite: write-ahead log, `synchronous=FULL`, and every write transaction starts 
 must be aborted half-way because of another writer. PostgreSQL: psycopg 3, `synchronous_commit=on`.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import os

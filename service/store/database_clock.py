@@ -7,8 +7,6 @@ leases could not be renewed. A heartbeat or a due time impossibly far in the fut
 back, and delays nothing. Results depend only on fences.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

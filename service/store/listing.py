@@ -1,7 +1,5 @@
 """Sort orders for a list of jobs, each with paging."""
 
-from __future__ import annotations
-
 from typing import Any, Literal, get_args
 
 from sqlalchemy import Select, and_, case, func, or_, select

@@ -1,7 +1,5 @@
 """Queue of a store: adding jobs, and selecting the next job for a worker."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple

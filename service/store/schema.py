@@ -14,8 +14,6 @@ Every change to a job, and to any row that belongs to it, is written in a transa
 first. So the writers of one job take turns, and its events become visible in order of number.
 """
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 
 NAMES = {

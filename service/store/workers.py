@@ -1,7 +1,5 @@
 """Workers of a store and the time of each one's last heartbeat."""
 
-from __future__ import annotations
-
 from sqlalchemy import delete, exists, func, insert, not_, or_, select, update
 
 from .database import Database

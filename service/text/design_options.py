@@ -1,7 +1,5 @@
 """Options that filter the designs of a run or select one, and search settings."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any

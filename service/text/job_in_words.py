@@ -1,7 +1,5 @@
 """Job in words and as data, as the software understands it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

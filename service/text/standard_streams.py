@@ -1,7 +1,5 @@
 """Standard output and standard error that may be closed, full, or unable to show a character."""
 
-from __future__ import annotations
-
 import codecs
 import contextlib
 import io

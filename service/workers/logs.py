@@ -1,7 +1,5 @@
 """Logging of the service, configured in one place: text for people or JSON for machines, with job and worker."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import sys

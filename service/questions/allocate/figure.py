@@ -1,7 +1,5 @@
 """Allocated tolerances: the contribution of each to the position error over the cycle, and its cost."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

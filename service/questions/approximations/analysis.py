@@ -1,7 +1,5 @@
 """Textbook approximations for one design, compared with the exact model: two-mass rod, series, k F tan(alpha)."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated
 

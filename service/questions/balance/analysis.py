@@ -1,7 +1,5 @@
 """Balance of one design: shaking force and moment on the frame, and the effect of the counterweight."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, NamedTuple
 

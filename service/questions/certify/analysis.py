@@ -1,7 +1,5 @@
 """Certificate for a front; without designs, a proof that nothing is feasible."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Figures of a loose joint: motion compared with the ideal, path of the journal, several speeds side by side."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Runs in a comparison."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Counterweight for minimum shaking, and the shaking before and after: numbers, text and figure."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """Several cylinders on one crankshaft: total torque, shaking force, moment and rocking couple; peaks per cylinder."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated
 

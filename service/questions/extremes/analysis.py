@@ -1,7 +1,5 @@
 """Minimum and maximum of every curve of one design over the revolution, and differences between the strokes."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, NotRequired
 

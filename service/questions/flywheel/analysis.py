@@ -1,7 +1,5 @@
 """Flywheel required for a speed fluctuation, exact and by the classical estimate."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated
 

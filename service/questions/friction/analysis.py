@@ -1,7 +1,5 @@
 """Friction of one design: self-locking, effect on torque and forces, energy balance of a cycle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated, Literal

@@ -1,7 +1,5 @@
 """Indicator diagram of one design: pressure against volume for each cylinder, valve events, work."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated

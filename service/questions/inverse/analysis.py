@@ -3,8 +3,6 @@
 For a swinging crank only angles within its swing count.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated

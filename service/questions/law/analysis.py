@@ -1,7 +1,5 @@
 """Motion law compared with constant speed: numbers, text, cam table and figure."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Request for a lever: omitted numbers come from the job."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Design similar to one on a front under further conditions, and the change of every number."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Deviation of measured curves from the computed ones of one design, and the best-fitting shifts."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Annotated, Any

@@ -1,7 +1,5 @@
 """Motor sizing of one design: torque, power and reflected inertia."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated, Any

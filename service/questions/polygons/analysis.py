@@ -1,7 +1,5 @@
 """Kinematic polygons of one design at one crank angle, for both branches: position, velocity and acceleration."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

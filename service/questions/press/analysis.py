@@ -3,8 +3,6 @@
 The force is static and frictionless, by virtual work: F = T / |x'| with the slider's travel x' per crank angle.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated, Literal

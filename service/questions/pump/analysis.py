@@ -1,7 +1,5 @@
 """Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from pressure only."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated
 

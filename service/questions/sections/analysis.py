@@ -1,7 +1,5 @@
 """Widths and depths of the crank and the rod for minimum mass of one design: numbers and text."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

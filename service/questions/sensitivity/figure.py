@@ -1,7 +1,5 @@
 """Tornado figure: percentage change of each quantity for a one percent increase in each dimension."""
 
-from __future__ import annotations
-
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes

@@ -1,7 +1,5 @@
 """Start of a machine from rest under its motor to steady running."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Annotated, Any
 

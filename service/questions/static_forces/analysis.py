@@ -1,7 +1,5 @@
 """Static forces of one design over the cycle: loads only, without masses, gravity and friction."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated

@@ -1,7 +1,5 @@
 """Strength of one design's crank and rod: stresses, safety factors, pins, wear, location of the maximum stress."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Any, NotRequired
 

@@ -1,7 +1,5 @@
 """Sweeps as figures: lines over one parameter, filled contours over two."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Sequence
 from typing import Any

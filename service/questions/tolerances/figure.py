@@ -1,7 +1,5 @@
 """Position error of one design over the cycle: worst-case, root-sum-square and Monte Carlo bands, and its sources."""
 
-from __future__ import annotations
-
 import contextlib
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Machine with the speed profile of its job, compared with constant speed."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Annotated, Any

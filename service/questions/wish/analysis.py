@@ -1,7 +1,5 @@
 """Answer to a wish: the design, and for each objective the wish and the outcome."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

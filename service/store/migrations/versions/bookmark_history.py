@@ -1,7 +1,5 @@
 """History of the bookmarks of a front; notes, reasons and decisions of earlier stores become its first entries."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

@@ -1,7 +1,5 @@
 """Bookmarked designs of a front; earlier stores have none."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

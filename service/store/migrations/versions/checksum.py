@@ -1,7 +1,5 @@
 """Checksums of results; those of earlier releases have none, and are read without checks."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

@@ -1,7 +1,5 @@
 """Checksums of results and their jobs; older checksums are dropped, and such results are read without checks."""
 
-from __future__ import annotations
-
 from alembic import op
 
 revision = "0007"

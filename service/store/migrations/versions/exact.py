@@ -1,7 +1,5 @@
 """Exact designs of a front; fronts of earlier releases have only rows, and are read from these as before."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

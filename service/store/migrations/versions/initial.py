@@ -1,7 +1,5 @@
 """The first tables. Migrations stay as they were released: they do not read `schema.py`, which changes."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

@@ -1,7 +1,5 @@
 """The job from which a job was copied and changed; jobs of earlier releases have none."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 

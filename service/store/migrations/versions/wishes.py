@@ -1,7 +1,5 @@
 """Wishes that people made on a front; earlier stores have none."""
 
-from __future__ import annotations
-
 import sqlalchemy as sa
 from alembic import op
 
