@@ -3,8 +3,9 @@
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...model.arrays import Array
 from ...model.linkage.linkage import Linkage
 from .printed_values import Numbers, read_printed_table
 
@@ -13,13 +14,13 @@ SHARE, ANGLE_ERROR = 1e-3, math.radians(0.1)
 COLUMNS = ("crank", "rod", "offset", "crank_angle", "total")
 
 
-def printed_table() -> dict[str, NDArray[np.float64]]:
+def printed_table() -> dict[str, Array]:
     """Return Table 1 as numbers, by the column names of its file."""
     lines = read_printed_table("position_error_table1.csv")
     return {name: np.array([float(line[name]) for line in lines]) for name in lines[0]}
 
 
-def position_error_contributions(crank_angle: ArrayLike) -> dict[str, NDArray[np.float64]]:
+def position_error_contributions(crank_angle: ArrayLike) -> dict[str, Array]:
     """Return the exact first-order contributions, mm, by `COLUMNS`, at crank angles, rad; the total is signed.
 
     The paper's offset error is positive if its offset, which is the negative of ours, grows.

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.classical.lumped import rotating_and_reciprocating_masses
 from ...model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from ...model.linkage.linkage import Linkage
@@ -20,7 +20,6 @@ CRANK, ROD, SPEED = 0.040, 0.064, 251.0
 OFFSETS = (0.0, 0.010, 0.020)
 MACHINE = Mechanism(speed=SPEED, crank=RigidLink(mass=0.2), rod=RigidLink(mass=0.5), slider_mass=0.8)
 EXPERIMENT, EXPERIMENT_SPEED = Linkage(0.0381, 0.1524), 20.994
-Array = NDArray[np.float64]
 _RPM = 2.0 * math.pi / 60.0
 _TURN = 2.0 * math.pi
 

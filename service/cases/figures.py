@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.classical.series import series_acceleration, series_torque
 from ...model.classical.static_forces import static_forces
 from ..figures.panel_drawing import save_figure
-from ..figures.panel_figure import CRANK_ANGLE, Array, Line, Panel, PanelFigure, crank_angle_panel
+from ..figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel
 from ..questions.clearance.figure import speed_runs, speeds_figure
 from ..questions.polygons.analysis import polygon_panels, polygons_by_branch
 from . import case_1, case_2, case_3, case_4, case_5

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...objectives.count_text import count_with_noun
 from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
@@ -42,7 +42,7 @@ class PlottedRun:
     """Run in the figure. label: text in the legend. values: its objectives (n, m), in display units."""
 
     label: str
-    values: NDArray[np.float64]
+    values: Array
 
 
 def comparison_matrix(

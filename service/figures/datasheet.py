@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.cycle.stroke_times import slow_stroke
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.dimensions import DIMENSIONS
@@ -108,9 +108,6 @@ def _table_rows(numbers: Mapping[str, Any], objectives: Mapping[str, str]) -> li
     spare = [key for key in reversed(defined) if key not in objectives][: max(0, len(defined) - free_rows)]
     fitting = {key: title for key, title in usual.items() if key in defined and key not in spare}
     return list((fitting | {key: title for key, title in extra.items() if has_value(key)}).items())
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

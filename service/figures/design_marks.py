@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...model.arrays import Array
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.front.constant_numbers import is_constant
@@ -68,7 +66,7 @@ class Axis:
 
     title: str
     unit: str
-    values: NDArray[np.float64]
+    values: Array
     better: int
 
     @property

@@ -10,14 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 from matplotlib.transforms import Bbox
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...objectives.kinds import System
 from ..render.formatting import format_text
 from . import style
 from .panel_figure import DASHED, DOTS, FAINT, SAMPLES, SOLID, Line, Panel, PanelFigure, panel_in_units
 
-Array = NDArray[np.float64]
 FigureSource = PanelFigure | Figure | Callable[[System], Figure]
 """Panels, a finished figure, or a function that draws one in a unit system when needed."""
 

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...objectives.kinds import DisplayUnit, Kind, System, unit_text
 from ..render.blocks import Text
 from ..render.formatting import format_text
 
-Array = NDArray[np.float64]
 CRANK_ANGLE = "crank angle, deg"
 _TURN = 2.0 * np.pi
 SOLID, DASHED, FAINT, DOTS, SAMPLES = 5, 6, 7, 8, 9

@@ -9,9 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...model.arrays import Array
 from ...model.optional_packages import NamingExtra
 from ...optimise.front.constant_numbers import is_constant
 from ..render.numerals import format_on_scale
@@ -27,7 +25,6 @@ with NamingExtra("figures need"), without_garbage_collection():
     from matplotlib.ticker import FuncFormatter, MaxNLocator
     from PIL import Image
 
-Array = NDArray[np.float64]
 DPI = 130
 TITLE, TEXT, SMALL = 11.0, 8.5, 7.5  # points
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.kinematics.position import motion
 from ...model.linkage.linkage import Linkage
@@ -28,8 +28,6 @@ from ...optimise.problem.requirements import Objective
 from .partial_job import ranges_of, requirement_names
 from .possible_values import PATIENCE, Ends, Feasibility, example_design, lengths_of, run_within
 from .samples import Screening, sampled_designs, screened_samples
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.cycle.stroke_times import massless_machine, slow_stroke
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
@@ -30,7 +31,6 @@ from ...optimise.search.sampling import first_samples, random_generator
 from .partial_job import depends_on_dimensions_only
 from .samples import BATCH, SAMPLES, sampled_designs, screened_samples
 
-Array = NDArray[np.float64]
 T = TypeVar("T")
 Ends = tuple[float, float]
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.swing.end_angles import swing_start_column
 from ...objectives.registry import QUANTITIES
@@ -23,8 +24,6 @@ from ...optimise.problem.requirements import Constraint
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
 from ...optimise.search.evaluation import Evaluator
 from ...optimise.search.sampling import first_samples
-
-Array = NDArray[np.float64]
 
 SAMPLES = 512
 BATCH = 64

@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.signals.first_peak import first_peaks
@@ -19,7 +19,7 @@ class Peak(NamedTuple):
     degrees: float
 
 
-def lengths_row(linkage: Linkage) -> NDArray[np.float64]:
+def lengths_row(linkage: Linkage) -> Array:
     """Return crank, rod and offset, m, as a table with one design (1, 3)."""
     return np.array([[float(linkage.crank), float(linkage.rod), float(linkage.offset)]])
 

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.tolerance.error_sources import SOURCES, angle_ranges_where_error_counts
@@ -16,8 +16,6 @@ from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation
 from ...figures import style
 from ...render.numerals import format_number, title_with_unit
-
-Array = NDArray[np.float64]
 
 _SAMPLES = 721
 

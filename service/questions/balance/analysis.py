@@ -4,8 +4,8 @@ from dataclasses import replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
 from ....model.cycle.multi_cylinder import MultiCylinderCurves, multi_cylinder_curves
 from ....model.errors import InputError
@@ -82,9 +82,7 @@ def _shaking_of(mechanism: Mechanism, signal: Signal, linkage: Linkage) -> _Shak
     return _Shaking(peak(mechanism, signal, linkage), float(rms))
 
 
-def _shaking_curves_of(
-    mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]
-) -> ShakingCurves | MultiCylinderCurves:
+def _shaking_curves_of(mechanism: Mechanism, linkage: Linkage, theta: Array) -> ShakingCurves | MultiCylinderCurves:
     """Return the shaking of all cylinders at crank angles (n,), rad."""
     if mechanism.arrangement is not None:
         return multi_cylinder_curves(mechanism, linkage, theta)

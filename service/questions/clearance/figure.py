@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.clearance.run import ClearanceRun, simulate
 from ....model.clearance.statistics import ClearanceSummary, summarise
 from ....model.errors import InputError
@@ -20,8 +21,6 @@ from ...figures.style import add_axes, new_figure, write_heading, write_text
 from ...render.blocks import Text, Unit, Value, words
 from ...render.formatting import format_text
 from ...render.numerals import format_number
-
-Array = NDArray[np.float64]
 
 CASE_RPM = (30.0, 300.0, 400.0)
 """Speeds of the published case: ME748, "Offset-Slider Crank Mechanism", section 2.3, with the nominal speed in the

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
+from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import cycle_turns
@@ -16,7 +17,7 @@ from ....objectives.tables.curve_deviation import Deviation, deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.measured_curves import Measured
-from ...figures.panel_figure import DASHED, SAMPLES, Array, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
+from ...figures.panel_figure import DASHED, SAMPLES, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import (
     Block,
     Sentence,

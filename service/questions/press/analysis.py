@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -118,9 +118,7 @@ def _rated_or_peak_torque(mechanism: Mechanism, linkage: Linkage, rated: float |
     return torque
 
 
-def _angles_before_dead_centre(
-    mechanism: Mechanism, linkage: Linkage, distances: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _angles_before_dead_centre(mechanism: Mechanism, linkage: Linkage, distances: Array) -> tuple[Array, Array]:
     """Return the crank angle to the dead centre, rad, and |x'|, m, at distances before the dead centre, m."""
     _require_stroke(distances[-1], float(linkage.stroke))
     return angle_and_travel_rate_before_dead_centre(mechanism, lengths_row(linkage)[0], distances)

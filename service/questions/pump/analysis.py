@@ -4,8 +4,8 @@ from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
@@ -69,7 +69,7 @@ def _with_pressures_only(mechanism: Mechanism) -> Mechanism:
     )
 
 
-def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+def _flow_curves(mechanism: Mechanism, linkage: Linkage, theta: Array) -> list[Array]:
     """Return the flow of each liquid cylinder, m^3/s, at crank angles of the shaft, rad."""
     flows = []
     pumps = [

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....objectives.kinds import System, metric_unit_in
 from ....objectives.quantity import Quantity
 from ....objectives.tables.sweep import Axis
@@ -29,7 +29,6 @@ from ...figures.style import (
 )
 from ...render.numerals import title_with_unit
 
-Array = NDArray[np.float64]
 MOST = 6
 """Maximum number of drawn quantities."""
 _LEVELS = 12

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from ....model.arrays import Array
 from ....model.cycle.cycle import cycle
 from ....model.errors import AssemblyError
 from ....model.linkage.linkage import Linkage
@@ -19,7 +19,6 @@ from ....objectives.kinds import LENGTH, System
 from ...figures import style
 from ...render.numerals import title_with_unit
 
-Array = NDArray[np.float64]
 SAMPLES, ANGLES = 10_000, 181
 PERCENTS = (0.135, 5.0, 95.0, 99.865)
 
