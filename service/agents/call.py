@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import InfeasibleError, InputError, NotFound
 from ...optimise.job import parse_job, read_job, with_file_contents
 from ...optimise.job.job_file import require_few_values_and_no_nulls, toml_tables
-from ..jobs.find_run import find_run
-from ..jobs.stores import open_store
+from ..jobs.stores import find_run, open_store
 from ..jobs.submission import (
     LONGEST_CALL,
     LONGEST_WAIT,

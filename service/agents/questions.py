@@ -19,8 +19,8 @@ from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import SUBJECTS
 from ..designs.quantity_facts import facts_of_all
 from ..designs.rotating_crank import require_rotating_crank
-from ..jobs.find_run import run_folders
 from ..jobs.job_toml import job_toml
+from ..jobs.stores import run_folders
 from ..jobs.submission import end_custom_processes_on_exit
 from ..presets.jobs import shipped_jobs
 from ..questions.design_question import DesignQuestion
@@ -161,8 +161,7 @@ def _analyse_rotating(
     call: Call, machine: Machine, options: Mapping[str, dict[str, Any]], question: TopicRequest
 ) -> ToolResult:
     """Analyse a design that rotates fully. options: options for each topic."""
-    from ..questions.analysis_text import show_analysis
-    from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
+    from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design, show_analysis
 
     row, undefined = quantities_of_design(machine.mechanism, machine.linkage, machine.problem.own)
     analysis = analysis_of(

@@ -22,8 +22,7 @@ from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
 from ..runs.result import Result, csv_text, infeasible_result, json_text
 from ..runs.run_folder import write_file
-from ..text.design_options import Pick, Selection, SettingOptions
-from ..text.options import Run, Units
+from ..text.options import Pick, Run, Selection, SettingOptions, Units
 from ..text.tables import marked_and_evenly_spread_rows, show_design, show_front, show_result, usual_keys
 from .call import Call, ToolResult, printed_text, tables_with_files
 from .inputs import Files, FrontPart, Number, OptionalJob

@@ -12,9 +12,9 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import unit_text
 from ...objectives.quantity import Quantity
+from ..designs.judged_requirements import violations_of
 from ..designs.rotating_crank import require_rotating_crank
 from ..designs.trade_offs import trade_offs_of
-from ..designs.violations import violations_of
 from ..questions.design_analysis import analysis_of, quantities_of_design, quantities_of_swing
 from ..questions.discovery import ALL, TOPICS, chosen_topics
 from ..questions.record_types import RecordSchema

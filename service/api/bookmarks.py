@@ -16,8 +16,7 @@ from ..designs.judged_requirements import faults_in_words, ranges_as_requirement
 from ..designs.stored_designs import StoredDesign, design_of, stored_design
 from ..runs.result import csv_text, json_ready
 from ..store.bookmark import Action, Bookmark
-from ..store.bookmark_history import history_of
-from ..store.bookmarks_and_wishes import bookmark_design, bookmarks_of, remove_bookmark, update_bookmark
+from ..store.bookmarks_and_wishes import bookmark_design, bookmarks_of, history_of, remove_bookmark, update_bookmark
 from .computing import QuickRoute
 from .front_files import download_response, file_endpoint_options
 from .fronts import Cells, ColumnModel, column_models

@@ -131,9 +131,8 @@ def export_cycle(request: RequestedDesignDep, units: UnitsParameter = "metric") 
 
 def _report(request: RequestedDesign, store: Store, units: System) -> Report:
     """Return the report on a design, with additional data from the store."""
-    from ..report.alternatives import alternatives_of
     from ..report.design_report import design_report
-    from ..report.subject import Subject
+    from ..report.subject import Subject, alternatives_of
 
     stored_front = request.stored_front
     job = stored_front.job.id

@@ -16,8 +16,8 @@ from ...model.errors import InfeasibleError, InputError
 from ...optimise.job.raw_tables import table_in
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.design_selection_options import chosen_row
+from ..designs.judged_requirements import front_violations_in_words, violations_in_words
 from ..designs.selection import chosen_rows, no_match_message, result_part
-from ..designs.violations import front_violations_in_words, violations_in_words
 from ..page.router import response_with_etag
 from ..runs.result import StoredObjective, json_ready
 from .models import PLAIN_DIGITS, JobNumber

@@ -9,8 +9,7 @@ from pydantic import ConfigDict, Field, create_model
 
 from ...model.errors import InputError
 from ..questions.front_or_job_question import FrontOrJobQuestion
-from ..questions.inputs import Input
-from ..questions.plain_input import PlainInput
+from ..questions.inputs import Input, PlainInput
 
 _REQUEST = inspect.Parameter("request", inspect.Parameter.KEYWORD_ONLY, annotation=Request)
 

@@ -15,7 +15,7 @@ from starlette.exceptions import HTTPException
 from ...model.errors import InputError, NotFound
 from ..page.router import content_tag, response_with_etag
 from ..store import State
-from ..store.listing import Order
+from ..store.job_rows import Order
 from .front_files import download_response, export_formats
 from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobStateModel
 from .problem_documents import json_with_etag_options, problem_responses

@@ -11,7 +11,7 @@ from ..designs.quantity_facts import facts_of_all
 from ..questions.design_question import DesignQuestion
 from ..questions.discovery import DESIGN_QUESTIONS, FRONT_OR_JOB_QUESTIONS, QUESTION_COMMANDS, TOPICS
 from ..questions.front_or_job_question import FrontOrJobQuestion
-from ..questions.plain_input import PlainInput
+from ..questions.inputs import PlainInput
 
 router = APIRouter(tags=["designs"])
 

@@ -21,8 +21,9 @@ from ..designs.judged_requirements import (
     ranges_as_requirements,
     requirements_of,
     speed_rpm,
+    violations_in_words,
+    violations_of,
 )
-from ..designs.violations import violations_in_words, violations_of
 from ..questions.design_analysis import with_undefined_values
 from ..runs.result import json_ready
 from ..store.bookmarks_and_wishes import bookmarks_of

@@ -120,7 +120,7 @@ def analyse(
     if json:
         print_output(json_text(analysis.record(units, judgement)))
     else:
-        from ..questions.analysis_text import show_analysis
+        from ..questions.design_analysis import show_analysis
 
         screen = console()
         hint = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."

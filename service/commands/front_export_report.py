@@ -16,13 +16,12 @@ from ..motion.design_file import ENDINGS, design_file
 from ..runs.result import csv_text, json_text
 from ..runs.run_folder import slug, write_file
 from ..runs.runs_on_disk import problem_of
-from ..text.design_options import Selection
-from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Units, option_value, require_ending
+from ..text.options import Angle, File, Json, Output, Rows, Run, Runs, Selection, Units, option_value, require_ending
 from ..text.screen import console, print_message, print_output, show_activity
 from ..text.tables import ROWS, show_design, show_front, show_result, show_violated
+from .design_of_job_or_run import Choice, Where, folder_and_result, result_in_units
 from .exit_and_interruption import NoDesigns, end_without_design
 from .optimise import show_files
-from .run_choice import Choice, Where, folder_and_result, result_in_units
 
 
 def front(

@@ -20,10 +20,9 @@ from ..runs.result import Result, csv_text, json_text
 from ..runs.run_folder import translate_disk_errors, write_file
 from ..text.options import Figures, JobFile, Json, Number, Run, Runs, Units
 from ..text.screen import console, print_message, print_output, print_record, show_activity, write_figure
-from .design_of_job_or_run import rotating_problem
+from .design_of_job_or_run import folder_and_result, front_of_run, rotating_problem
 from .exit_and_interruption import INTERRUPTED, NOT_PROVEN, Interruption, NoDesigns, end_without_design
 from .question_options import options_of, search_listener, with_question_help
-from .run_choice import folder_and_result, front_of_run
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -21,8 +21,7 @@ from ..designs.display_units import convert_result
 from ..jobs.stores import FILE, Address, open_store
 from ..runs.result import json_text
 from ..runs.run_folder import RunFolder, runs_folder, translate_disk_errors
-from ..text.design_options import SettingOptions
-from ..text.options import Json, Runs, Units
+from ..text.options import Json, Runs, SettingOptions, Units
 from ..text.screen import console, print_message, print_output, progress_bar, show_activity
 from ..text.tables import show_result
 from ..workers.engines import EngineOptions, engine_of

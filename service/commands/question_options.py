@@ -8,8 +8,7 @@ from typing import Annotated, Any, get_origin
 import typer
 
 from ..questions.front_or_job_question import FrontOrJobQuestion, SearchListener
-from ..questions.inputs import Input
-from ..questions.plain_input import PlainInput
+from ..questions.inputs import Input, PlainInput
 from ..text.screen import show_activity
 
 _Command = Callable[..., None]

@@ -18,9 +18,9 @@ from ..render.terminal import print_blocks
 from ..runs.result import json_text
 from ..text.options import Json, Run, Runs, Units
 from ..text.screen import console, print_output, show_activity
+from .design_of_job_or_run import front_of_run
 from .exit_and_interruption import end_without_design
 from .question_options import options_of, with_question_help
-from .run_choice import front_of_run
 
 if TYPE_CHECKING:
     from ...optimise.front.front import ParetoFront

@@ -14,15 +14,14 @@ from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust_problem import robust_quantities
 from ..designs.changed_design import Variation
 from ..designs.stored_designs import StoredDesign
-from ..resources.garbage_collection import without_garbage_collection
+from ..resources.memory import without_garbage_collection
 from .comparison import robustness_figure
 from .datasheet import design_datasheet
 from .design_marks import marked_designs
-from .lever_figure import lever_datasheet
 from .parallel_coordinates import parallel_coordinates
 from .scatter_matrix import scatter_matrix
 from .style import save_png
-from .swing_figure import swing_figure
+from .swing_figure import lever_datasheet, swing_figure
 
 
 @dataclass(frozen=True)

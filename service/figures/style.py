@@ -13,7 +13,7 @@ from ...model.arrays import Array
 from ...model.optional_packages import NamingExtra
 from ...optimise.front.constant_numbers import is_constant
 from ..render.numerals import format_on_scale
-from ..resources.garbage_collection import without_garbage_collection
+from ..resources.memory import without_garbage_collection
 
 with NamingExtra("figures need"), without_garbage_collection():
     import matplotlib

@@ -11,7 +11,7 @@ from ...model.errors import InputError, LeaseLost, StoreError
 from ...model.file_name_encoding import path_text
 from ..runs.run_folder import RunFolder
 from ..store import RESUMABLE, Artefact, Claim, Job, Store
-from .find_run import find_folder
+from .stores import find_folder
 
 LEASE = 3600.0
 """s. A run suspended by Ctrl-Z for less time continues; a killed run becomes free after this time, or when resumed."""

@@ -9,19 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ..designs.display_units import convert_record, convert_row
-from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules
-from ..designs.violations import violations_of
+from ..designs.judged_requirements import JudgedChoice, Judgement, judge_rules, violations_of
+from ..render.terminal import print_blocks
 from ..runs.result import Row, rows_of_columns
+from ..text.tables import show_design, show_rules, show_undefined, show_violated
 from .design_question import BoundQuestion
-from .discovery import TOPICS
+from .discovery import TOPIC_COLUMNS, TOPICS
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
     from ...model.swing.swing import Swing
     from ...objectives.kinds import System
     from ...objectives.quantity import Quantity
     from ...optimise.problem.problem import Problem
+    from ..designs.judged_requirements import Judgement
     from ..designs.stored_designs import StoredDesign
 
 
@@ -169,3 +173,30 @@ def analysis_of(
             refused.append(reason)
     answered = tuple(topic for topic in design if topic.name in numbers_by_topic)
     return Analysis(row, numbers_by_topic, answered, remarks, refused, undefined, violations_of(mechanism, row))
+
+
+def show_analysis(
+    screen: Console,
+    analysis: Analysis,
+    judgement: Judgement | None,
+    units: System,
+    *,
+    custom: Sequence[Quantity] = (),
+    hint: str = "",
+) -> None:
+    """Write all numbers of a design, its rules as met or missed, and its topics.
+
+    judgement: its job, evaluated at the design; None if there is no job. custom: custom quantities of its job. hint:
+    line before the topics, or "".
+    """
+    row, reasons = analysis.row, (analysis.undefined or {}).items()
+    show_design(screen, convert_row({key: row[key] for key in row if key not in TOPIC_COLUMNS}, units), custom=custom)
+    show_undefined(screen, {key: why for key, why in reasons if key not in TOPIC_COLUMNS}, custom)
+    show_violated(screen, convert_record(analysis.violated, units), convert_row(row, units))
+    if judgement is not None:
+        show_rules(screen, judgement)
+    if hint:
+        screen.print(hint, style="dim")
+    for topic in analysis.topics:
+        screen.print()
+        print_blocks(screen, topic.blocks(analysis.topic_numbers[topic.name]), units)

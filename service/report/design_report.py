@@ -16,11 +16,10 @@ from .decision_section import decision_section
 from .design_section import design_section, linkage_picture, numbers_section
 from .document import Facts, Report, Section
 from .job_and_front import front_section, job_section, search_section
-from .lever_section import lever_section
 from .measured_section import measured_section
 from .sensitivity_and_tolerance_sections import sensitivity_section, tolerance_section
 from .subject import Subject
-from .swing_section import SwingOfSubject
+from .swing_section import SwingOfSubject, lever_section
 
 
 def design_report(subject: Subject, *, created: float | None = None) -> Report:

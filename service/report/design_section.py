@@ -10,9 +10,9 @@ from ...objectives.kinds import unit_text
 from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns
+from ..designs.display_units import row_without_noise
 from ..designs.judged_requirements import requirements_of
 from ..designs.length_with_tolerance import format_toleranced
-from ..designs.rounding_noise import row_without_noise
 from ..designs.trade_offs import trade_offs_of
 from ..drawings.design_drawing import design_drawing
 from ..figures.front_figures import datasheet_of

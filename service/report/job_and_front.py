@@ -7,7 +7,7 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
 from ...optimise.search.fingerprint import version_of
 from ..designs.columns import find_column
-from ..designs.violations import front_violations_in_words
+from ..designs.judged_requirements import front_violations_in_words
 from ..figures.parallel_coordinates import parallel_coordinates
 from ..figures.scatter_matrix import scatter_matrix
 from ..render.numerals import format_cell, format_cell_with_unit

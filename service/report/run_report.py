@@ -11,9 +11,8 @@ from ..designs.measured_curves_file import parse_measured_curves
 from ..designs.rotating_crank import require_rotating_crank
 from ..runs.result import Result
 from ..runs.runs_on_disk import problem_of
-from .alternatives import alternatives_of, bookmarks_of_run
 from .design_report import design_report
-from .subject import Subject
+from .subject import Subject, alternatives_of, bookmarks_of_run
 
 
 def run_report(

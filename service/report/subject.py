@@ -1,10 +1,11 @@
-"""Subject of a report: one design of a run's result, with all available data on both."""
+"""Subject of a report: one design of a run's result, all available data on both, and bookmarked alternatives."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...objectives.column_keys import column_key_in_system
@@ -12,12 +13,13 @@ from ...objectives.kinds import System
 from ...objectives.tables.measured_curves import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
-from ..designs.changed_design import Variation
+from ..designs.changed_design import Variation, judged_variation
+from ..designs.design_selection_options import minimised_values
 from ..designs.display_units import convert_record, convert_result, convert_row
-from ..designs.judged_requirements import faults_in_words
+from ..designs.judged_requirements import faults_in_words, violations_in_words, violations_of
 from ..designs.length_with_tolerance import format_toleranced, tolerances_of
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
-from ..designs.violations import violations_in_words, violations_of
+from ..jobs.stores import has_store, open_store
 from ..render.numerals import format_cell
 from ..runs.result import Cell, Result, Row
 
@@ -128,3 +130,26 @@ class Subject:
         if self.bookmark:
             return self.label
         return f"{self.label} of {len(self.result.designs)}" if self.changed is None else self.label
+
+
+def alternatives_of(bookmarks: Iterable[Bookmark], problem: Problem, result: Result) -> list[Alternative]:
+    """Return the bookmarked designs of a job, each evaluated against its requirements and ranges."""
+    minimised, alternatives = minimised_values(result), []
+    for bookmark in bookmarks:
+        design = StoredDesign(problem.part(bookmark.variant), bookmark.dimensions, bookmark.variant)
+        varied = judged_variation(design, result, minimised)
+        alternatives.append(
+            Alternative(bookmark=bookmark, row=varied.row, broken=varied.broken, outside=varied.outside)
+        )
+    return alternatives
+
+
+def bookmarks_of_run(folder: Path) -> list[Bookmark]:
+    """Return the bookmarks of a run on disk, from the store that solved it; none without such a store."""
+    if not has_store(None, folder.parent):
+        return []
+    from ..store.bookmarks_and_wishes import bookmarks_of
+
+    with open_store(None, folder.parent) as store:
+        job = store.find_by_run(folder.name)
+        return [] if job is None else bookmarks_of(store, job.id)

@@ -1,4 +1,4 @@
-"""Sections of a report on a swinging design: its numbers, extremes of its curves, sources of its errors."""
+"""Sections of a report on a swinging design or lever: numbers, extremes of curves, sources of errors."""
 
 import math
 from functools import cached_property
@@ -8,6 +8,7 @@ from ...model.swing.summary import SwingSummary, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
 from ...objectives.tables.swing_curves import driven_error_kind, driven_side_name
+from ..questions.lever.analysis import blocks, compute_shared_options, numbers
 from ..questions.swing.analysis import blocks as swing_blocks
 from ..questions.swing.analysis import swing_record, swing_title
 from ..render.blocks import Table as Numbers
@@ -76,3 +77,25 @@ class SwingOfSubject:
             frozenset({1, 2, 3}),
         )
         return Section("Tolerances", (Paragraph(sentence), table))
+
+
+def lever_section(subject: Subject, swing: Swing) -> Section:
+    """Return the numbers of the swing, as the command `lever` has them."""
+    design, system = subject.design, subject.system
+    request = compute_shared_options(design.mechanism, design.linkage, swing=swing)["request"]
+    record = numbers(design.mechanism, design.linkage, request=request)
+    tables = [block for block in blocks(record) if isinstance(block, Numbers)]
+    report_tables: list[Block] = [
+        Table(
+            "The lever and its cylinder",
+            ("", "value", "unit", "where"),
+            table_cells(table, system, printed=True),
+            _WIDTHS,
+        )
+        for table in tables
+    ]
+    notes = (Paragraph(f"{note[0].upper()}{note[1:]}.", "note") for note in record["notes"])
+    return Section("The swing", (*report_tables, *notes))
+
+
+_WIDTHS = (0.38, 0.14, 0.08, 0.4)

@@ -1,16 +1,16 @@
-"""Jobs within a transaction: reading rows and news, changing states, adding events."""
+"""Jobs within a transaction: reading rows and news, sorting lists, changing states, adding events."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
-from sqlalchemy import Connection, and_, insert, or_, select, update
+from sqlalchemy import Connection, Select, and_, case, func, insert, or_, select, update
 
 from ...model.errors import InputError, NotFound, RunError
 from .database_clock import now
-from .records import JOB_COLUMNS, RESUMABLE, Event, Job, News, State
+from .records import DECISION, JOB_COLUMNS, RESUMABLE, Event, Job, News, State
 from .schema import events, jobs, records
 from .serialisation import checksum, compact_json, unpacked_record
 
@@ -111,3 +111,30 @@ def news_of(connection: Connection, after: Mapping[int, int], limit: int) -> dic
             for row in connection.execute(query):
                 news[row.job].events.append(Event.from_row(row))
     return news
+
+
+Order = Literal["newest", "oldest", "name", "state", "decided"]
+"""Order of a list of jobs. state: waiting and running jobs first. decided: jobs with a decision first."""
+
+_KEYS: dict[Order, Any] = {
+    "oldest": jobs.c.id,
+    "name": func.lower(jobs.c.name),
+    "state": case({state: place for place, state in enumerate(get_args(State))}, value=jobs.c.state),
+    "decided": case((DECISION.is_(None), 1), else_=0),
+}
+
+
+def ordered_jobs(query: Select[Any], order: Order, before: int | None) -> Select[Any]:
+    """Return a query for jobs in an order; jobs with equal keys are sorted newest first.
+
+    before: number of a job; only jobs after it in this order, for paging. None for all.
+    """
+    key = _KEYS.get(order)
+    if key is None:
+        ordered = query.order_by(jobs.c.id.desc())
+        return ordered if before is None else ordered.where(jobs.c.id < before)
+    ordered = query.order_by(key, jobs.c.id.desc())
+    if before is None:
+        return ordered
+    last = select(key).where(jobs.c.id == before).correlate(None).scalar_subquery()
+    return ordered.where(or_(key > last, and_(key == last, jobs.c.id < before)))

@@ -18,17 +18,18 @@ from . import queue
 from .claim import Claim
 from .database_clock import ClockJumps, now
 from .job_rows import (
+    Order,
     add_events,
     change_state,
     damaged_result_error,
     evaluation_records,
     job_by_number,
     news_of,
+    ordered_jobs,
     require_checksum,
     require_resumable,
     result_record,
 )
-from .listing import Order, ordered_jobs
 from .records import ENDED, JOB_COLUMNS, NO_LIMITS, NOT_DONE, Artefact, Event, Job, Limits, News, Queueing, State
 from .schema import artefacts, designs, events, exact, jobs
 from .schema_version import create_or_upgrade_tables

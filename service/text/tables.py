@@ -12,8 +12,8 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.column_keys import metric_key
 from ...objectives.count_text import count_with_noun
 from ..designs.columns import Column, choice_column_keys, find_column
-from ..designs.rounding_noise import row_without_noise
-from ..designs.violations import front_violations_in_words, violations_in_words
+from ..designs.display_units import row_without_noise
+from ..designs.judged_requirements import front_violations_in_words, violations_in_words
 from ..render.terminal import empty_table, print_table
 from ..runs.result import Cell, Result, Row, StoredObjective
 

@@ -15,7 +15,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.service.drawings.design_drawing import linkage_drawing
 from slidercrank.service.drawings.dxf import dxf_file
-from slidercrank.service.page.typeface import _subset_font
+from slidercrank.service.page.router import _subset_font
 from slidercrank.service.workers.logs import log_subject, set_up_logs
 
 _log = logging.getLogger("slidercrank.service.workers.worker")

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from slidercrank.model.errors import InputError, RunError
-from slidercrank.service.jobs.find_run import find_run
+from slidercrank.service.jobs.stores import find_run
 from slidercrank.service.runs.result import result_of
 from slidercrank.service.runs.run_folder import MARK
 from slidercrank.service.runs.runs_on_disk import read_run

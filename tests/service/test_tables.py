@@ -9,7 +9,7 @@ import pytest
 
 from slidercrank.objectives.column_keys import name_unit_and_factor_of_key
 from slidercrank.service.designs.columns import find_column
-from slidercrank.service.designs.rounding_noise import row_without_noise
+from slidercrank.service.designs.display_units import row_without_noise
 from slidercrank.service.runs.result import Result, StoredObjective
 from slidercrank.service.text.screen import console
 from slidercrank.service.text.tables import show_design, show_front

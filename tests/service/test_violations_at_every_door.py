@@ -13,9 +13,9 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.optimise.job import parse_job
+from slidercrank.service.designs.judged_requirements import front_violations_in_words, violations_in_words
 from slidercrank.service.designs.selection import result_part
 from slidercrank.service.designs.stored_designs import front_of
-from slidercrank.service.designs.violations import front_violations_in_words, violations_in_words
 from slidercrank.service.report.design_report import design_report
 from slidercrank.service.report.document import Paragraph
 from slidercrank.service.report.subject import Subject

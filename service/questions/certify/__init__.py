@@ -2,7 +2,7 @@
 
 from ....optimise.certificate.defaults import EPSILON, SECONDS
 from ..front_or_job_question import FrontOrJobQuestion
-from ..plain_input import PlainInput
+from ..inputs import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,

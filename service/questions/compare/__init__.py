@@ -1,7 +1,7 @@
 """Fronts of several runs compared with each other: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..plain_input import PlainInput
+from ..inputs import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,

@@ -17,8 +17,7 @@ from ....optimise.motion_law.input_words import LawObjective, Timing
 from ....optimise.motion_law.law_limits import LawRequest
 from ....optimise.motion_law.optimal_law import OptimalLaw, optimal_law
 from ....optimise.problem.problem import Problem
-from ...designs.display_units import convert_rows
-from ...designs.rounding_noise import row_without_noise
+from ...designs.display_units import convert_rows, row_without_noise
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, joined, named_number, note, number_list, remark_with_value, sentence
 from ...render.numerals import format_number

@@ -244,6 +244,6 @@ def figure(
     mechanism: Mechanism, linkage: Linkage, *, units: System = "metric", request: LeverRequest, **_: Any
 ) -> Figure:
     """Return plots of force, length and transmission angle against lever angle, below the lever at both ends."""
-    from ...figures.lever_figure import lever_figure
+    from ...figures.swing_figure import lever_figure
 
     return lever_figure(request.machine, request.swing, request.cylinder, units)

@@ -1,7 +1,7 @@
 """Design nearest to one on a front that also meets further conditions: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..plain_input import PlainInput
+from ..inputs import PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,

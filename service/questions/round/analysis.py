@@ -32,7 +32,7 @@ from ...render.blocks import (
 )
 from ..design_table import title_and_unit
 from ..front_or_job_question import Answer, SearchListener
-from ..plain_input import PlainInput, texts_by_name
+from ..inputs import PlainInput, texts_by_name
 from . import QUESTION
 
 if TYPE_CHECKING:

@@ -2,8 +2,7 @@
 
 from ....objectives.kinds import LENGTH
 from ..front_or_job_question import FrontOrJobQuestion
-from ..inputs import Input
-from ..plain_input import PlainInput
+from ..inputs import Input, PlainInput
 
 QUESTION = FrontOrJobQuestion(
     package=__name__,

@@ -1,7 +1,7 @@
 """The optimal design nearest to a wish: numbers and text."""
 
 from ..front_or_job_question import FrontOrJobQuestion
-from ..plain_input import PlainInput
+from ..inputs import PlainInput
 
 _EXAMPLE = {"time_ratio": "1.2", "transmission_angle": "45 deg"}
 QUESTION = FrontOrJobQuestion(

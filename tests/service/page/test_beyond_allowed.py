@@ -9,7 +9,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
-from slidercrank.service.designs.violations import front_violations_in_words
+from slidercrank.service.designs.judged_requirements import front_violations_in_words
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import API, store_result
 from tests.service.page.accessibility import require_accessible

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from playwright.sync_api import Browser
 
-from slidercrank.service.page.bundle import joined_modules, joined_styles
+from slidercrank.service.page.router import joined_modules, joined_styles
 
 SOURCES = {
     "app.js": 'import { twice as double, one } from "./lib/sums.js";\n'

@@ -11,7 +11,7 @@ from fontTools.ttLib import TTFont
 from playwright.sync_api import expect
 
 from slidercrank.service.api.settings import Settings
-from slidercrank.service.page.typeface import typeface
+from slidercrank.service.page.router import typeface
 from slidercrank.service.store import Store
 from tests.service.api.fixed_front import Solved, served
 from tests.service.api.serving import TOKEN

@@ -14,7 +14,7 @@ import pytest
 from slidercrank.model.errors import InputError, QueueFull
 from slidercrank.service.store import Artefact, Job, State, Store
 from slidercrank.service.store.bookmarks_and_wishes import bookmark_design
-from slidercrank.service.store.listing import Order
+from slidercrank.service.store.job_rows import Order
 from tests.service.store.contents import (
     TABLES,
     add,
