@@ -26,7 +26,7 @@ from .bar_pieces import (
     net_width_formula,
 )
 from .kinds import PRESSURE, RATIO
-from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ONE_TURN, ROD_BAR, STRENGTH
+from .machine_needs import A_BAR, CRANK_BAR, EVEN_SPEED, LOADED, ROD_BAR, STRENGTH
 from .quantity import Array, Formula
 
 CRANK = "crank"
@@ -225,8 +225,8 @@ FATIGUE_SAFETY = FatigueSafety(
     place=446,
     sentence=(
         "The factor by which all stresses could grow before the worst point of crank and rod fails by fatigue. "
-        "Amplitude and mean are those of the stress at this point over a turn, with the stress concentration in the "
-        "eyes."
+        "Amplitude and mean are those of the stress at this point over the cycle, with the stress concentration in "
+        "the eyes."
     ),
     advice=(
         "1.3 to 2 are usual. The endurance strength is that of the finished bar, but without the stress "
@@ -238,7 +238,7 @@ FATIGUE_SAFETY = FatigueSafety(
     example=1.5,
     better="high",
     allowed_by="fatigue strength of the material",
-    needs=(STRENGTH, EVEN_SPEED, ONE_TURN, A_BAR, LOADED),
+    needs=(STRENGTH, EVEN_SPEED, A_BAR, LOADED),
 )
 BUCKLING_SAFETY = BucklingSafety(
     name="buckling_safety",

@@ -11,7 +11,6 @@ from ..model.cycle.gas_work import compressors, cylinder_loads
 from ..model.machine.cylinder_machines import cylinder_count
 from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
-from ..model.machine.two_turn_machine import cycle_turns
 from ..model.machine.work_absorption import (
     carries_linkage_forces,
     carries_pivot_force,
@@ -192,10 +191,6 @@ ONE_TIMING = _defining(
 EVEN_SPEED = _defining(
     lambda machine: machine.speed_profile is None,
     "it is only defined at constant speed; got a speed profile; leave the profile out",
-)
-ONE_TURN = _defining(
-    lambda machine: cycle_turns(machine) == 1,
-    "it needs a cycle of one turn, to pair greatest and least stress; got a cycle of 720 deg; leave it out",
 )
 STRENGTH = _defining(
     lambda machine: machine.strength is not None,

@@ -23,7 +23,7 @@ from ..machine.design import Design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
 from ..machine.raw_machine_vector import Loads, load_structure, raw_vector
-from ..machine.two_turn_machine import TURN, cycle_turns, half_of_cycle_at, machines_of_both_turns, require_one_turn
+from ..machine.two_turn_machine import TURN, cycle_turns, half_of_cycle_at, machines_of_turns, require_one_turn
 from ..signals.position_error import influences, root_sum_square, worst_case
 from ..signals.signal_inputs import cycle_window
 from ..signals.signals import Signal, design_motion
@@ -161,9 +161,7 @@ def _cycle_of_two_turns(
 ) -> Cycle:
     """Return the curves over a cycle of two turns, each angle from the machine of its own turn."""
     turn = half_of_cycle_at(mechanism, *linkage.dead_centre_angles, angles)
-    parts = [
-        cycle_at_speeds(half, linkage, angles, speeds, accelerations) for half in machines_of_both_turns(mechanism)
-    ]
+    parts = [cycle_at_speeds(half, linkage, angles, speeds, accelerations) for half in machines_of_turns(mechanism)]
     return Cycle(*(np.where(turn == 0, *(getattr(part, field.name) for part in parts)) for field in fields(Cycle)))
 
 
@@ -204,7 +202,7 @@ def breakpoints(mechanism: Mechanism, linkage: Linkage) -> Array:
     """
     linkage = require_single_rotating_linkage(mechanism, linkage)
     if cycle_turns(mechanism) > 1:
-        angles = np.concatenate([breakpoints(half, linkage) for half in machines_of_both_turns(mechanism)])
+        angles = np.concatenate([breakpoints(half, linkage) for half in machines_of_turns(mechanism)])
         return np.unique(np.concatenate([angles, angles + TURN]))
     raw, loads = raw_vector(mechanism), load_structure(mechanism)
     raw[:3] = linkage.crank, linkage.rod, linkage.offset

@@ -29,7 +29,7 @@ from ..machine.loads.load import Enters
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 
 _INNER, _OUTER = Design._fields.index("inner"), Design._fields.index("outer")
 _SERIES = 1e-4  # |x| below which f is computed from its series: x^4 / 120 is then below rounding
@@ -106,7 +106,7 @@ def _gas_cycle_of_two_turns(
     """Return the sums over a cycle of two turns, each (n,), and their derivatives, each (n, 3 + k)."""
     four = [load.cycle_turns > 1 for load in mechanism.loads]
     sums, slopes = [], []
-    for half in machines_of_both_turns(mechanism):
+    for half in machines_of_turns(mechanism):
         raw, loads = raw_inputs_with_all_features(half)
         numbers = raw_machine_numbers(half, designs, slot_count=len(raw), gradients=gradients)
         blocks, steps = derived_blocks(raw, loads, numbers.columns, numbers.values, steps=gradients)

@@ -38,8 +38,13 @@ def turns_per_cycle(loads: Iterable[Load]) -> int:
 
 
 @memoise_by_machine
-def machines_of_both_turns(mechanism: Mechanism) -> tuple[Mechanism, ...]:
-    """Return the machines of the first and the second turn. Raises `InputError` for loads with different datums."""
+def machines_of_turns(mechanism: Mechanism) -> tuple[Mechanism, ...]:
+    """Return the machine of each turn of the cycle: the machine itself if it has one turn.
+
+    Raises `InputError` for loads of two turns with different datums.
+    """
+    if cycle_turns(mechanism) == 1:
+        return (mechanism,)
     _cycle_datum(mechanism)
     return tuple(_machine_of_turn(mechanism, turn) for turn in (1, 2))
 
@@ -63,7 +68,7 @@ def _machine_of_turn(mechanism: Mechanism, turn: int) -> Mechanism:
 
 def machine_of_first_turn(mechanism: Mechanism) -> Mechanism:
     """Return the machine for the first turn, for results independent of loads that differ between turns."""
-    return machines_of_both_turns(mechanism)[0] if cycle_turns(mechanism) > 1 else mechanism
+    return machines_of_turns(mechanism)[0]
 
 
 def half_of_cycle_at(mechanism: Mechanism, inner: Any, outer: Any, crank_angle: Array) -> IntArray:

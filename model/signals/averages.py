@@ -15,7 +15,7 @@ from ..kernel.batches import require_full_rotation
 from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from ..machine.work_absorption import may_do_work_over_a_turn
 from .shaft_statistics import shaft_signal_averages
 from .signal_inputs import cycle_window, signal_inputs
@@ -91,7 +91,7 @@ def _batch_averages(mechanism: Mechanism, designs: Array, kind: Signal, gradient
         return Averages(*shaft_signal_averages(mechanism, kind, designs, gradients=gradients))
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
-            signal_averages(half, kind, designs, gradients=gradients) for half in machines_of_both_turns(mechanism)
+            signal_averages(half, kind, designs, gradients=gradients) for half in machines_of_turns(mechanism)
         )
         return Averages(*averages_of_both_turns(first, second))
     raw, loads = signal_inputs(mechanism, kind)

@@ -13,7 +13,7 @@ from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal
@@ -71,7 +71,7 @@ def find_peaks(
     if kind.needs_forces and cycle_turns(mechanism) > 1:
         first, second = (
             find_peaks(half, kind, designs, during=during, gradients=gradients, limit=limit, angles=angles)
-            for half in machines_of_both_turns(mechanism)
+            for half in machines_of_turns(mechanism)
         )
         return Peaks(*highest_peaks_of_both_turns(mechanism, designs, first, second))
     n = len(designs)

@@ -21,7 +21,7 @@ from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import TURN, cycle_turns, half_of_cycle_at, machines_of_both_turns
+from ..machine.two_turn_machine import TURN, half_of_cycle_at, machines_of_turns
 from .cycle_segments import Segments
 from .roots import find_roots
 from .shaft_curves import (
@@ -66,8 +66,7 @@ class Shaft:
         signal = Signal(kind) if kind < TOUCH else Signal.CRANK_PIN_FORCE
         single = single_cylinder(mechanism)
         self._single, self._designs = single, designs
-        two_turns = signal.needs_forces and cycle_turns(single) > 1
-        self._parts = machines_of_both_turns(single) if two_turns else (single,)
+        self._parts = machines_of_turns(single) if signal.needs_forces else (single,)
         self.period = len(self._parts) * TURN
         self.vector = kind in [int(vector) for vector in VECTORS]
         self.rubbing = signal.needs_forces and needs_friction_kernel(single)

@@ -23,7 +23,7 @@ from ..kernel.batches import require_full_rotation
 from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from .shaft_statistics import shaft_turn_work
 from .signal_inputs import signal_inputs
 from .signals import Signal
@@ -55,7 +55,7 @@ def turn_work(mechanism: Mechanism, designs: Array, *, gradients: bool = False) 
     if is_treated_as_shaft(mechanism):
         return TurnWork(*shaft_turn_work(mechanism, designs, gradients=gradients))
     if cycle_turns(mechanism) > 1:
-        first, second = (turn_work(half, designs, gradients=gradients) for half in machines_of_both_turns(mechanism))
+        first, second = (turn_work(half, designs, gradients=gradients) for half in machines_of_turns(mechanism))
         slopes = None
         if first.gradients is not None and second.gradients is not None:
             slopes = 0.5 * (first.gradients + second.gradients)

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, IntArray
 from ..kinematics import geometry
 from ..machine.mechanism import Mechanism
 from ..machine.two_turn_machine import shift_angles_into_half
@@ -36,7 +36,7 @@ def highest_peaks_of_both_turns(
     values = np.concatenate([first.values, second.values], axis=1)
     order = np.argsort(-values, axis=1, kind="stable")[:, :limit]
     angles = np.concatenate(
-        [_angles_within_both_turns(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))],
+        [angles_within_both_turns(mechanism, designs, part.angles, half) for half, part in enumerate((first, second))],
         axis=1,
     )
     gradients = None
@@ -60,8 +60,8 @@ def averages_of_both_turns(first: _Averages, second: _Averages) -> tuple[Array, 
     return values, np.concatenate([0.5 * (first.gradients[:1] + second.gradients[:1]), moved])
 
 
-def _angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Array, half: int) -> Array:
-    """Return the crank angles within both turns for peaks of a half (n, k), rad; NaN stays."""
+def angles_within_both_turns(mechanism: Mechanism, designs: Array, angles: Array, half: int | IntArray) -> Array:
+    """Return the crank angles within both turns for peaks (n, k) of a half, or of one each, rad; NaN stays."""
     dimensions = designs[:, :3].T[:, :, None]
     inner, outer = geometry.inner_crank_angle(*dimensions), geometry.outer_crank_angle(*dimensions)
     if mechanism.branch == "crossed":

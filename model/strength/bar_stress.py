@@ -8,12 +8,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import TURN, machines_of_turns
+from ..signals.two_turn_peaks import angles_within_both_turns
 from .section_forces import CRANK, Stress, stress_at_length_fraction
 from .stress_points import WIDE, stress_field_of
 
 _STATIONS = 61
-_TURN = 2.0 * np.pi
 
 
 @dataclass(frozen=True)
@@ -41,17 +41,22 @@ class BarStress:
 
 def bar_stress(mechanism: Mechanism, part: int, design: Array) -> BarStress:
     """Return the stress along a link, `ROD` or `CRANK`, of one design (1, 3 + k). The link must be a `Bar`."""
-    if cycle_turns(mechanism) > 1:
-        first, second = (bar_stress(half, part, design) for half in machines_of_both_turns(mechanism))
-        theta = np.concatenate([first.theta, second.theta + _TURN])
-        return BarStress(theta, first.shares, np.concatenate([first.stress, second.stress], axis=2))
-    samples = stress_field_of(mechanism, design).samples
+    machines = machines_of_turns(mechanism)
+    angles, begins, stresses = [], [], []
+    for turn, machine in enumerate(machines):
+        field = stress_field_of(machine, design)
+        samples = field.samples
+        middle = np.mean(field.segment_end_angles(np.zeros_like(samples.segment), samples.segment), axis=0)
+        shift = 0.0 * middle
+        if len(machines) > 1:  # a segment lies within one turn of the cycle
+            shift = angles_within_both_turns(mechanism, design, middle[None], turn)[0] - middle
+        angles.append(np.mod(samples.theta + shift, len(machines) * TURN))
+        begins.append(samples.theta < middle)
+        stresses.append(samples.stress)
+    # At a jump, the segment that ends there comes first.
+    order = np.lexsort((np.concatenate(begins), np.concatenate(angles)))
     base = WIDE * (part == CRANK)
     shares = np.linspace(0.0, 1.0, _STATIONS)
-    stress = Stress(*samples.stress[:, base : base + 7].T)
+    stress = Stress(*np.concatenate(stresses)[order, base : base + 7].T)
     both_sides = [stress_at_length_fraction(stress, side, shares[:, None]) for side in (1.0, -1.0)]
-    # Samples cover a turn from the first breakpoint; those beyond a whole turn come first, keeping their order at
-    # jumps.
-    turned = int(np.searchsorted(samples.theta, _TURN))
-    theta = np.roll(np.where(samples.theta < _TURN, samples.theta, samples.theta - _TURN), -turned)
-    return BarStress(theta, shares, np.roll(np.array(both_sides), -turned, axis=2))
+    return BarStress(np.concatenate(angles)[order], shares, np.array(both_sides))

@@ -28,11 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
-from ..errors import InputError
 from ..kernel.batches import in_chunks, require_full_rotation
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ..machine.two_turn_machine import machines_of_turns
+from ..signals.two_turn_peaks import angles_within_both_turns
 from .section_forces import Stress, stress_at_length_fraction
 from .stress_locations import StressLocation, StressLocations, stress_at_locations
 from .stress_points import stress_field_of
@@ -58,7 +58,6 @@ _EQUAL = 1e-6  # relative; accuracy of cubics between samples when comparing max
 # Fractions of the spacing of samples: distance of the ends of a cubic, and of a maximum from its predicted place within
 # which it is accepted (such a cubic has a millionth of the last one's error); then the ratio to the next distance.
 _CLOSE, _FORETOLD, _CLOSER, _ROUNDS = 0.01, 1e-3, 30.0, 10
-_SECOND_TURN = 1e5  # step between labels, more than all parts of a quantity take
 LABEL_STEP, CLASSES = 60.0, 12
 """Distance between labels of maxima that are not neighbours, more than a turn; number of their classes."""
 
@@ -68,8 +67,8 @@ class StressPeaks:
     """Local maxima for n designs, highest first.
 
     values: (n, k), -inf beyond the last one; inf where friction locks the design. labels: identifiers (n, k) that match
-    maxima between neighbouring designs. places: (n, k, 4), fraction of the length from the crank pin, face, both
-    angles, rad. gradients: (n, k, 3 + v); None unless requested.
+    maxima between neighbouring designs. places: (n, k, 4), fraction of the length from the crank pin, face, both crank
+    angles within the cycle, rad. gradients: (n, k, 3 + v); None unless requested.
     """
 
     values: Array
@@ -118,7 +117,8 @@ def _maxima_of_samples(bars: StressLocations, sides: Array, criteria: Array, mar
     candidates = first_candidates(candidates, count)
     values, angles, chosen = np.empty(count), np.empty((count, 2)), np.empty((n, limit), np.int64)
     climb_to_maxima(samples, criteria, candidates, values, angles)
-    choose_highest_candidates(candidates, criteria, values, angles, chosen)
+    turns = bars.turns_of_segments(segment[candidates.samples])
+    choose_highest_candidates(candidates, criteria, values, angles, turns, chosen)
     rows = chosen[chosen >= 0]
     at = candidates.samples[rows]
     angle_there, further = theta[at], np.minimum(at + 1, len(theta) - 1)
@@ -195,7 +195,9 @@ _SIDES = np.array([1.0, -1.0])
 _memoised_field = memoise_by_batch(stress_field_of)
 
 
-def _peaks_at_locations(bars: StressLocations, criteria: Array, gradients: bool, limit: int) -> StressPeaks:
+def _peaks_at_locations(
+    mechanism: Mechanism, designs: Array, bars: StressLocations, criteria: Array, gradients: bool, limit: int
+) -> StressPeaks:
     n, width = bars.bar_count, bars.rates.shape[1]
     peaks = StressPeaks(
         np.full((n, limit), -np.inf),
@@ -214,7 +216,9 @@ def _peaks_at_locations(bars: StressLocations, criteria: Array, gradients: bool,
         maxima.bar, maxima.side, maxima.pull, np.zeros((len(maxima.bar), 2), np.int64), maxima.share
     )
     chosen = np.empty((n, limit), np.int64)
-    choose_highest_candidates(candidates, criteria, maxima.value, maxima.angle, chosen)
+    choose_highest_candidates(
+        candidates, criteria, maxima.value, maxima.angle, bars.turns_of_segments(maxima.segment), chosen
+    )
     is_found = chosen >= 0
     maxima = maxima.select(chosen[is_found])
     begin, end = (
@@ -222,46 +226,23 @@ def _peaks_at_locations(bars: StressLocations, criteria: Array, gradients: bool,
     )
     early, late = maxima.angle - begin < _EDGE, end - maxima.angle < _EDGE
     maxima.angle = np.where(early, begin, np.where(late, end, maxima.angle))
-    next_segment = (maxima.segment + 1) % bars.segment_counts(maxima.bar)[:, None]
+    next_segment = bars.next_segments(np.repeat(maxima.bar, 2), maxima.segment.ravel()).reshape(-1, 2)
     pins = np.where(early, maxima.segment, np.where(late, next_segment, -1))
     ended = np.where(maxima.share == 0.0, 1, np.where(maxima.share == 1.0, 2, 0))
-    turned = np.where(maxima.is_counted, maxima.angle - _TURN * np.floor(maxima.angle / _TURN), 0.0)
+    turn, turns = bars.turns_of_segments(maxima.segment), len(bars.fields)
+    within_turn = maxima.angle - _TURN * np.floor(maxima.angle / _TURN)
+    turned = np.where(maxima.is_counted, (within_turn + _TURN * turn) / turns, 0.0)
     label_class = (maxima.side * len(criteria) + maxima.pull) * 3 + ended
     peaks.values[is_found] = maxima.value
     peaks.labels[is_found] = LABEL_STEP * label_class + turned[:, 0] + _OTHER * turned[:, 1]
-    peaks.places[is_found] = np.column_stack([maxima.share, _SIDES[maxima.side], maxima.angle])
+    angles = maxima.angle
+    if turns > 1:
+        angles = angles_within_both_turns(mechanism, designs[bars.designs_of_bars(maxima.bar)], angles, turn)
+    peaks.places[is_found] = np.column_stack([maxima.share, _SIDES[maxima.side], angles])
     if peaks.gradients is not None:
         peaks.gradients[is_found] = _maxima_gradients(bars, _SIDES, criteria, maxima, pins)
     peaks.values[bars.locked_bars, 0] = np.inf
     return peaks
-
-
-def _require_one_angle_per_criterion(criteria: Array) -> None:
-    """Raise `InputError` for criteria that compare two crank angles, because these may belong to different turns."""
-    if (criteria > 0.0).all(axis=1).any():
-        raise InputError(
-            "fatigue needs the greatest and least stress over one turn; got a cycle of 720 deg; leave the fatigue "
-            "safety out"
-        )
-
-
-def _highest_of_both_turns(first_turn: StressPeaks, second_turn: StressPeaks, limit: int) -> StressPeaks:
-    """Return the highest maxima over two turns."""
-    order = np.argsort(-np.concatenate([first_turn.values, second_turn.values], axis=1), axis=1, kind="stable")[
-        :, :limit
-    ]
-
-    def reordered(from_first: Array, from_second: Array) -> Array:
-        joined = np.concatenate([from_first, from_second], axis=1)
-        return np.take_along_axis(joined, order.reshape(*order.shape, *[1] * (joined.ndim - 2)), axis=1)
-
-    slopes, later = None, second_turn.places + np.array([0.0, 0.0, _TURN, _TURN])
-    if first_turn.gradients is not None and second_turn.gradients is not None:
-        slopes = reordered(first_turn.gradients, second_turn.gradients)
-    labels = reordered(first_turn.labels, second_turn.labels + _SECOND_TURN)
-    return StressPeaks(
-        reordered(first_turn.values, second_turn.values), labels, reordered(first_turn.places, later), slopes
-    )
 
 
 def stress_peaks(
@@ -280,13 +261,6 @@ def stress_peaks(
     """
     designs = require_full_rotation(designs)
     criteria = np.ascontiguousarray(criteria, dtype=np.float64)
-    if cycle_turns(mechanism) > 1:
-        _require_one_angle_per_criterion(criteria)
-        turns = (
-            stress_peaks(half, places, designs, criteria, gradients=gradients, limit=limit)
-            for half in machines_of_both_turns(mechanism)
-        )
-        return [_highest_of_both_turns(first, second, limit) for first, second in zip(*turns, strict=True)]
     location_count, n = len(places), len(designs)
     values, labels, peak_places = (
         np.empty((location_count, n, limit)),
@@ -297,9 +271,9 @@ def stress_peaks(
 
     def work(begin: int, end: int) -> None:
         chunk = designs[begin:end]
-        peaks = _peaks_at_locations(
-            stress_at_locations(_memoised_field(mechanism, chunk), mechanism, chunk, places), criteria, gradients, limit
-        )
+        fields = [_memoised_field(machine, chunk) for machine in machines_of_turns(mechanism)]
+        bars = stress_at_locations(fields, mechanism, chunk, places)
+        peaks = _peaks_at_locations(mechanism, chunk, bars, criteria, gradients, limit)
         for target, part in ((values, peaks.values), (labels, peaks.labels), (peak_places, peaks.places)):
             target[:, begin:end] = part.reshape(location_count, end - begin, *part.shape[1:])
         if slopes is not None and peaks.gradients is not None:

@@ -13,7 +13,7 @@ both, is left out here, so that a pin as wide as its bar needs no special case: 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -62,11 +62,12 @@ class StressLocations:
 
     An eye is treated as a bar whose stress falls linearly from the eye's value to zero at the other end, so the maximum
     along it is the eye's value. Without bending, half of the axial stress counts as bending: all of it is on one side,
-    none on the other. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending; rates: (m n, 3
-    + k, 2), their derivatives with respect to the numbers of the design.
+    none on the other. fields: one for each turn of the cycle. Segments are numbered over the whole cycle, crank angles
+    within the turn of their segment. samples: their stress (m s, WIDE). factors: (m n, 2), of axial stress and bending;
+    rates: (m n, 3 + k, 2), their derivatives with respect to the numbers of the design.
     """
 
-    field: StressField
+    fields: tuple[StressField, ...]
     places: tuple[StressLocation, ...]
     samples: Samples
     factors: Array
@@ -80,20 +81,32 @@ class StressLocations:
     @property
     def locked_bars(self) -> Mask:
         """Return whether friction locks the design of each bar, (m n,)."""
-        return np.tile(self.field.locked_designs, len(self.places))
+        return np.tile(self.fields[0].locked_designs, len(self.places))
 
-    def segment_counts(self, bars: IntArray) -> IntArray:
-        """Return the number of segments in the cycles of bars (p,)."""
-        counts: IntArray = self.field.cuts.many[self._designs_of_bars(bars)]
-        return counts
+    def turns_of_segments(self, segment: IntArray) -> IntArray:
+        """Return the turns of the cycle, from 0, that contain segments."""
+        turns: IntArray = segment // _segments_per_turn(self.fields)
+        return turns
+
+    def next_segments(self, bars: IntArray, segment: IntArray) -> IntArray:
+        """Return the segments that follow segments (p,) of bars (p,) within their turn."""
+        following = np.empty_like(segment)
+        for field, rows, design, local in self._by_turn(bars, segment):
+            following[rows] = segment[rows] + np.where(local + 1 == field.cuts.many[design], -local, 1)
+        return following
 
     def segment_end_angles(self, bars: IntArray, segment: IntArray) -> tuple[Array, Array]:
         """Return where segments (p,) of bars (p,) begin and end, rad."""
-        return self.field.segment_end_angles(self._designs_of_bars(bars), segment)
+        ends = np.empty((2, len(bars)))
+        for field, rows, design, local in self._by_turn(bars, segment):
+            ends[:, rows] = field.segment_end_angles(design, local)
+        return ends[0], ends[1]
 
     def stress_at(self, bars: IntArray, segment: IntArray, angle: Array) -> Array:
         """Return stress and its derivatives with respect to the crank angle, (p, WIDE)."""
-        stress = self.field.stress_at(self._designs_of_bars(bars), segment, angle)
+        stress = np.empty((len(bars), 2 * WIDE))
+        for field, rows, design, local in self._by_turn(bars, segment):
+            stress[rows] = field.stress_at(design, local, angle[rows])
         return _stress_at_locations(
             self.places, stress, np.arange(len(bars)), self._locations_of_bars(bars), self.factors[bars]
         )
@@ -101,16 +114,13 @@ class StressLocations:
     def design_slopes(self, bars: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
         """Return the derivatives with respect to the numbers of the design, (p, 3 + k, WIDE / 2).
 
-        cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
+        cut: (p,), the segment whose beginning moves the angle, -1 if there is none.
         """
-        stress, numbers = (
-            self.field.raw_number_slopes(self._designs_of_bars(bars), segment, angle, cut),
-            self.field.numbers,
-        )
-        values = stress[:, 0]
-        if numbers.slopes is not None:
-            stress = np.einsum("pcx,pck->pkx", stress, numbers.slopes[self._designs_of_bars(bars)])
-        p, k = stress.shape[:2]
+        p, k = len(bars), self.rates.shape[1]
+        values, stress = np.empty((p, 2 * WIDE)), np.empty((p, k, 2 * WIDE))
+        cut = np.where(cut < 0, cut, cut % _segments_per_turn(self.fields))
+        for field, rows, design, local in self._by_turn(bars, segment):
+            values[rows], stress[rows] = field.design_slopes(design, local, angle[rows], cut[rows])
         place, row = np.repeat(self._locations_of_bars(bars), k), np.repeat(np.arange(p), k)
         factors, rates = np.repeat(self.factors[bars], k, axis=0), self.rates[bars].reshape(p * k, 2)
         spread = _stress_at_locations(self.places, stress.reshape(p * k, -1), np.arange(p * k), place, factors)[
@@ -120,11 +130,38 @@ class StressLocations:
         spread[eyes] += _stress_at_locations(self.places, values, row[eyes], place[eyes], rates[eyes])[:, :_MANY]
         return spread.reshape(p, k, _MANY)
 
-    def _locations_of_bars(self, bars: IntArray) -> IntArray:
-        return bars // len(self.field.blocks)
+    def designs_of_bars(self, bars: IntArray) -> IntArray:
+        """Return the designs that bars belong to."""
+        return bars % (self.bar_count // len(self.places))
 
-    def _designs_of_bars(self, bars: IntArray) -> IntArray:
-        return bars % len(self.field.blocks)
+    def _locations_of_bars(self, bars: IntArray) -> IntArray:
+        return bars // (self.bar_count // len(self.places))
+
+    def _by_turn(self, bars: IntArray, segment: IntArray) -> Iterator[tuple[StressField, IntArray, IntArray, IntArray]]:
+        """Yield for each turn its field, and the rows within it with their designs and the segments in the turn."""
+        turn, local = np.divmod(segment, _segments_per_turn(self.fields))
+        for number, field in enumerate(self.fields):
+            rows = np.flatnonzero(turn == number)
+            yield field, rows, self.designs_of_bars(bars[rows]), local[rows]
+
+
+def _segments_per_turn(fields: Sequence[StressField]) -> int:
+    return int(max(field.cuts.angle.shape[1] for field in fields))
+
+
+def _samples_of_cycle(fields: Sequence[StressField]) -> Samples:
+    """Return the samples of all turns, design by design, with segments numbered over the cycle."""
+    parts = [field.samples for field in fields]
+    design = np.concatenate([np.repeat(np.arange(len(part.start) - 1), np.diff(part.start)) for part in parts])
+    order = np.argsort(design, kind="stable")
+    segments = [part.segment + turn * _segments_per_turn(fields) for turn, part in enumerate(parts)]
+    return Samples(
+        np.sum([part.start for part in parts], axis=0),
+        np.concatenate([part.theta for part in parts])[order],
+        np.concatenate([part.begins_segment for part in parts])[order],
+        np.concatenate(segments)[order],
+        np.concatenate([part.stress for part in parts])[order],
+    )
 
 
 def _stress_at_locations(
@@ -180,10 +217,10 @@ def _fill_location_stress(
 
 
 def stress_at_locations(
-    field: StressField, mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
+    fields: Sequence[StressField], mechanism: Mechanism, designs: Array, places: Sequence[StressLocation]
 ) -> StressLocations:
-    """Return the `StressLocations` for designs (n, 3 + k) whose links have a field."""
-    cycle_samples, n, many = field.samples, len(designs), len(places)
+    """Return the `StressLocations` for designs (n, 3 + k) whose links have a field for each turn of the cycle."""
+    cycle_samples, n, many = _samples_of_cycle(fields), len(designs), len(places)
     factors, rates = np.ones((many * n, 2)), np.zeros((many * n, designs.shape[1], 2))
     for number, place in enumerate(places):
         if isinstance(place, Eye):
@@ -199,7 +236,7 @@ def stress_at_locations(
         np.tile(cycle_samples.segment, many),
         _stress_at_locations(places, cycle_samples.stress, row, of_place, factors[of_bar]),
     )
-    return StressLocations(field, tuple(places), samples, factors, rates)
+    return StressLocations(tuple(fields), tuple(places), samples, factors, rates)
 
 
 def eye_stress_factor_formulas(mechanism: Mechanism, eye: Eye) -> tuple[Formula, Formula]:

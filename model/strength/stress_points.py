@@ -220,8 +220,8 @@ class StressField:
             needs_friction_kernel(self.mechanism),
         )
 
-    def raw_number_slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> Array:
-        """Return stress and its derivatives with respect to the raw numbers in `numbers`, (p, c, 2 WIDE).
+    def design_slopes(self, design: IntArray, segment: IntArray, angle: Array, cut: IntArray) -> tuple[Array, Array]:
+        """Return stress (p, 2 WIDE), and its derivatives by the numbers of the design, (p, 3 + k, 2 WIDE).
 
         cut: (p,), the breakpoint with which the angle moves, -1 if there is none.
         """
@@ -241,7 +241,10 @@ class StressField:
         stress = _stress_at_points(
             self.blocks, steps, self.sizes, turned, points, self.cuts, self.loads, needs_friction_kernel(self.mechanism)
         )
-        return stress.reshape(len(design), number_count, -1)
+        stress = stress.reshape(len(design), number_count, 2 * WIDE)
+        if self.numbers.slopes is None:
+            return stress[:, 0], stress
+        return stress[:, 0], np.einsum("pcx,pck->pkx", stress, self.numbers.slopes[design])
 
 
 def _angles_within(begin: Array, end: Array) -> Array:

@@ -273,12 +273,12 @@ def climb_to_maxima(
 
 @rarely_used_kernel
 def choose_highest_candidates(
-    candidates: Candidates, criteria: Table, values: Row, angles: Table, chosen: IntegerTable
+    candidates: Candidates, criteria: Table, values: Row, angles: Table, turns: IntegerTable, chosen: IntegerTable
 ) -> None:
     """Number the highest candidates of each design: kept (n, k), -1 beyond the last one.
 
-    Among coinciding candidates, the highest counts: next to a breakpoint there may be two, one of them at the
-    breakpoint.
+    angles, turns: (c, 2), crank angles within a turn and the turns of the cycle that contain them. Among coinciding
+    candidates, the highest counts: next to a breakpoint there may be two, one of them at the breakpoint.
     """
     count = -1
     for n in range(chosen.shape[0]):
@@ -299,8 +299,8 @@ def choose_highest_candidates(
                 candidates.side[o] == candidates.side[c]
                 and candidates.pull[o] == candidates.pull[c]
                 and abs(candidates.share[o] - candidates.share[c]) < _PLACE
-                and (p == 0.0 or math.cos(angles[o, 0] - angles[c, 0]) > 1.0 - _ANGLE)
-                and (q == 0.0 or math.cos(angles[o, 1] - angles[c, 1]) > 1.0 - _ANGLE)
+                and (p == 0.0 or (math.cos(angles[o, 0] - angles[c, 0]) > 1.0 - _ANGLE and turns[o, 0] == turns[c, 0]))
+                and (q == 0.0 or (math.cos(angles[o, 1] - angles[c, 1]) > 1.0 - _ANGLE and turns[o, 1] == turns[c, 1]))
             ):
                 place, full = i, True
         if full and values[c] <= values[chosen[n, place]]:

@@ -15,7 +15,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.cylinder_machines import Member, member_machines
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns, half_of_cycle_at, machines_of_both_turns
+from ..machine.two_turn_machine import cycle_turns, half_of_cycle_at, machines_of_turns
 from .crank_equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 from .friction_torque import (
     ITERATIONS,
@@ -85,10 +85,7 @@ class ShaftEquation(Equation):
         only_member = Member(mechanism, 0.0, 0.0, 0.0)
         self._members = (only_member,) if mechanism.arrangement is None else member_machines(mechanism)
         self._equations = [
-            [
-                CrankEquation(half, self._linkage)
-                for half in (machines_of_both_turns(member.mechanism) if turns > 1 else (member.mechanism,))
-            ]
+            [CrankEquation(half, self._linkage) for half in machines_of_turns(member.mechanism)]
             for member in self._members
         ]
         ends = np.asarray(self._linkage.dead_centre_angles)

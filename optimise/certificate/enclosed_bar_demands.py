@@ -23,7 +23,7 @@ from ...model.machine.cylinder_machines import single_cylinder
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Raw
-from ...model.machine.two_turn_machine import cycle_turns, machines_of_both_turns
+from ...model.machine.two_turn_machine import machines_of_turns
 from ...model.signals.signals import Signal
 from ...model.strength.section_forces import ROD, stress_along, stress_at_length_fraction
 from ...model.strength.stress_cycle import stress_peaks
@@ -35,13 +35,17 @@ from .enclosure import Enclosure, join_parts
 
 
 class StressCurve(CycleCurve):
-    """Greatest p sigma - q sigma at a location over one turn of a machine; `stress_cycle` defines it."""
+    """Greatest p sigma - q sigma at a location over the cycle of a single crank; `stress_cycle` defines it.
+
+    In a cycle of two turns, the stress at a crank angle counts in both: it is part of the cycle in either.
+    """
 
     default_position = (1.0, 1.0, np.pi / 2.0, np.pi / 2.0)
 
     def __init__(self, mechanism: Mechanism, location: StressLocation, criteria: Criteria) -> None:
         super().__init__(mechanism, Signal.CRANK_PIN_FORCE)
         self.location, self.criteria = location, criteria
+        self._curves = [CycleCurve(turn, Signal.CRANK_PIN_FORCE) for turn in machines_of_turns(mechanism)]
 
     def peak_positions(self, designs: Array) -> Array:
         """Return each design's critical point (n, 4): fraction of the length, side, and both crank angles, rad."""
@@ -56,11 +60,11 @@ class StressCurve(CycleCurve):
             return self._stress((sine, cosine, m, d, f), parameter_lookup(self.mechanism, numbers), share, side), 0.0
 
         def stresses(angles: Array) -> list[Enclosure]:
-            near_steps = self.angles_around_load_steps(numbers, angles, middle)
             return [
                 stress
-                for at in near_steps
-                for stress, _ in self.sum_over_cylinders(numbers, at, middle, stress_component)
+                for curve in self._curves
+                for at in curve.angles_around_load_steps(numbers, angles, middle)
+                for stress, _ in curve.sum_over_cylinders(numbers, at, middle, stress_component)
             ]
 
         highs = stresses(first) if any(p for p, _ in self.criteria) else []
@@ -123,7 +127,6 @@ class DemandCurve:
 def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
     """Return the curves whose greatest or least value is the quantity."""
     single = single_cylinder(mechanism)
-    turns = machines_of_both_turns(single) if cycle_turns(single) > 1 else (single,)
     curves: list[DemandCurve] = []
     for demand in quantity.section_loads(mechanism):
         peaks: list[CycleCurve]
@@ -131,6 +134,6 @@ def demand_curves(mechanism: Mechanism, quantity: BarPeak) -> list[DemandCurve]:
             signal = FORCE[demand.peak]
             peaks = [CycleCurve(machine, signal) for machine in machines_with_separate_peaks(mechanism, signal)]
         else:
-            peaks = [StressCurve(turn, demand.peak, quantity.criteria(mechanism)) for turn in turns]
+            peaks = [StressCurve(single, demand.peak, quantity.criteria(mechanism))]
         curves += [DemandCurve(peak, demand, least=quantity.least) for peak in peaks]
     return curves

@@ -28,7 +28,7 @@ from ...model.machine.arrangement import Arrangement
 from ...model.machine.cylinder_machines import Member, cylinder_machines, is_treated_as_shaft, single_cylinder
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import TURN, cycle_turns, machines_of_both_turns
+from ...model.machine.two_turn_machine import TURN, machines_of_turns
 from ...model.signals.fast_torque_and_error import is_supported, screened_maxima
 from ...model.signals.peaks import find_peaks
 from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_motion
@@ -50,7 +50,7 @@ def machines_with_separate_peaks(mechanism: Mechanism, kind: Signal) -> tuple[Me
     does not add up over the cylinders.
     """
     if not is_treated_as_shaft(mechanism):
-        return machines_of_both_turns(mechanism) if kind.needs_forces and cycle_turns(mechanism) > 1 else (mechanism,)
+        return machines_of_turns(mechanism) if kind.needs_forces else (mechanism,)
     alike = equivalent_single_cranks(mechanism, kind)
     every = mechanism.arrangement
     if alike:
@@ -80,11 +80,8 @@ class CycleCurve:
     def __init__(self, mechanism: Mechanism, kind: Signal, *, during: str = "cycle") -> None:
         self.kind, self.during, self.mechanism = kind, during, mechanism
         single = single_cylinder(mechanism)
-        self.turns = cycle_turns(single) if self.kind.needs_forces else 1
-        self.machines = [
-            BoxMachine(half, *signal_inputs(half, self.kind))
-            for half in (machines_of_both_turns(single) if self.turns > 1 else (single,))
-        ]
+        of_turns = machines_of_turns(single) if self.kind.needs_forces else (single,)
+        self.machines = [BoxMachine(machine, *signal_inputs(machine, self.kind)) for machine in of_turns]
         self.members = (
             cylinder_machines(mechanism) if is_treated_as_shaft(mechanism) else (Member(single, 0.0, 0.0, 0.0),)
         )
@@ -206,7 +203,7 @@ class CycleCurve:
                 self._force_components(machine, d, block, place, outward, read)
                 for machine, (_, block) in zip(self.machines, designs, strict=True)
             ]
-            if self.turns == 1 or len(vectors) == 1:
+            if len(vectors) == 1:
                 return vectors[0]
             first, known = self._turn_masks(d, local)
             x, y = (select_by_mask(first, *pair) for pair in zip(*vectors, strict=True))

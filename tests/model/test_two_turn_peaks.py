@@ -18,7 +18,7 @@ from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.two_turn_machine import machines_of_both_turns
+from slidercrank.model.machine.two_turn_machine import machines_of_turns
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks
@@ -73,8 +73,8 @@ def test_peaks_and_means_are_those_of_both_turns(seed: int) -> None:
     machine, _, designs = random_case(seed)
     peaks = find_peaks(machine, Signal.TORQUE, designs)
     averages = torque_averages(machine, designs)
-    ends = [torque_averages(half, designs) for half in machines_of_both_turns(machine)]
-    tops = [find_peaks(half, Signal.TORQUE, designs).values[:, 0] for half in machines_of_both_turns(machine)]
+    ends = [torque_averages(half, designs) for half in machines_of_turns(machine)]
+    tops = [find_peaks(half, Signal.TORQUE, designs).values[:, 0] for half in machines_of_turns(machine)]
     assert peaks.values[:, 0] == pytest.approx(np.maximum(*tops), rel=1e-15)
     assert averages.mean == pytest.approx(0.5 * (ends[0].mean + ends[1].mean), rel=1e-12, abs=1e-12)
     for n, (crank, rod, offset) in enumerate(designs):

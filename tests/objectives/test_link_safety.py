@@ -11,6 +11,7 @@ from scipy.linalg import eigh_tridiagonal
 
 from slidercrank.model.cycle.cycle import breakpoints
 from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.strength import Criterion
@@ -41,16 +42,20 @@ def rainflow(history: Array) -> list[tuple[float, float]]:
     return [*found, (0.5 * (greatest - least), 0.5 * (greatest + least))]
 
 
-@pytest.mark.parametrize("criterion", ["goodman", "soderberg"])
-def test_fatigue_is_that_of_the_worst_cycle_that_rainflow_counts(criterion: Criterion) -> None:
+@pytest.mark.parametrize(("criterion", "turns"), [("goodman", 1), ("soderberg", 1), ("goodman", 2)])
+def test_fatigue_is_that_of_the_worst_cycle_that_rainflow_counts(criterion: Criterion, turns: int) -> None:
     random = np.random.default_rng(71)
     shares = np.linspace(0.0, 1.0, 65)
     for design in random_designs(8, seed=72, least_margin=5e-2):
         machine = random_bars(random)
+        if turns == 2:
+            angles, forces = np.sort(random.uniform(0.0, 4.0 * np.pi, 9)), random.normal(0.0, 1500.0, 9)
+            table = AngleTable(angles=tuple(angles.tolist()), forces=tuple(forces.tolist()), cycle="720 deg")
+            machine = replace(machine, loads=(table,))
         machine = replace(machine, strength=replace(STRENGTH, criterion=criterion))
         linkage = linkage_with(machine, design)
         cuts = breakpoints(machine, linkage)
-        theta = np.sort(np.concatenate([np.arange(720) * (np.pi / 360.0), cuts - 1e-9, cuts + 1e-9]))
+        theta = np.sort(np.concatenate([np.arange(720 * turns) * (np.pi / 360.0), cuts - 1e-9, cuts + 1e-9]))
         steady = STEEL.ultimate_strength if criterion == "goodman" else STEEL.yield_strength
         used = 0.0
         for part in ("rod", "crank"):
