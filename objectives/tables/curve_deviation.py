@@ -1,9 +1,9 @@
 """Deviation of measured curves from the computed curves of one design, and the best-fit shifts.
 
 The shifts of the crank angle and of the value minimise the sum of squared residuals. The value shift has a closed form:
-minus the mean residual. The angle shift is found on a grid over the whole turn, then by golden sections around the
-lowest points. For this search alone, a large number of samples is first averaged in groups of neighbouring crank
-angles.
+minus the mean residual. The angle shift is found on a grid over the whole cycle, of one turn or two, then by golden
+sections around the lowest points. For this search alone, a large number of samples is first averaged in groups of
+neighbouring crank angles.
 """
 
 from __future__ import annotations
@@ -16,14 +16,13 @@ import numpy as np
 
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import require_one_turn
+from ...model.machine.two_turn_machine import TURN, cycle_turns
 from ..kinds import Kind
 from ..quantity import Array
 from .curve_extremes import defined_curves, golden_section_maxima
 
-_TURN = 2.0 * math.pi
-_SHIFTS = 1440  # of the grid
-_NODES = 2880  # samples of the computed curve from which the grid interpolates
+_SHIFTS = 1440  # of the grid, per turn
+_NODES = 2880  # samples per turn of the computed curve from which the grid interpolates
 _GROUPS = 2048  # a group then spans 0.2 deg if samples are evenly spaced
 _CANDIDATES = 6
 _SECTIONS = 40  # to 1e-10 rad
@@ -36,8 +35,8 @@ _EQUAL = 1e-9  # relative: among shifts that fit within this of each other, the 
 class Fit:
     """Shifts that bring measured samples closest to the computed curve, by least squares; SI.
 
-    crank_angle: shift added to the measured crank angles, rad in (-pi, pi]. value: shift added to the measured values.
-    rms: root mean square of the remaining deviation.
+    crank_angle: shift added to the measured crank angles, rad, at most half a cycle. value: shift added to the measured
+    values. rms: root mean square of the remaining deviation.
     """
 
     crank_angle: float
@@ -50,7 +49,7 @@ class Deviation:
     """Deviation, measured minus computed, of one curve; SI, NaN where friction leaves the curve undetermined.
 
     count: number of samples. rms: root mean square. largest: deviation of largest magnitude, with its sign.
-    crank_angle, sample: its crank angle, rad in [0, 2 pi), and sample. fit: best shifts; None for samples at fewer than
+    crank_angle, sample: its crank angle in the cycle, rad, and sample. fit: best shifts; None for samples at fewer than
     three crank angles, and for a curve that is constant or somewhere undetermined.
     """
 
@@ -75,10 +74,10 @@ def deviations(
     `defined_curves`, SI; NaN where nothing was measured, but not everywhere. Raises the same errors as
     `defined_curves`.
     """
-    require_one_turn(mechanism, "the comparison with measured curves")
-    theta = np.mod(crank_angle, _TURN)
+    period = TURN * cycle_turns(mechanism)
+    theta = np.mod(crank_angle, period)
     computed = {curve.name: curve for curve in defined_curves(mechanism, linkage, theta)}
-    nodes = np.linspace(0.0, _TURN, _NODES + 1)
+    nodes = np.linspace(0.0, period, _NODES * cycle_turns(mechanism) + 1)
     table = {curve.name: curve.values for curve in defined_curves(mechanism, linkage, nodes)}
     results = []
     for name, samples in measured.items():
@@ -108,14 +107,15 @@ def _rms(values: Array) -> float:
 def _best_shifts(
     mechanism: Mechanism, linkage: Linkage, name: str, angles: Array, values: Array, nodes: Array, table: Array
 ) -> Fit | None:
-    """Return the best shifts. nodes, table: crank angles over a turn and the computed curve at these angles."""
+    """Return the best shifts. nodes, table: crank angles over the cycle and the computed curve at these angles."""
+    period, shift_count = float(nodes[-1]), _SHIFTS * cycle_turns(mechanism)
     varies = float(np.ptp(table)) > _CONSTANT * float(np.abs(table).max())  # and is not NaN
-    if not varies or not _has_three_angles(angles):
+    if not varies or not _has_three_angles(angles, period):
         return None
     theta, means, weights = _group_neighbours(angles, values)
 
     def computed(at: Array) -> Array:
-        return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, _TURN)) if c.name == name)
+        return next(c.values for c in defined_curves(mechanism, linkage, np.mod(at, period)) if c.name == name)
 
     def remaining_variance(curve: Array) -> Array:
         """Return the weighted variance of the residuals, for curves (k, groups)."""
@@ -128,11 +128,11 @@ def _best_shifts(
         every = theta[None, :] + shifts[:, None]
         return -remaining_variance(computed(every.ravel()).reshape(every.shape))
 
-    step = _TURN / _SHIFTS
-    grid: Array = step * np.arange(_SHIFTS, dtype=np.float64)
+    step = period / shift_count
+    grid: Array = step * np.arange(shift_count, dtype=np.float64)
     coarse = np.concatenate(
         [
-            remaining_variance(np.interp(np.mod(theta + part[:, None], _TURN), nodes, table))
+            remaining_variance(np.interp(np.mod(theta + part[:, None], period), nodes, table))
             for part in np.split(grid, 8)
         ]
     )
@@ -141,7 +141,7 @@ def _best_shifts(
     best, shifts = golden_section_maxima(at_shifts, grid[lowest] - step, grid[lowest] + step, _SECTIONS)
     # Also try no shift: it is as good as others if a curve is piecewise constant.
     best, shifts = np.append(best, at_shifts(np.zeros(1))), np.append(shifts, 0.0)
-    shifts = math.pi - np.mod(math.pi - shifts, _TURN)  # in (-pi, pi]
+    shifts = 0.5 * period - np.mod(0.5 * period - shifts, period)  # at most half a cycle
     size = float(np.abs(means).max())
     good = np.flatnonzero(best >= best.max() * (1.0 + _EQUAL) - (_CONSTANT * size) ** 2)
     shift = float(shifts[good[np.argmin(np.abs(shifts[good]))]])
@@ -149,12 +149,12 @@ def _best_shifts(
     return Fit(shift, 0.0 - float(off.mean()), _rms(off - off.mean()))
 
 
-def _has_three_angles(angles: Array) -> bool:
+def _has_three_angles(angles: Array, period: float) -> bool:
     """Return whether there are three distinct crank angles, one more than there are shifts."""
     ordered = np.sort(angles)
     for _ in range(2):
         first = ordered[0]
-        ordered = ordered[(ordered >= first + _SAME_ANGLE) & (ordered <= angles.min() + _TURN - _SAME_ANGLE)]
+        ordered = ordered[(ordered >= first + _SAME_ANGLE) & (ordered <= angles.min() + period - _SAME_ANGLE)]
         if not len(ordered):
             return False
     return True

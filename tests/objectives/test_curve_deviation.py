@@ -10,7 +10,9 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
+from slidercrank.model.machine.two_turn_machine import cycle_turns
 from slidercrank.objectives.quantity import Array
 from slidercrank.objectives.tables.curve_deviation import Deviation, deviations
 from slidercrank.objectives.tables.curve_extremes import defined_curves
@@ -22,7 +24,7 @@ MOVING = Mechanism(speed=12.0)
 
 
 def computed(mechanism: Mechanism, linkage: Linkage, angles: Array) -> dict[str, Array]:
-    turned = np.mod(angles, 2.0 * math.pi)
+    turned = np.mod(angles, 2.0 * math.pi * cycle_turns(mechanism))
     return {curve.name: curve.values for curve in defined_curves(mechanism, linkage, turned)}
 
 
@@ -48,6 +50,29 @@ def test_known_shifts_of_random_machines_are_recovered() -> None:
             assert abs(off) < 1e-6, (found.name, off)
             assert found.fit.value == pytest.approx(0.1 * size, rel=1e-5)
             assert found.fit.rms < 1e-6 * size
+
+
+def test_a_cycle_of_two_turns_is_shifted_by_up_to_a_whole_turn() -> None:
+    """Forces tell the turns apart, so that a shift is determined within the cycle; the position repeats every turn."""
+    random = np.random.default_rng(47)
+    for design in random_designs(3, seed=47, least_margin=0.05):
+        knots = np.linspace(0.2, 12.4, 9)
+        table = AngleTable(
+            angles=tuple(knots.tolist()), forces=tuple(random.normal(0.0, 900.0, 9).tolist()), cycle="720 deg"
+        )
+        machine = replace(SMOOTH, acceleration=0.0, loads=(table,))
+        linkage, shift = linkage_of(design, machine.branch), random.uniform(math.pi, 2.0 * math.pi)
+        angles = random.uniform(0.0, 30.0, 300)
+        true = computed(machine, linkage, angles + shift)
+        load, position = deviations(
+            machine, linkage, angles, {name: true[name] for name in ("load", "slider_position")}
+        )
+        assert load.fit is not None
+        assert position.fit is not None
+        assert load.fit.crank_angle == pytest.approx(shift, abs=1e-6)
+        assert load.fit.rms < 1e-6 * np.abs(true["load"]).max()
+        assert position.fit.crank_angle == pytest.approx(shift - 2.0 * math.pi, abs=1e-6)
+        assert 0.0 <= load.crank_angle < 4.0 * math.pi
 
 
 def test_a_deviation_is_measured_minus_computed_at_every_sample() -> None:
