@@ -53,15 +53,15 @@ class LeverQuantity(SwingQuantity):
         if not swing.of_lever:
             return (
                 "it needs a lever moved by a cylinder that turns; got a slider-crank; set [mechanism] "
-                'inversion = "turning cylinder", or leave it out'
+                'inversion = "turning cylinder", or leave the quantity out'
             )
         if swing.driver not in self.moved_by:
             if swing.of_full_turn:
                 return (
                     "it needs a lever that its cylinder swings; got a crank that rotates fully; add [motion] "
-                    'kind = "swing" with from and to, or leave it out'
+                    'kind = "swing" with from and to, or leave the quantity out'
                 )
-            return "it needs a crank that rotates fully; got a swing of the lever; leave out [motion], or leave it out"
+            return "it needs a crank that rotates fully; got a swing of the lever; leave out [motion], or the quantity"
         if self.timed and swing.duration is None:
             return "it needs a swing with a duration; got a slow one; give [motion] a law and a duration"
         return None

@@ -10,6 +10,7 @@ from typing import Any
 from ..model.machine.design import link_properties
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
+from ..model.machine.raw_numbers_of_designs import LEVER, LEVER_MASSES
 from .greatest_of_formulas import GreatestOfFormulas
 from .kinds import MASS
 from .machine_needs import CRANK_MASS as CRANK_WEIGHS
@@ -64,13 +65,18 @@ ROD_MASS = _mass(
     picture="rod",
     needs=(ROD_WEIGHS,),
 )
+
+
+def _moving_mass(number: Number) -> Any:
+    bars = _crank_mass(number) + _rod_mass(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
+    return bars + sum(number(LEVER[name]) for name in LEVER_MASSES)
+
+
 MOVING_MASS = _mass(
     name="moving_mass",
-    closed_form=lambda number: (
-        _crank_mass(number) + _rod_mass(number) + number(Raw.COUNTERWEIGHT_MASS) + number(Raw.SLIDER_MASS)
-    ),
+    closed_form=_moving_mass,
     place=434,
-    sentence="The mass of all moving links: crank, counterweight, rod and slider; for a lever, without its cylinder.",
+    sentence="The mass of all moving links: crank, counterweight, rod, slider; cylinder, arm and ram of a lever.",
     advice="With variable sections it trades off against their safety; it also affects forces and torque.",
     formula="m_crank + m_counterweight + m_rod + m_slider",
     picture="inertia",

@@ -49,6 +49,11 @@ def _has_friction(machine: Mechanism) -> bool:
     return machine.with_largest_variables.friction.acts
 
 
+def _has_mass(machine: Mechanism) -> bool:
+    lever = machine.lever
+    return crank_has_mass(machine) or has_rod_or_slider_mass(machine) or (lever is not None and lever.has_masses)
+
+
 _defining = partial(Need, consequence="undefined")
 _MASSES = 'it needs masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
@@ -77,12 +82,7 @@ MOTION = _defining(
     _SPEED,
 )
 """A crank that turns or is about to turn."""
-MASSES = Need(
-    lambda machine: (
-        crank_has_mass(machine.with_largest_variables) or has_rod_or_slider_mass(machine.with_largest_variables)
-    ),
-    _MASSES,
-)
+MASSES = Need(lambda machine: _has_mass(machine.with_largest_variables), _MASSES)
 SWINGING_MASSES = Need(
     lambda machine: (
         has_rod_or_slider_mass(machine.with_largest_variables) or machine.with_largest_variables.acceleration != 0.0

@@ -9,6 +9,9 @@ from ..machine.crank_load_checks import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 
+SEE_DESIGNS = "see quantities with `slidercrank front RUN --design 1` and curves with `slidercrank export`"
+"""Remedy for an analysis of a slider-crank that got another machine."""
+
 
 def require_single_rotating_linkage(mechanism: Mechanism, linkage: Linkage) -> Linkage:
     """Return one fully rotating linkage, with dimensions as floats.
@@ -44,6 +47,6 @@ def require_slider(mechanism: Mechanism) -> None:
     """Raise `InputError` for a lever moved by a cylinder that turns, for an analysis of a slider-crank."""
     if mechanism.lever is not None:
         raise InputError(
-            'this needs a crank with rod and slider; got inversion = "turning cylinder", which has neither; ask for '
-            "quantities of the lever, or use `slidercrank lever`"
+            'this needs a crank with rod and slider; got inversion = "turning cylinder", which has neither; '
+            f"{SEE_DESIGNS}"
         )

@@ -34,6 +34,12 @@ class Lever:
         require_field_types(self, parts, "tables of a job state them")
 
     @property
+    def has_masses(self) -> bool:
+        """Whether the cylinder or the arm has a mass."""
+        cylinder, arm = self.cylinder, self.arm
+        return any((cylinder.barrel_mass, cylinder.piston_rod_mass, arm.mass, arm.ram_mass))
+
+    @property
     def texts(self) -> list[str]:
         """Sentences on frame and cylinder."""
         pin = f", pin {math.degrees(self.pin_angle):.6g} deg from the crank's line" if self.pin_angle else ""

@@ -16,6 +16,8 @@ from .mounting import Mounting
 
 STEEL = 210e9
 """Modulus of elasticity of steel, Pa."""
+_ROUNDING = 1e-8
+"""Fraction by which a design that uses a whole limit may exceed it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,13 +128,14 @@ class Cylinder:
         if known is None:
             return
         closed_length, open_length = known[0], sum(known)
-        if shortest < closed_length:
+        rounding = _ROUNDING * closed_length
+        if shortest < closed_length - rounding:
             raise InputError(
                 "the swing must not need a cylinder shorter than its closed length; got a closed length of "
                 f"{1e3 * closed_length:.6g} mm, and the swing needs {1e3 * shortest:.6g} mm, "
                 f"{1e3 * (closed_length - shortest):.6g} mm less; {remedy}"
             )
-        if self.stroke is not None and longest > open_length:
+        if self.stroke is not None and longest > open_length + rounding:
             raise InputError(
                 "the swing must not need a cylinder longer than closed length plus stroke; got "
                 f"{1e3 * open_length:.6g} mm, and the swing needs {1e3 * longest:.6g} mm, "
@@ -149,7 +152,7 @@ class Cylinder:
         if needed is None or self.supply_pressure is None:
             return
         for way, pressure, force in zip(("push", "pull"), needed, (push, pull), strict=True):
-            if pressure > self.supply_pressure:
+            if pressure > self.supply_pressure * (1.0 + _ROUNDING):
                 raise InputError(
                     f"the supply pressure must hold the lever: a {way} of {force:.6g} N needs "
                     f"{_rounded_up(1e-5 * pressure):.5g} bar; got {1e-5 * self.supply_pressure:.6g} bar; raise it, "
@@ -158,7 +161,7 @@ class Cylinder:
 
     def require_stiffness(self, margin: float, length: float) -> None:
         """Raise `InputError` for a margin against buckling below 1, which occurs at a length, m."""
-        if self.rod is None or margin >= 1.0:
+        if self.rod is None or margin >= 1.0 - _ROUNDING:
             return
         needed = _rounded_up(1e3 * self.rod * margin**-0.25)
         raise InputError(

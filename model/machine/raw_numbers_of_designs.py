@@ -24,7 +24,7 @@ from .loads.registry import load_classes
 from .mechanism import Mechanism
 from .memoise import memoise_by_batch, memoise_by_machine
 from .raw_machine_vector import LOAD_SLOTS, Raw, raw_vector
-from .varying_numbers import Varying
+from .varying_numbers import Varying, number_at
 
 _LINK = {
     "width": (0, "m"),
@@ -92,6 +92,8 @@ _LEVER = {
 }
 LEVER = {name: 10**8 + 5 + len(_DRIVE) + place for place, name in enumerate(_LEVER)}
 """Slots of a lever, its cylinder and its arm, which read their own."""
+LEVER_MASSES = tuple(name for name in LEVER if name.endswith("mass"))
+"""Masses of a lever's cylinder and arm."""
 SPRING = tuple(
     f"spring.{name}" for name in ("frame", "frame_angle", "lever", "pin_angle", "force", "length", "stiffness")
 )
@@ -182,7 +184,7 @@ def evaluate_formula_of_raw_numbers(
     """Return a formula for designs (n, 3 + k): values (n,) and complex-step derivatives (n, 3 + k).
 
     formula: smooth formula that accepts real or complex numbers. Its argument is a function that returns the raw number
-    at a slot (`Raw`, `PINS`, `DRIVE`), (n,) or one for all designs.
+    at a slot (`Raw`, `PINS`, `DRIVE`, `LEVER`), (n,) or one for all designs.
     """
     numbers = raw_machine_numbers(mechanism, designs, slot_count=10**9, gradients=gradients)
     set_numbers: dict[int, Any] = dict(zip(numbers.columns.tolist(), numbers.values.T, strict=True))
@@ -205,11 +207,14 @@ def evaluate_formula_of_raw_numbers(
 
 
 def nominal_raw_number(mechanism: Mechanism, slot: int) -> float:
-    """Return the raw number at a slot (`Raw`, `PINS`, `DRIVE`) that designs do not set."""
-    for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE)):
+    """Return the raw number at a slot (`Raw`, `PINS`, `DRIVE`, `LEVER`) that designs do not set."""
+    if mechanism.lever is None and slot in LEVER.values():
+        return 0.0
+    for owner, slots in ((mechanism.strength, PINS), (mechanism.drive, DRIVE), (mechanism.lever, LEVER)):
         for name, place in slots.items():
             if place == slot:
-                return float(getattr(owner, name))
+                number: Any = number_at(owner, name)
+                return float(number)
     return float(_nominal_numbers(mechanism)[slot])
 
 

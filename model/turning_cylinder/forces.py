@@ -73,7 +73,10 @@ class UniformBar:
 
 @dataclass(frozen=True, kw_only=True)
 class LeverMachine:
-    """Masses of a lever and its cylinder, gravity along x and y, m/s^2, and a spring on the lever."""
+    """Masses of a lever and its cylinder, gravity along x and y, m/s^2, and a spring on the lever.
+
+    ram: distance of the pin in a ram from A along the line, m; 0 without one.
+    """
 
     sizes: TurningCylinder
     lever: LeverBody = LeverBody()
@@ -81,6 +84,7 @@ class LeverMachine:
     piston_rod: UniformBar = UniformBar()
     gravity: tuple[float, float] = (0.0, -9.81)
     spring: LeverSpring | None = None
+    ram: float = 0.0
 
     def __post_init__(self) -> None:
         require_all_finite("gravity", self.gravity)
@@ -158,6 +162,7 @@ def numbers_of_machine(
         *(cylinder.areas or (math.nan, math.nan)),
         math.nan if cylinder.supply_pressure is None else cylinder.supply_pressure,
         math.nan if cylinder.rod is None else buckling_number(cylinder.rod, cylinder.modulus),
+        ram=machine.ram,
     )
     spring = machine.spring
     return numbers if spring is None else numbers._replace(**{f"spring_{name}": x for name, x in vars(spring).items()})

@@ -81,6 +81,7 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
         piston_rod=UniformBar(mass=cylinder.piston_rod_mass, length=length),
         gravity=mechanism.gravity,
         spring=mechanism.lever.spring,
+        ram=mechanism.lever.arm.ram or 0.0,
     )
     errors = (float(design.crank_error), float(design.rod_error), float(design.offset_error), cylinder.length_tolerance)
     return machine, DimensionErrors(*errors)

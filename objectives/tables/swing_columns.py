@@ -45,16 +45,16 @@ def reason_undefined_for_swing(name: str, swing: Swing | None) -> str | None:
         if isinstance(fact, LeverQuantity) and "cylinder" not in fact.moved_by:
             return (
                 "needs a crank that turns a cylinder or an arm; got a crank with rod and slider; set [mechanism] "
-                'inversion = "turning cylinder", or leave it out'
+                'inversion = "turning cylinder", or leave the quantity out'
             )
         if isinstance(fact, LeverQuantity):
             return (
                 'needs a lever that swings; this crank rotates fully; set [mechanism] inversion = "turning cylinder" '
-                'and [motion] kind = "swing", or leave it out'
+                'and [motion] kind = "swing", or leave the quantity out'
             )
         return (
             'needs a swinging crank; this crank rotates fully; add [motion] kind = "swing" with from and to, '
-            "or leave it out"
+            "or leave the quantity out"
         )
     return fact.unfit(swing)
 
@@ -173,7 +173,7 @@ def require_swing_quantity(key: str, quantity: Quantity, swing: Swing) -> None:
             needed = 'a crank that rotates fully; got [motion] kind = "swing"; use a quantity of a swing'
             if swing.of_full_turn:
                 needed = "a crank with rod and slider; got a lever; use a quantity of a lever's full turn"
-            raise InputError(f"{key}: {leaf.name} needs {needed} ({names}), or leave it out")
+            raise InputError(f"{key}: {leaf.name} needs {needed} ({names}), or leave the quantity out")
 
 
 def quantities_for_swing(custom: Sequence[Quantity]) -> tuple[Quantity, ...]:

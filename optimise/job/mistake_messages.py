@@ -161,7 +161,10 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
             f"{owners}; {possible}"
         ), ""
     owner = where_key_belongs(str(key), schema)
-    near = None if owner else closest_word(str(key), allowed)
+    longer = [name for name in allowed if "_" in str(key) and name.endswith(f"_{key}")]
+    near = next(iter(longer), None) if "[objectives]" in owner else None
+    owner = "" if near else owner
+    near = near or (None if owner else closest_word(str(key), allowed))
     subject, suggestion = f"key {quote(str(key))}", near
     if not table and isinstance(value, Mapping | list):
         subject, suggestion = f"heading [{place}]", next(iter(headings_with_keys([near or ""], schema)), near)

@@ -41,7 +41,7 @@ CrankAngle = Annotated[
         ge=-360.0,
         le=360.0,
         allow_inf_nan=False,
-        description="crank angle of the drawing; 60 deg if left out, the middle of a swing",
+        description="crank angle of the drawing; default: 60 deg, the middle of a swing; an arm: 90 deg to the frame",
         examples=[60.0],
     ),
 ]

@@ -127,7 +127,9 @@ def export(
     choice: Choice,
     of_design: DesignFiles,
     selection: TableSelection,
-    at: Annotated[Angle, 'Crank angle of the drawing. [default: "60 deg", or the middle of a swing]'] = None,
+    at: Annotated[
+        Angle, 'Crank angle of the drawing. [default: "60 deg", or the middle of a swing; an arm: 90 deg to the frame]'
+    ] = None,
     runs: Runs = None,
     units: Units = "metric",
 ) -> None:

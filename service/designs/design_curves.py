@@ -219,9 +219,9 @@ def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) ->
     """Return key, title, unit and metric values of each curve of a turning arm at crank angles, rad."""
     found, speed = crank_turn(mechanism, linkage, angles), mechanism.speed
     columns = [
-        ("lever_angle_deg", "crank angle", "deg", np.degrees(angles)),
+        ("crank_angle_deg", "crank angle", "deg", np.degrees(angles)),
         ("length_mm", "length along the arm", "mm", 1e3 * found.length),
-        ("cylinder_angle_deg", "arm angle", "deg", np.degrees(np.unwrap(np.arctan2(found.line[1], found.line[0])))),
+        ("arm_angle_deg", "arm angle", "deg", np.degrees(np.unwrap(np.arctan2(found.line[1], found.line[0])))),
         ("arm_speed_ratio", "arm speed over crank speed", "", found.turn_1),
         ("arm_acceleration_ratio", "arm acceleration over squared crank speed", "", found.turn_2),
         ("torque_Nm", "torque on the crank", "N m", found.torque),

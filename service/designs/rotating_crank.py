@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
+from ...model.linkage.require_single_linkage import SEE_DESIGNS
 
 if TYPE_CHECKING:
     from ...model.swing.swing import Swing
@@ -14,8 +15,8 @@ def require_rotating_crank(swing: Swing | None, subject: str) -> None:
     """Raise an error for a swinging crank. subject: analysis over a full revolution, the subject of the message."""
     if swing is not None and swing.of_full_turn:
         raise InputError(
-            f"{subject} needs a crank with rod and slider; the crank of this job turns a cylinder or an arm; see its "
-            "quantities and curves"
+            f"{subject} needs a crank with rod and slider; the crank of this job turns a cylinder or an arm; "
+            f"{SEE_DESIGNS}"
         )
     if swing is not None:
         crank, command = ("lever", "lever") if swing.driver == "cylinder" else ("crank", "swing")

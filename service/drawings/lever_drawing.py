@@ -12,7 +12,7 @@ from ...objectives.kinds import System, metric_unit_in
 from ..designs.length_with_tolerance import tolerances_of
 from . import layers as on
 from .dimensions import Lettering, aligned_dimension
-from .lever_parts import lever_extent, lever_shapes
+from .lever_parts import lever_extent, lever_shapes, usual_angle
 from .shapes import Drawing, Line, Point, Shape
 from .titles import TEXT, TRUE_SCALE, with_title
 
@@ -30,8 +30,8 @@ def lever_drawing(
     """Return one lever with its cylinder at true scale, mm: the lever's pivot at (0, 0).
 
     Pivots, pins, both ends of the swing and dimensions are exact. crank_angle: lever angle of the drawing, rad, within
-    the swing, or any in a full turn; half-way if None. name, design: as for `design_drawing.linkage_drawing`. Raises
-    `InputError` for an angle outside, and the errors of `lever_linkage`.
+    the swing, or any in a full turn; `usual_angle` if None. name, design: as for `design_drawing.linkage_drawing`.
+    Raises `InputError` for an angle outside, and the errors of `lever_linkage`.
     """
     machine, _ = lever_machine(mechanism, linkage, swing)
     placed = lever_swing(mechanism, linkage, swing)
@@ -47,7 +47,7 @@ def lever_drawing(
 
 def _angle_in_swing(swing: LeverSwing, angle: float | None) -> float:
     if angle is None:
-        return 0.5 * (swing.start + swing.end)
+        return usual_angle(swing)
     if swing.of_full_turn:
         return angle
     low, high = sorted((swing.start, swing.end))

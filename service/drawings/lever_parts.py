@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Extent = tuple[float, float, float, float]
 _MM = 1e3
 _LEVER, _BARREL, _ROD, _PIN = 0.06, 0.075, 0.03, 0.014  # fraction of the greater of crank and frame
+_HALF_RAM = 0.25  # half the length of a ram, as a fraction of the same
 _NECK = 0.93  # length of the barrel as a fraction of the shortest length
 
 
@@ -59,7 +60,7 @@ def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shap
     foot, pin = 1j * machine.sizes.offset, machine.sizes.crank * complex(np.exp(1j * machine.sizes.pin_angle))
     lengths = [float(machine.sizes.length(end)) for end in (swing.start, swing.end)]
     longest = machine.sizes.length_range[1] if swing.of_full_turn else max(lengths)
-    end = longest / _NECK if swing.of_full_turn else barrel
+    end = max(longest, machine.ram) / _NECK if swing.of_full_turn else barrel
     circle: list[Shape] = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
     rod: Shape = circle[0] if swing.of_full_turn else _strip(on.ROD, complex(barrel - longest), 0j, _ROD * size)
     lug = [Line(on.ACTUATOR, (0.0, 0.0), _point(foot))] if foot else []
@@ -111,9 +112,13 @@ def extent_of_levers(c: LeverNumbers, *, of_full_turn: bool = False) -> Extent:
     mass = np.where(c.lever_mass > 0.0, c.lever_mass, np.inf)
     pivot, pin = c.frame * np.exp(1j * c.frame_angle), c.crank * np.exp(1j * c.pin_angle) * turn
     places = [0.0 * turn, pivot + 0.0 * turn, pin, (c.along + 1j * c.across) / mass * turn]
-    if of_full_turn:  # the end of the slotted arm
-        places.append(pivot + (c.crank + c.frame) / _NECK * (pin - pivot) / np.abs(pin - pivot))
-    every, edge = np.stack(places), 0.12 * np.maximum(c.crank, c.frame)
+    size = np.maximum(c.crank, c.frame)
+    if of_full_turn:  # the end of the slotted arm, and of the ram
+        line, along = (pin - pivot) / np.abs(pin - pivot), np.exp(1j * c.frame_angle)
+        ram = pivot + c.ram * along * (1j * (line / along).imag - 1.0)
+        half = 1j * along * _HALF_RAM * size * (c.ram > 0.0)
+        places += [pivot + np.maximum(c.crank + c.frame, c.ram) / _NECK * line, ram - half, ram + half]
+    every, edge = np.stack(places), 0.12 * size
     x, y = every.real, every.imag
     low, high = (np.min(part - edge) for part in (x, y)), (np.max(part + edge) for part in (x, y))
     left, bottom, right, top = (_MM * float(end) for end in (*low, *high))
@@ -126,16 +131,36 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
     motion = sizes.at(np.array([angle]))
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
+    lug = [Line(layers[0], _point(_pivot(machine)), _point(foot))] if sizes.offset else []
     if swing.of_full_turn:  # a slotted arm, of which the pin never leaves the slot
-        end = foot + sizes.length_range[1] / _NECK * line
+        end = foot + max(sizes.length_range[1], machine.ram) / _NECK * line
         slotted = _strip(layers[0], foot, end, _BARREL * size)
-        return [slotted, bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)]
+        lever = bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)
+        return [slotted, *lug, lever, *_ram(layers[0], machine, line)]
     neck = foot + barrel_length(machine, swing) * line
     return [
+        *lug,
         _strip(layers[1], neck, pin, _ROD * size),
         _strip(layers[0], foot, neck, _BARREL * size),
         bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size),
     ]
+
+
+def _ram(layer: Layer, machine: LeverMachine, line: complex) -> list[Shape]:
+    """Return the ram, which moves at right angles to the frame, and its pin on the line of the arm."""
+    if not machine.ram:
+        return []
+    pivot, size = _pivot(machine), _size(machine)
+    along = pivot / abs(pivot)
+    pin, place = pivot + machine.ram * line, pivot + machine.ram * along * (1j * (line / along).imag - 1.0)
+    half = 1j * along * _HALF_RAM * size / _MM
+    slot, circle = Line(layer, _point(pin), _point(place)), Circle(layer, _point(pin), _PIN * size)
+    return [_strip(layer, place - half, place + half, _BARREL * size), slot, circle]
+
+
+def usual_angle(swing: LeverSwing) -> float:
+    """Return the lever angle of a picture, rad: halfway through the swing, or the crank square to the frame."""
+    return 0.5 * (swing.start + swing.end + (math.pi if swing.of_full_turn else 0.0))
 
 
 def barrel_length(machine: LeverMachine, swing: LeverSwing) -> float:

@@ -20,7 +20,7 @@ from ...objectives.tables.swing_curves import (
     has_position_error,
     motion_and_drive_curves,
 )
-from ..drawings.lever_parts import lever_extent, lever_shapes
+from ..drawings.lever_parts import lever_extent, lever_shapes, usual_angle
 from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
 from ..render.blocks import Value, dimensions_text, joined, words
@@ -175,5 +175,5 @@ def _figure_of_lever(
         columns=2 if len(panels) > 3 else 1,
         width=5.2,
     )
-    shapes = lever_shapes(machine, swing, 0.5 * (swing.start + swing.end))
+    shapes = lever_shapes(machine, swing, usual_angle(swing))
     return figure_below_machine(figure, shapes, lever_extent(machine, swing), system)

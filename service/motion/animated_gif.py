@@ -109,13 +109,13 @@ def _swing_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: S
 def _lever_scene(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System) -> _Scene:
     curves = lever_design_curves(mechanism, linkage, swing, FRAMES)
     placed, (machine, _) = lever_swing(mechanism, linkage, swing), lever_machine(mechanism, linkage, swing)
-    by_key = {column.key: column.values for column in curves.columns}
+    angles, lengths, *_ = (column.values for column in curves.columns)
     frames = [
         (
             moving_lever_shapes(machine, placed, math.radians(angle)),
             f"crank angle {round(angle)}°, cylinder {_length_text(length, system)}",
         )
-        for angle, length in zip(by_key["lever_angle_deg"], by_key["length_mm"], strict=True)
+        for angle, length in zip(angles, lengths, strict=True)
     ]
     extent, ends = lever_extent(machine, placed), "fast stroke" if placed.of_full_turn else "swing"
     size = max(extent[2] - extent[0], extent[3] - extent[1])

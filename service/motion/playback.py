@@ -226,7 +226,7 @@ def lever_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
     """Return the motion of a lever and its cylinder. system: unit system of the summary. Raises as `lever_linkage`."""
     curves = lever_design_curves(mechanism, linkage, swing, ANGLES)
     placed, (machine, _) = lever_swing(mechanism, linkage, swing), lever_machine(mechanism, linkage, swing)
-    by_key = {column.key: column.values for column in curves.columns}
+    angles, _, line_angles, *_ = (column.values for column in curves.columns)
     sizes, extent = machine.sizes, lever_extent(machine, placed)
     base = 1e3 * sizes.frame * math.cos(sizes.frame_angle), 1e3 * sizes.frame * math.sin(sizes.frame_angle)
     start, end = (math.degrees(angle) for angle in (placed.start, placed.end))
@@ -240,8 +240,8 @@ def lever_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
             "pin": math.degrees(sizes.pin_angle),
             "offset": base[1],
             "slider": [base[0]] * ANGLES,
-            "rod": [round(angle, 7) for angle in by_key["cylinder_angle_deg"]],
-            "angles": [round(angle, 9) for angle in by_key["lever_angle_deg"]],
+            "rod": [round(angle, 7) for angle in line_angles],
+            "angles": [round(angle, 9) for angle in angles],
             "direction": 1,
             "perSecond": 1.0 / curves.seconds if curves.seconds else 0.0,
         },

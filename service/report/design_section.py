@@ -5,6 +5,7 @@ from functools import partial
 from typing import get_args
 
 from ...model.errors import InputError
+from ...model.swing.swing import CRANK_TURN
 from ...objectives.column_keys import column_key_in_system
 from ...objectives.kinds import unit_text
 from ...objectives.machine_needs import Consequence
@@ -37,7 +38,7 @@ def design_section(subject: Subject) -> Section:
             *_optimality_blocks(subject),
             Picture(
                 "The design over a turn of the crank"
-                if subject.design.part.motion is None
+                if subject.design.part.motion in (None, CRANK_TURN)
                 else "The design over its swing",
                 partial(
                     datasheet_of, subject.front, subject.number - 1, subject.label, subject.system, subject.changed

@@ -35,6 +35,15 @@ def test_a_job_without_motion_has_a_crank_that_rotates_fully() -> None:
     )
 
 
+def test_the_moving_mass_includes_arm_and_ram() -> None:
+    problem = sc.problem(shaper(variables={"arm.ram_mass": ["30 kg", "50 kg"]}, mechanism={"crank": {"mass": "5 kg"}}))
+    designs = [[0.12, 0.24, 0.0, 30.0], [0.12, 0.24, 0.0, 50.0]]
+    values, gradients = problem.evaluate(designs, ["moving_mass"], gradients=True)
+    assert values[:, 0] == pytest.approx([20.0 + 5.0 + 30.0, 20.0 + 5.0 + 50.0])
+    assert gradients[:, 0].tolist() == [[0.0, 0.0, 0.0, 1.0]] * 2
+    assert sc.problem(shaper(objectives={"moving_mass": "minimise"})).evaluate(designs[0][:3], ["moving_mass"]) == 60.0
+
+
 @pytest.mark.slow
 def test_no_design_of_a_front_is_beaten_by_random_designs() -> None:
     random = np.random.default_rng(71)

@@ -80,6 +80,10 @@ def test_a_spring_of_a_job_unloads_the_cylinder() -> None:
     assert sprung.ask("lever", TIPPER)["peak_push_N"] == pytest.approx(sprung.evaluate(TIPPER, names[:1])[0], rel=1e-9)
     varying = sc.problem(lever(spring=spring, variables={"spring.force": ["200 N", "1200 N"]}))
     assert "spring.force" in varying.ranges
+    assert sc.problem(lever(spring=spring)).ask("lever", TIPPER)["notes"][0] == (
+        "with the spring of the job: pins 500 mm at -90 deg on the frame and 350 mm at 0 deg on the lever, "
+        "900 N at 600 mm"
+    )
     with pytest.raises(JobError, match=r"spring: the pins of a lever's spring must be at different distances"):
         sc.problem(lever(spring=spring | {"lever": "500 mm"}))
 
@@ -257,6 +261,10 @@ def test_a_certificate_says_that_a_lever_has_none() -> None:
         (lever(arm={"torque": "2 N m"}), "arm: is for a crank that rotates fully; got it with a lever that its"),
         (lever(mechanism={"slider": {"mass": "2 kg"}, "rod": {"mass": "1 kg"}}), "got mechanism.rod, mechanism.slider"),
         (lever(load=[{"force": "20 N", "opposes": "motion"}]), r"got \[\[load\]\]; leave it out"),
+        (
+            lever(cylinder={"rod_mass": "3 kg"}),
+            'cylinder.rod_mass: unknown key "rod_mass"; did you mean piston_rod_mass?',
+        ),
         (lever(friction={"guide": 0.1}), r"got \[friction\]; leave it out"),
         (lever(mechanism={"inversion": None}), "mechanism.inversion: "),
         (lever(objectives={"peak_torque": "minimise"}), "peak_torque needs a crank that rotates fully"),

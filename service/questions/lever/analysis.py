@@ -99,7 +99,7 @@ LeverNumbers = Annotated[
             **_record_keys({"push_pressure": PRESSURE, "pull_pressure": PRESSURE}),
             **_record_keys({"extending_flow": VOLUME_FLOW, "retracting_flow": VOLUME_FLOW}),
             **_record_keys({"time_ratio": RATIO, "fitting_lesser": LENGTH, "fitting_greater": LENGTH}),
-            "notes": Annotated[list[str], Note("what is left out or cannot be built, and why")],
+            "notes": Annotated[list[str], Note("what is included, left out or cannot be built")],
         },
     ),
 ]
@@ -178,7 +178,8 @@ def _value_and_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[st
 
 
 def _notes(mechanism: Mechanism, request: LeverRequest, summary: LeverSummary) -> list[str]:
-    notes = []
+    spring = request.machine.spring
+    notes = [] if spring is None else [f"with the spring of the job: {spring.text}"]
     if not summary.single_stage:
         shortest, longest = sorted(1e3 * length for length in summary.lengths)
         notes.append(_TELESCOPIC.format(shortest=shortest, longest=longest))

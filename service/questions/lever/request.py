@@ -8,6 +8,7 @@ from typing import Any
 from ....model.cycle.cycle import derived_design
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
+from ....model.linkage.require_single_linkage import SEE_DESIGNS
 from ....model.machine.design import Design
 from ....model.machine.lever_cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
@@ -50,8 +51,7 @@ def lever_request(
     """
     if swing is not None and swing.of_full_turn:
         raise InputError(
-            "a lever is analysed over a swing that its cylinder drives; got a crank that rotates fully; see the "
-            "quantities and curves of its designs"
+            f"a lever is analysed over a swing that its cylinder drives; got a crank that rotates fully; {SEE_DESIGNS}"
         )
     labels = dict(words or {})
     lever_swing = _swing(mechanism, linkage, swing, labels, inputs)

@@ -164,6 +164,15 @@ def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes:
         summarise(TIPPER, SLOW, Cylinder(**sizes))
 
 
+def test_a_swing_may_use_its_whole_cylinder_within_rounding() -> None:
+    lengths = TIPPER.sizes.length(np.array(LIFT))
+    needed = summarise(TIPPER, SLOW, Cylinder(bore=0.04))
+    assert needed.pressures is not None
+    closed = float(lengths[0]) * (1.0 + 1e-12)
+    cylinder = Cylinder(closed_length=closed, stroke=float(lengths[1]) * (1.0 - 1e-12) - closed, bore=0.04)
+    summarise(TIPPER, SLOW, replace(cylinder, supply_pressure=needed.pressures[0] * (1.0 - 1e-12)))
+
+
 def test_a_dead_length_adds_to_the_stroke_or_to_the_travel() -> None:
     lengths = 0.670740, 1.071435
     known = Cylinder(dead_length=0.2, stroke=0.44)

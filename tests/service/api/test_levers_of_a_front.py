@@ -93,7 +93,7 @@ def test_designs_of_a_crank_that_turns_an_arm_are_answered_or_refused_in_one_sen
                 assert "needs a crank with rod and slider" in answer.json()["detail"], path
             found = client.get(f"{design}/curves", params={"angles": 400}).json()
             curves, numbers = found["curves"], client.get(design).json()["design"]
-            assert curves["lever_angle_deg"][::100] == pytest.approx([0.0, 90.0, 180.0, 270.0])
+            assert curves["crank_angle_deg"][::100] == pytest.approx([0.0, 90.0, 180.0, 270.0])
             assert max(map(abs, curves["torque_Nm"])) == pytest.approx(numbers["peak_crank_torque_Nm"], rel=1e-3)
             assert max(map(abs, curves["ram_speed_m_s"])) == pytest.approx(numbers["peak_ram_speed_m_s"], rel=1e-3)
             assert found["outlines"]["extent_mm"][0] < found["outlines"]["extent_mm"][2]

@@ -53,8 +53,8 @@ export function withResultants({ curves, columns, turns, slider_ends_mm: [inner]
     );
     allColumns.push({ key, title, unit: "N" });
   }
-  if (curves.lever_angle_deg) {
-    more.crank_angle_deg = curves.lever_angle_deg;
+  if (curves.length_mm) {
+    more.crank_angle_deg = curves.lever_angle_deg ?? curves.crank_angle_deg;
     more.slider_position_mm = curves.length_mm;
   }
   if (!turns) return { curves: more, columns: allColumns };
