@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 
 Columns = dict[str, NDArray[Any]]
 _NOTHING = 1e-7  # relative to ranges: smaller gains, and smaller losses per gain, are rounding
-_LEAST = 1e-4  # relative to a range: smallest step worth reporting
+_LEAST = 1e-4  # relative to a range: smallest step and smallest cost worth reporting
 _UNMET = 1e-7  # residual above which there is no solution, for rows of size one
 Status = Literal["done", "cancelled", "infeasible"]
 
@@ -399,9 +399,12 @@ class ParetoFront:
                     factor = self._display_unit(gain, system)[1]
                     step = 10.0 ** np.floor(np.log10(largest * factor)) / factor  # round in the display unit
                     costs = [
-                        self._change_text(self.objectives[a], step * rates[a, b], system, gain=False) for a in payers
+                        self._change_text(self.objectives[a], step * rates[a, b], system, gain=False)
+                        for a in payers
+                        if step * rates[a, b] > _LEAST * ranges[a] * units[a]
                     ]
-                    sentences.append(f"{self._change_text(gain, step, system, gain=True)} costs {' and '.join(costs)}")
+                    cost = " and ".join(costs) or "almost nothing"
+                    sentences.append(f"{self._change_text(gain, step, system, gain=True)} costs {cost}")
         return sentences
 
     def _nothing_to_gain_text(self, objective: Objective) -> str:
@@ -419,7 +422,7 @@ class ParetoFront:
         """Describe a change in an objective; the change is given in the metric unit."""
         quantity = self.problem.quantity(objective.quantity)
         unit, factor = self._display_unit(objective, system)
-        size = f"{amount * factor:.3g} {unit}".strip()
+        size = f"{np.format_float_positional(float(f'{amount * factor:.3g}'), trim='-')} {unit}".strip()
         if objective.sense == "target":
             return f"{quantity.title} {size} {'nearer to' if gain else 'farther from'} its target"
         is_more = (objective.sense == "maximise") == gain

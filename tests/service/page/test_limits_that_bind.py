@@ -48,7 +48,7 @@ def test_a_limit_that_binds_is_widened_and_the_front_before_stays_behind(
     refused = {
         "": "a number in ° is needed",
         "wide": "“wide” is not a valid angle",
-        "45": "must be below 40 deg; got 45",
+        "45": "must be below 40°; got 45",
     }
     for typed, said in refused.items():
         line.get_by_role("textbox").fill(typed)

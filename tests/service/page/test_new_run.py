@@ -173,7 +173,7 @@ WRONG = [
     ("rod, to", "ten", "must be a length"),
     ("stroke, exactly", "9000", "at most"),
     ("time ratio, at most", "0.9", "must be 1 or more"),
-    ("least transmission angle, at least", "95", "must lie between 0 and 90 deg"),
+    ("least transmission angle, at least", "95", "must lie between 0 and 90°"),
     ("crank angle tolerance", "x", "must be an angle"),
     ("designs", "1.5", "must be a whole number"),
     ("crank, to", "2*(75", "is not closed"),

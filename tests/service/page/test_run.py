@@ -184,7 +184,7 @@ def test_a_run_without_a_solution_says_what_contradicts(open_page: Open, store: 
     page = open_page(store, "#/jobs/1")
     expect(page.get_by_role("heading", name="No design meets all requirements")).to_be_visible()
     told = page.get_by_text("caps the transmission angle")
-    expect(told).to_have_text("Time ratio 1.5 caps the transmission angle at 27.46 deg.")
+    expect(told).to_have_text("Time ratio 1.5 caps the transmission angle at 27.46°.")
     expect(page.get_by_role("link", name="Change the job")).to_have_attribute("href", "#/new?from=1")
     require_accessible(page)
 

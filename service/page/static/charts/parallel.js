@@ -43,6 +43,7 @@ import { shadesOf } from "./shades.js";
 
 const MARGIN = 12; // pixels above and below the axes
 const NEAR = 22; // pixels around an axis in which a drag acts on it
+const BELOW = 20; // pixels from the axes to the end of the panel
 const EDGE = 7; // pixels around an end of a limit in which a drag moves it
 const FEW = 500; // maximum number of separate lines; more are drawn as a density
 const [BACK, FRONT, OVER] = [0, 1, 2];
@@ -66,7 +67,10 @@ export function parallel(chart) {
   /** Lay out the axes and the designs on them. */
   function lay() {
     const width = Math.max(1, Math.round(place.clientWidth));
-    const height = Math.max(200, Math.min(360, Math.round(window.innerHeight * 0.42)));
+    place.style.height = "0";
+    const panel = place.closest(".panel")?.getBoundingClientRect().bottom ?? 0;
+    const room = Math.round(panel - place.getBoundingClientRect().top - BELOW); // as high as the panel beside it
+    const height = Math.max(200, Math.min(360, Math.round(window.innerHeight * 0.42)), room);
     const { data } = chart;
     const axes = chart.axes().filter(({ key }) => data.has(key));
     const across = axes.map((_, index) => ((index + 0.5) * width) / Math.max(1, axes.length));

@@ -1,4 +1,4 @@
-/** Field and slider for a length of a linkage. */
+/** Field and slider for a length of a linkage, or another number of a design. */
 
 import { h, markInvalid, numberField, typeInto } from "../lib/dom.js";
 import { inDisplayUnit, text, unitOf, withUnit } from "../lib/numbers.js";
@@ -16,11 +16,18 @@ export const SAME = 1e-9; // relative
 /**
  * Return the controls of a length. set(value): called with a new length, or null for invalid text. ends: range from the job, or only of
  * the slider if `isOfJob` is false. describedBy: id of the element that explains invalid text.
- * @param {keyof Page.Lengths} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
- * @param {{ isOfJob?: boolean, describedBy?: string }} [options]
+ * @template {string} Key @param {Key} key @param {string} title @param {readonly number[]} ends @param {(value: number | null) => void} set
+ * @param {{ isOfJob?: boolean, describedBy?: string, unit?: string }} [options]
  */
-export function lengthRow(key, title, [low, high], set, { isOfJob = true, describedBy = "" } = {}) {
+export function lengthRow(
+  key,
+  title,
+  [low, high],
+  set,
+  { isOfJob = true, describedBy = "", unit = "mm" } = {},
+) {
   const fixed = low === high;
+  const isPositive = key === "crank_mm" || key === "rod_mm";
   const id = `what-if-${key}`;
   const outside = h(
     "span",
@@ -66,19 +73,19 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
 
   /** Return the length in the field, or why it is invalid. @returns {{ value?: number, said?: string | null, wrong?: string }} */
   function typed() {
-    const parsed = parseQuantity(number.value, "mm");
-    if (parsed.value !== undefined && (parsed.value > 0 || key === "offset_mm")) return parsed;
+    const parsed = parseQuantity(number.value, unit);
+    if (parsed.value !== undefined && (parsed.value > 0 || !isPositive)) return parsed;
     return {
       wrong:
         parsed.wrong ??
-        `${title} needs a length${key === "offset_mm" ? "" : " above 0"}${parsed.empty ? "" : `; got ${number.value.trim()}`}.`,
+        `${title} needs a ${unit === "mm" ? "length" : "number"}${isPositive ? " above 0" : ""}${parsed.empty ? "" : `; got ${number.value.trim()}`}.`,
     };
   }
 
   /** Show a length beside its field, and whether it is outside the ranges of the job. @param {number} value */
   function slide(value) {
     slider.value = String(high > low ? (STEPS * (value - low)) / (high - low) : 0);
-    slider.setAttribute("aria-valuetext", withUnit(value, "mm", 5));
+    slider.setAttribute("aria-valuetext", withUnit(value, unit));
     outside.hidden =
       fixed ||
       !isOfJob ||
@@ -88,7 +95,7 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
   /** @param {number} value */
   function show(value) {
     wrong = understood.textContent = "";
-    number.value = String(Number(inDisplayUnit(value, "mm").toPrecision(6)));
+    number.value = String(Number(inDisplayUnit(value, unit).toPrecision(6)));
     markInvalid(number, false, describedBy);
     slide(value);
   }
@@ -101,11 +108,11 @@ export function lengthRow(key, title, [low, high], set, { isOfJob = true, descri
       h("label", { for: id }, title),
       slider,
       number,
-      h("span", { class: "quiet" }, unitOf("mm")),
+      h("span", { class: "quiet" }, unitOf(unit)),
       h(
         "span",
         { class: "quiet ends", hidden: !isOfJob },
-        fixed ? "fixed by the job" : `${text(low, "mm", 4)} to ${withUnit(high, "mm", 4)}`,
+        fixed ? "fixed by the job" : `${text(low, unit, 4)} to ${withUnit(high, unit, 4)}`,
         outside,
       ),
       understood,

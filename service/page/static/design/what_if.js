@@ -10,6 +10,7 @@ import { difference } from "./numbers.js";
 import { lengthsOf } from "./loading.js";
 import { rankOf } from "./rank.js";
 import { missText } from "./requirement_text.js";
+import { capitalised } from "../lib/words.js";
 import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
 
@@ -59,7 +60,22 @@ export function whatIf(
       ask();
     }),
   );
-  const besides = h("p", { class: "quiet besides", hidden: true });
+  const extras = columns
+    .filter(({ key }) => further.includes(key))
+    .map(({ key, title, unit }) =>
+      lengthRow(
+        key,
+        capitalised(title),
+        ranges[key],
+        (value) => {
+          if (value !== null) values[key] = value;
+          if (isSame(values[key], base[key])) delete values[key];
+          keepsLengths = false;
+          ask();
+        },
+        { unit },
+      ),
+    );
   const verdict = h("div", { class: "verdict", "aria-live": "polite" });
   const equal = requirements.filter(({ lower, upper }) => lower !== null && lower === upper);
   const holding = h("input", {
@@ -91,9 +107,8 @@ export function whatIf(
     h(
       "div",
       { class: "lengths" },
-      rows.map((row) => row.node),
+      [...rows, ...extras].map((row) => row.node),
     ),
-    besides,
     rule,
     verdict,
     results,
@@ -106,13 +121,10 @@ export function whatIf(
   let again = false;
 
   /** Return what is wrong with a typed length, or "". */
-  const wrong = () => rows.map((row) => row.wrong()).find(Boolean) ?? "";
+  const wrong = () => [...rows, ...extras].map((row) => row.wrong()).find(Boolean) ?? "";
   const moved = () =>
     Object.keys(values).length > 0 ||
-    LENGTHS.some(
-      ([key]) =>
-        Math.abs(lengths[key] - designLengths[key]) > SAME * Math.abs(designLengths[key] || 1),
-    );
+    LENGTHS.some(([key]) => !isSame(lengths[key], designLengths[key]));
 
   /** Adopt the numbers of another design. @param {Api.Row} row */
   function apply(row) {
@@ -120,10 +132,7 @@ export function whatIf(
     values = Object.fromEntries(
       further
         .map((key) => [key, Number(row[key])])
-        .filter(
-          ([key, value]) =>
-            Math.abs(Number(value) - Number(base[key])) > SAME * Math.abs(Number(base[key])),
-        ),
+        .filter(([key, value]) => !isSame(Number(value), base[key])),
     );
     keepsLengths = true;
     showLengths();
@@ -205,7 +214,7 @@ export function whatIf(
         verdict,
         unread
           ? h("p", { class: "bad", role: "alert" }, unread)
-          : h("p", { class: "quiet" }, "Change a length; all results are recomputed as you do so."),
+          : h("p", { class: "quiet" }, "Change a number; all results are recomputed as you do so."),
       );
       fill(results);
       return;
@@ -239,9 +248,7 @@ export function whatIf(
 
   function showLengths() {
     for (const row of rows) row.show(lengths[row.key]);
-    const named = columns.filter(({ key }) => key in values);
-    besides.hidden = named.length === 0;
-    besides.textContent = `Changed too: ${named.map(({ key, title, unit }) => `${title} ${withUnit(values[key], unit)}, was ${text(base[key], unit)}`).join("; ")}`;
+    for (const row of extras) row.show(values[row.key] ?? Number(base[row.key]));
   }
 
   showLengths();
@@ -253,6 +260,11 @@ export function whatIf(
     lengths: lengthsNow,
     dimensions: () => (moved() ? { ...lengthsNow(), ...values } : null),
   };
+}
+
+/** Return whether a number is that of the design, within rounding. @param {number} value @param {Api.Row[string]} own */
+function isSame(value, own) {
+  return Math.abs(value - Number(own)) <= SAME * Math.abs(Number(own) || 1);
 }
 
 /** @param {Api.Objective[]} objectives @param {Api.Row} before @param {Api.Row} after */

@@ -149,40 +149,35 @@ function keysOf(form, path) {
 }
 
 /**
- * Return the field of a fixed number with a button that makes it vary; if it varies, also its permitted values.
+ * Return the field of a fixed number with a button that makes it vary; if it varies, the field of its permitted values.
  * @param {Form.Whole} form @param {Form.Path} path @param {string} label
  */
 export function fixedOrVarying(form, path, label) {
   const varies = ["variables", ...path];
-  const fixedField = byschema(form, path, { label, required: true });
-  if (form.at(varies) === undefined) {
-    const button = h(
-      "button",
-      {
-        type: "button",
-        "aria-label": `Let ${label} vary`,
-        onclick: () => {
-          const value = form.at(path);
-          form.put(varies, rangeAround(typeof value === "number" ? value : String(value ?? "")));
-          form.redraw();
-        },
-      },
-      "Let it vary",
-    );
-    fixedField?.querySelector(".field-controls")?.append(button);
-    return [fixedField];
-  }
-  return [
-    fixedField,
-    range(form, varies, {
-      label: `${label}, varying`,
+  const valueNow = () => /** @type {string | number | undefined} */ (form.at(path));
+  /** @param {unknown} values */
+  const vary = (values) => {
+    form.put(varies, values);
+    form.redraw();
+  };
+  if (form.at(varies) !== undefined && valueNow() !== undefined)
+    return range(form, varies, {
+      label,
       drop: "Hold",
-      why: "The search chooses a value in this range; analyses of single designs use the value beside it.",
+      why: `The search chooses a value in this range; analyses of single designs use ${valueNow()}.`,
       fixed: false,
-      removed: () => {
-        form.put(varies, undefined);
-        form.redraw();
-      },
-    }),
-  ];
+      removed: () => vary(undefined),
+    });
+  const fixedField = byschema(form, path, { label, required: true });
+  const button = h(
+    "button",
+    {
+      type: "button",
+      "aria-label": `Let ${label} vary`,
+      onclick: () => vary(rangeAround(valueNow() ?? "")),
+    },
+    "Let it vary",
+  );
+  fixedField?.querySelector(".field-controls")?.append(button);
+  return fixedField;
 }

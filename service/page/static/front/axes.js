@@ -65,7 +65,7 @@ export function axisFields(explorer) {
         label,
       );
     const more = menu(
-      headed(column),
+      headed(column).replace(",\u00a0", ", "), // an axis is narrow
       h(
         "div",
         { class: "chooser-list panel" },

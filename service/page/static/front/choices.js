@@ -3,7 +3,10 @@
 import { LENGTHS } from "./linkages.js";
 import { wishesFrom, wishQuery } from "./wishes.js";
 
-/** @import { Limits } from "./limits.js" */
+/**
+ * @import { FrontData } from "./data.js"
+ * @import { Limits } from "./limits.js"
+ */
 
 /**
  * @typedef {{ key: string, flipped: boolean }} Axis
@@ -11,6 +14,11 @@ import { wishesFrom, wishQuery } from "./wishes.js";
  */
 
 const MOST = 3; // compared designs
+
+/** Return the columns of what a job sizes: crank, rod, offset, extra variables, choices. @param {Api.Front} front */
+export function sizesOf({ columns }) {
+  return columns.filter(({ group }) => group === columns[0].group).map(({ key }) => key);
+}
 
 /**
  * Return the choices in an address, completed: axes, limits, log, x, y, colour, columns, sort, page, selected, weights, wish.
@@ -21,15 +29,7 @@ export function choicesFrom(query, front) {
   /** @type {(key: string | null | undefined) => key is string} */
   const isColumn = (key) => typeof key === "string" && keys.includes(key);
   const objectives = front.objectives.map(({ column }) => column);
-  const sizes = ["crank_mm", "rod_mm", "offset_mm"].filter(isColumn);
-  const first = keys.findIndex((key) => key.startsWith("choice_"));
-  const labels = keys.filter(
-    (key, place) =>
-      first >= 0 &&
-      place >= first &&
-      front.columns[place].group === front.columns[first].group &&
-      !objectives.includes(key),
-  );
+  const sizes = sizesOf(front).filter((key) => !objectives.includes(key));
   const strokes = front.strokes_differ ? ["slow_stroke"] : [];
   /** @param {string} name */
   const list = (name) => (query.get(name) ?? "").split(",").filter(Boolean);
@@ -42,7 +42,8 @@ export function choicesFrom(query, front) {
   const axes = list("axes")
     .map((text) => ({ key: text.replace(/^-/, ""), flipped: text.startsWith("-") }))
     .filter(({ key }) => isColumn(key));
-  const standard = [...sizes, ...labels, ...objectives];
+  const standard = [...sizes, ...objectives];
+  const usual = [...objectives, ...sizes, ...strokes];
   const columns = list("columns").filter(isColumn);
   const sort = (query.get("sort") ?? "").replace(/^-/, "");
   const weights = (query.get("weights") ?? "").split(",").map(Number);
@@ -54,7 +55,7 @@ export function choicesFrom(query, front) {
     x: columnOf("x", objectives[0] ?? keys[0]),
     y: columnOf("y", objectives[1] ?? sizes[0] ?? keys[0]),
     colour: query.get("colour") === "none" ? "" : columnOf("colour", objectives[2] ?? ""),
-    columns: columns.length ? columns : [...objectives, ...labels, ...sizes, ...strokes],
+    columns: columns.length ? columns : usual,
     sort: isColumn(sort) ? sort : "",
     reverse: (query.get("sort") ?? "").startsWith("-"),
     page: Math.max(1, Math.trunc(Number(query.get("page"))) || 1),
@@ -73,9 +74,30 @@ export function choicesFrom(query, front) {
       x: objectives[0],
       y: objectives[1],
       colour: objectives[2] ?? "",
-      columns: [...objectives, ...labels, ...sizes, ...strokes].join(","),
+      columns: usual.join(","),
     },
   };
+}
+
+/**
+ * Leave dimensions that are the same for all designs out of the usual axes and columns; the card of a design and the two choosers have it.
+ * @param {Chosen} chosen @param {FrontData} data
+ */
+export function leaveOutConstants(chosen, data) {
+  const { standard, axes, columns } = chosen;
+  /** @param {string} key */
+  const isVaried = (key) => {
+    const { low, high } = data.range(key);
+    return low < high || data.count < 2 || data.better(key) !== "" || key === "slow_stroke";
+  };
+  if (axes.map(({ key }) => key).join(",") === standard.axes) {
+    chosen.axes = axes.filter(({ key }) => isVaried(key));
+    standard.axes = chosen.axes.map(({ key }) => key).join(",");
+  }
+  if (columns.join(",") === standard.columns) {
+    chosen.columns = columns.filter(isVaried);
+    standard.columns = chosen.columns.join(",");
+  }
 }
 
 /** @param {URLSearchParams} query @param {(key: string) => boolean} known */

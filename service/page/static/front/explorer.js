@@ -11,7 +11,7 @@ import { axisFields } from "./axes.js";
 import { previousFront } from "./previous_front.js";
 import { bindingPanel } from "./active_limits.js";
 import { chooser } from "./chooser.js";
-import { choicesFrom, queryOf, toggled, neededColumns } from "./choices.js";
+import { choicesFrom, leaveOutConstants, queryOf, toggled, neededColumns } from "./choices.js";
 import { FrontData } from "./data.js";
 import { bookmarksPanel } from "./bookmarks.js";
 import { Limits } from "./limits.js";
@@ -48,6 +48,7 @@ export async function explore(place, { job, front, values, query, files, decisio
   const limits = new Limits(data, chosen.limits, chosen.lasso);
   data.take(values);
   await data.need(neededColumns(chosen, limits));
+  leaveOutConstants(chosen, data);
   if (!signal.aborted) new Explorer(place, { job, data, chosen, limits, files, decision, signal });
 }
 
@@ -290,11 +291,9 @@ export class Explorer {
       this.fields.draw();
       this.scatterPanel.draw();
     } else if (what === "chosen") this.fields.limits();
-    if (what !== "table") {
-      this.lines.draw(what);
-      this.dots.draw(what);
-    }
+    if (what !== "table") this.dots.draw(what);
     if (what === "all") this.scatterPanel.legend();
+    if (what !== "table") this.lines.draw(what); // after the panel beside it, whose height it fills
     if (what === "marks") this.table.mark();
     else this.drawTable(what === "chosen");
     this.marksPanel.draw(what);

@@ -7,7 +7,7 @@ import { withResultants } from "../design/panels.js";
 import { drawing } from "../mechanism/drawing.js";
 import { motionOf } from "../mechanism/motion.js";
 import { playback } from "../mechanism/playback.js";
-import { LENGTHS } from "./linkages.js";
+import { sizesOf } from "./choices.js";
 import { namesOf } from "./chart_marks.js";
 
 /** @import { Explorer } from "./explorer.js" */
@@ -19,6 +19,7 @@ const ENDS = /** @type {Page.Point} */ ([0, 180]); // points of the swing
 /** Return {place, draw(what), close()} of the linkage of an explorer. @param {Explorer} explorer */
 export function linkagePanel(explorer) {
   const { data, front } = explorer;
+  const sizes = sizesOf(front);
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const title = h("h2", { id: "linkage-title" });
   const way = h("a", { class: "button primary" });
@@ -125,13 +126,13 @@ export function linkagePanel(explorer) {
       }
       fill(
         numbers,
-        [...data.objectives.map(({ column }) => column), ...LENGTHS]
+        [...data.objectives.map(({ column }) => column), ...sizes]
           .filter((key) => data.has(key))
           .map((key) => {
             const { title: words, unit } = data.column(key);
             return h(
               "div",
-              { class: LENGTHS.includes(key) ? "length" : null },
+              { class: sizes.includes(key) ? "length" : null },
               h("dt", {}, words),
               h("dd", { class: "number" }, withUnit(data.cell(key, row), unit, 4)),
             );

@@ -3,7 +3,7 @@
 import { get, isAbort, statusOf } from "../lib/api.js";
 import { fill, h } from "../lib/dom.js";
 import { sayProblem } from "../lib/notices.js";
-import { apiSystem, inDisplayUnits, withUnit } from "../lib/numbers.js";
+import { apiSystem, inDisplayUnits, withUnit, withUnitSigns } from "../lib/numbers.js";
 import { inWords } from "../lib/words.js";
 import { smallLinkage } from "../mechanism/small_linkage.js";
 import { namesOf } from "./chart_marks.js";
@@ -176,7 +176,7 @@ export function marksPanel(explorer) {
     if (units === apiSystem())
       fill(
         costs,
-        sentences.map((sentence) => h("li", {}, sentence)),
+        sentences.map((sentence) => h("li", {}, withUnitSigns(sentence))),
       );
   }
 

@@ -1,7 +1,7 @@
 /** Sentences and tables of an answer, with numbers in display units. */
 
 import { h } from "./dom.js";
-import { apiSystem, text } from "./numbers.js";
+import { apiSystem, text, withUnitSigns } from "./numbers.js";
 import { headsOf, scrolledTable } from "./table.js";
 
 /**
@@ -18,7 +18,7 @@ export function blocks(found, title, action = undefined) {
         ? numberText(part, part[system])
         : part[system];
   /** @param {Api.Block["text"]} parts */
-  const words = (parts) => parts.map(partText).join("");
+  const words = (parts) => withUnitSigns(parts.map(partText).join(""));
   let above = title;
   return found.map(({ text: parts, style, columns, rows }) => {
     if (style === "heading") return h("h3", {}, (above = words(parts)));

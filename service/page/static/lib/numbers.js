@@ -73,6 +73,13 @@ export function keyOf(key) {
   return { name: key.slice(0, key.length - suffix.length), unit };
 }
 
+/** Return a sentence with ° and ² instead of deg and ^2 after numbers. @param {string} sentence */
+export function withUnitSigns(sentence) {
+  return sentence
+    .replace(/(?<=\d\)?)[ \u00a0]deg\b(?!")/g, "°")
+    .replace(/(?<=\d\)?[ \u00a0][a-zA-Z/ \u00a0]{0,6})\^([23])(?!")/g, (_, power) => POWERS[power]);
+}
+
 /**
  * Return a sentence of the service with its values in display units, with five digits; quoted text is user input and stays unchanged.
  * @param {string} sentence
@@ -81,17 +88,18 @@ export function inDisplayUnits(sentence) {
   const units = Object.keys(SYSTEMS[system()] ?? {}).sort(
     (one, other) => other.length - one.length,
   );
-  if (!units.length) return sentence;
+  if (!units.length) return withUnitSigns(sentence);
   const number = "[-−]?\\d[\\d.]*(?:e[-+]?\\d+)?";
   const values = new RegExp(
     `(?<!["“\\w.^])((?:${number}(?:, | to | and | or | x ))*${number}\\)?) (${units.map((unit) => unit.replace("^", "\\^")).join("|")})(?![\\w^/])`,
     "g",
   );
-  return sentence.replace(
+  const converted = sentence.replace(
     values,
     (_, quantity, unit) =>
       `${quantity.replace(new RegExp(number, "g"), (/** @type {string} */ one) => text(Number(one.replace("−", "-")), unit))} ${unitOf(unit)}`,
   );
+  return withUnitSigns(converted);
 }
 
 /** Choose a system; the caller redraws the view. @param {string} name */
@@ -133,8 +141,10 @@ export function text(value, unit = "", digits = 5) {
   const size = Math.abs(shown);
   if (size === Infinity) return shown > 0 ? "∞" : "−∞";
   if (size >= 1e6 || size < 1e-4) return withPower(shown, digits);
-  const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return String(Number(shown.toFixed(Math.min(places, 12)))).replace("-", "−");
+  const places = Math.min(Math.max(0, digits - 1 - Math.floor(Math.log10(size))), 12);
+  const all = shown.toFixed(places); // with zeros at the end, unless the number is that short, as closely as a search meets requirements
+  const isShort = Math.abs(Number(all) - shown) <= 1e-7 * size;
+  return (isShort ? String(Number(all)) : all).replace("-", "−");
 }
 
 /** Return a very large or small number in scientific notation: "2.48·10⁶". @param {number} value @param {number} digits */

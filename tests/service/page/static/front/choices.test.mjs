@@ -1,13 +1,19 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { choicesFrom, queryOf, toggled } from "../../../../../service/page/static/front/choices.js";
+import {
+  choicesFrom,
+  leaveOutConstants,
+  queryOf,
+  toggled,
+} from "../../../../../service/page/static/front/choices.js";
 import { draws } from "../draws.mjs";
 
 const OBJECTIVES = ["time_ratio", "peak_torque_Nm", "least_transmission_angle_deg"];
-const KEYS = ["crank_mm", "rod_mm", "offset_mm", ...OBJECTIVES, "slow_stroke", "choice_rod"];
+const SIZES = ["crank_mm", "rod_mm", "offset_mm", "rod_width_mm", "choice_rod"];
+const KEYS = [...SIZES, ...OBJECTIVES, "slow_stroke"];
 const FRONT = {
-  columns: KEYS.map((key) => ({ key })),
+  columns: KEYS.map((key) => ({ key, group: SIZES.includes(key) ? "Dimensions" : "Motion" })),
   objectives: OBJECTIVES.map((column) => ({ column })),
   count: 50,
   strokes_differ: true,
@@ -27,8 +33,28 @@ test("an address without choices is the standard view, and the standard view nee
   assert.deepEqual([chosen.x, chosen.y, chosen.colour], OBJECTIVES);
   assert.deepEqual(
     chosen.axes.map(({ key }) => key),
-    ["crank_mm", "rod_mm", "offset_mm", "choice_rod", ...OBJECTIVES],
+    [...SIZES, ...OBJECTIVES],
   );
+});
+
+test("a dimension that all designs share is neither on the usual axes nor in the usual table", () => {
+  const data = {
+    count: 50,
+    range: (key) => ({
+      low: 0,
+      high: ["choice_rod", "time_ratio"].includes(key) ? 0 : 1,
+    }),
+    better: (key) => (OBJECTIVES.includes(key) ? "more is better" : ""),
+  };
+  const [usual, asked] = ["", "axes=choice_rod&columns=slow_stroke"].map(from);
+  for (const chosen of [usual, asked]) leaveOutConstants(chosen, data);
+  assert.deepEqual(
+    usual.axes.map(({ key }) => key),
+    [...SIZES.slice(0, 4), ...OBJECTIVES],
+  );
+  assert.deepEqual(usual.columns, [...OBJECTIVES, ...SIZES.slice(0, 4), "slow_stroke"]);
+  assert.equal(textOf(usual), "");
+  assert.deepEqual([asked.axes[0].key, asked.columns], ["choice_rod", ["slow_stroke"]]);
 });
 
 test("what is chosen comes back from its address", () => {

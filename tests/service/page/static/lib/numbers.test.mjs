@@ -6,6 +6,7 @@ import {
   fromDisplayUnit,
   grouped,
   inDisplayUnit,
+  inDisplayUnits,
   limitText,
   readySystem,
   text,
@@ -45,6 +46,21 @@ test("a number is written with as many digits as asked, and whole ones in full",
       );
     }
   }
+});
+
+test("a computed number ends in zeros where its digits do, a short one does not", () => {
+  choose("si");
+  assert.equal(text(114.2003), "114.20");
+  assert.equal(text(1.22951, "", 4), "1.230");
+  assert.equal(text(60 + 1e-10), "60");
+  assert.equal(text(0.25), "0.25");
+});
+
+test("sentences have the signs of units, but not within quotation marks", () => {
+  assert.equal(
+    inDisplayUnits('1 deg more costs 0.02 m^2 and 3 kg m^2; write it like "45 deg"'),
+    '1° more costs 0.02 m² and 3 kg m²; write it like "45 deg"',
+  );
 });
 
 test("every minus is the sign of that name, in the exponent too", () => {

@@ -7,7 +7,7 @@ const { inWords } = await import("../../../../../service/page/static/lib/words.j
 const SAID = [
   [
     "with a least transmission angle of 40 deg it is at most 1.2862; got equals 1.5; lower it to that, or lower constraints.transmission_angle to 27.4576 deg at most",
-    "with a least transmission angle of 40 deg it is at most 1.2862; got exactly 1.5; lower it to that, or lower the requirement on transmission angle to 27.4576 deg at most",
+    "with a least transmission angle of 40° it is at most 1.2862; got exactly 1.5; lower it to that, or lower the requirement on transmission angle to 27.4576° at most",
   ],
   [
     "within the ranges at most 522.162 mm is possible; got min 900 mm and max 950 mm; ask for less",
