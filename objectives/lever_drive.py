@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from ..model.turning_cylinder.closed_forms import greatest_speed, work_out
+from ..model.turning_cylinder.closed_forms import greatest_cylinder_speed, work_from_start_to_end
 from .kinds import ANGLE, ENERGY, FORCE, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW
 from .lever_quantity import LeverForm, LeverPeak
 from .position_error import POSITION_ERROR
@@ -95,7 +95,7 @@ BUCKLING_MARGIN = _peak(
 PEAK_CYLINDER_SPEED = _form(
     name="peak_cylinder_speed",
     kind=SPEED,
-    forms=(greatest_speed,),
+    forms=(greatest_cylinder_speed,),
     timed=True,
     place=346,
     group=Group.MOTION,
@@ -107,7 +107,7 @@ CYLINDER_FLOW = _form(
     name="cylinder_flow",
     title="greatest flow of the cylinder",
     kind=VOLUME_FLOW,
-    forms=(lambda c, fastest: c.full_area * greatest_speed(c, fastest),),
+    forms=(lambda c, fastest: c.full_area * greatest_cylinder_speed(c, fastest),),
     timed=True,
     known=("bore",),
     place=347,
@@ -131,7 +131,7 @@ LEVER_WORK = _form(
     swing_counterpart=SWING_ENERGY.name,
     title="work of the cylinder from start to end",
     kind=ENERGY,
-    forms=(lambda c, _: work_out(c),),
+    forms=(lambda c, _: work_from_start_to_end(c),),
     signed=True,
     place=349,
     picture="power",

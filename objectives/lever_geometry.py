@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 from ..model.turning_cylinder.closed_forms import (
+    cylinder_travel,
     dead_point_margin,
     extension_ratio,
     spare_extension,
     transmission_angle,
-    travel,
 )
 from .kinds import ANGLE, LENGTH, RATIO
 from .lever_quantity import LeverForm
@@ -81,7 +81,7 @@ CYLINDER_TRAVEL = _length(
     swing_counterpart=ACTUATOR_TRAVEL.name,
     title="travel of the cylinder",
     kind=LENGTH,
-    forms=(lambda c, _: travel(c),),
+    forms=(lambda c, _: cylinder_travel(c),),
     place=334,
     sentence="The difference of the cylinder's greatest and least length over the motion.",
     advice="The stroke of the cylinder must not be less.",

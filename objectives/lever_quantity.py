@@ -13,10 +13,10 @@ from ..model.kernel.batches import in_chunks
 from ..model.machine.mechanism import Mechanism
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import SwingDriver
-from ..model.turning_cylinder.batch import lever_batch, lever_passes
-from ..model.turning_cylinder.peaks import lever_peaks
-from ..model.turning_cylinder.states import LeverNumbers
-from ..model.turning_cylinder.turn_mean import rms_torque
+from ..model.turning_cylinder.curve_peaks import lever_peaks
+from ..model.turning_cylinder.lever_state import LeverNumbers
+from ..model.turning_cylinder.levers_of_designs import can_make_motion, lever_batch
+from ..model.turning_cylinder.rms_crank_torque import rms_torque
 from .machine_needs import Consequence
 from .quantity import Array, Pieces, Quantity, Values
 from .swing_quantity import SwingQuantity
@@ -82,7 +82,7 @@ class LeverQuantity(SwingQuantity):
 
     def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:
         designs = np.ascontiguousarray(dimensions, dtype=np.float64)
-        return designs, np.flatnonzero(lever_passes(mechanism, self._required_swing, designs))
+        return designs, np.flatnonzero(can_make_motion(mechanism, self._required_swing, designs))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +125,7 @@ class LeverPeak(LeverQuantity):
 
         def work(begin: int, end: int) -> None:
             chunk = rows[begin:end]
-            peaks = lever_peaks(batch.part(begin, end), self.curves, gradients=gradients, limit=limit)
+            peaks = lever_peaks(batch.levers_between(begin, end), self.curves, gradients=gradients, limit=limit)
             labels[chunk, :width] = np.nan_to_num(peaks.places)
             found, slope = peaks.values, peaks.gradients
             if self.inverse:
@@ -194,7 +194,8 @@ class LeverRms(LeverQuantity):
         by_number = np.zeros((len(rows), len(numbers.columns) if gradients else 0))
 
         def work(begin: int, end: int) -> None:
-            values[rows[begin:end]], by_number[begin:end] = rms_torque(batch.part(begin, end), gradients=gradients)
+            levers = batch.levers_between(begin, end)
+            values[rows[begin:end]], by_number[begin:end] = rms_torque(levers, gradients=gradients)
 
         in_chunks(len(rows), work, size=_CHUNK)
         if not gradients:

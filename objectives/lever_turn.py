@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 
 from ..model.turning_cylinder.closed_forms import (
-    arm_swing,
-    arm_time_ratio,
-    arm_transmission_angle,
+    arm_swing_angle,
+    arm_time_ratio_at_constant_crank_speed,
+    crank_work_per_turn,
+    least_arm_transmission_angle,
     ram_stroke,
-    turn_work,
 )
 from .kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, ENERGY, LENGTH, RATIO, SPEED, TORQUE
 from .lever_quantity import LeverForm, LeverPeak, LeverRms
@@ -24,7 +24,7 @@ ARM_TIME_RATIO = _form(
     name="arm_time_ratio",
     title="time ratio of the arm",
     kind=RATIO,
-    forms=(lambda c, _: arm_time_ratio(c),),
+    forms=(lambda c, _: arm_time_ratio_at_constant_crank_speed(c),),
     place=360,
     sentence="The time of the arm's slow stroke over that of its fast one, with the crank at constant speed.",
     advice="A rotating arm has a stroke from one normal of the line between both pivots to the other.",
@@ -37,7 +37,7 @@ ARM_SWING = _form(
     name="arm_swing",
     title="swing of the arm",
     kind=ANGLE,
-    forms=(lambda c, _: arm_swing(c),),
+    forms=(lambda c, _: arm_swing_angle(c),),
     place=361,
     sentence="The angle between both ends of the arm's swing, 360 deg if it rotates, as it does with frame < crank.",
     formula="asin((r - e) / f) + asin((r + e) / f)",
@@ -49,7 +49,7 @@ ARM_TRANSMISSION_ANGLE = _form(
     title="least transmission angle of the arm",
     short="transmission angle",
     kind=ANGLE,
-    forms=(lambda c, _: arm_transmission_angle(c),),
+    forms=(lambda c, _: least_arm_transmission_angle(c),),
     place=362,
     group=Group.PROPORTIONS,
     sentence="The least angle between the force of the crank on the arm and the line from pin to arm pivot.",
@@ -154,7 +154,7 @@ TURN_WORK = _form(
     name="turn_work",
     title="work of the crank in a turn",
     kind=ENERGY,
-    forms=(lambda c, _: turn_work(c),),
+    forms=(lambda c, _: crank_work_per_turn(c),),
     place=372,
     group=Group.DRIVE,
     picture="power",

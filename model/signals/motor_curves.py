@@ -91,12 +91,12 @@ class MotorShaft(Shaft):
         """Return the curve (p, k, 2 + v) and its magnitudes (p, k), as `Shaft.evaluate` does."""
         return self._motor_curve(self.curve, row, probe, angle, rate, gradients)
 
-    def rates(self, cuts: IntArray, probe: Array) -> Array:
+    def breakpoint_gradients(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint angles by the design.
 
         Probe: angles in segments that begin there.
         """
-        out = super().rates(cuts, probe)
+        out = super().breakpoint_gradients(cuts, probe)
         for code, curve in _KINKS.items():
             rows = np.flatnonzero(self.breaks.code[cuts] == code)
             row, angle = self.breaks.row[cuts[rows]], self.breaks.angle[cuts[rows], None]

@@ -48,7 +48,7 @@ class Curve(Protocol):
         """
         ...
 
-    def rates(self, cuts: IntArray, probe: Array) -> Array:
+    def breakpoint_gradients(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint places; probe: places in the segments that begin there."""
         ...
 
@@ -221,7 +221,7 @@ class _Search:
         begins = np.where(tops.end > 0, segments.next_segment[tops.segment], tops.segment)
         moves = np.flatnonzero((tops.end != 0) & (begins >= 0))
         at = begins[moves]
-        rate[moves] = self.curve.rates(segments.cut[at], segments.probe[at])
+        rate[moves] = self.curve.breakpoint_gradients(segments.cut[at], segments.probe[at])
         probe, place = segments.probe[tops.segment], tops.place[:, None]
         curve = self.signed_as_judged(self.curve.evaluate(tops.row, probe, place, rate=rate, gradients=True)[0][:, 0])
         return np.asarray(curve[:, 2:])

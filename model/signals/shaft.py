@@ -266,7 +266,7 @@ class Shaft:
         zeros = np.zeros(len(panel), dtype=np.int64)
         return Breaks(row[panel], at, zeros + member, zeros, zeros + code, np.zeros(len(panel)), zeros)
 
-    def rates(self, cuts: IntArray, probe: Array) -> Array:
+    def breakpoint_gradients(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives (c, v) of breakpoint angles by the design.
 
         Probe: angles in segments that begin there.

@@ -88,7 +88,7 @@ def _add_jumps_at_moving_breakpoints(shaft: Shaft, segments: Segments, slopes: A
     """Add to derivatives (rows, n, v) the effect of moving breakpoints at which the curve jumps."""
     ends = np.stack([segments.low, segments.high], axis=1)
     edge = shaft.evaluate(segments.row, segments.probe, ends)[0][:, :, 0]
-    rate = shaft.rates(segments.cut, segments.probe)
+    rate = shaft.breakpoint_gradients(segments.cut, segments.probe)
     before = np.empty(len(edge))
     before[segments.next_segment] = edge[:, 1]
     jump, squares = (before - edge[:, 0]) / shaft.period, (before**2 - edge[:, 0] ** 2) / shaft.period

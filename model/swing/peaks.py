@@ -88,7 +88,7 @@ class _Curve:
             curve = self.toward[row][:, None, None] * curve
         return curve, np.nan_to_num(np.abs(state.real))
 
-    def rates(self, cuts: IntArray, probe: Array) -> Array:
+    def breakpoint_gradients(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives of cuts; see `peak_search.Curve`."""
         cut_rates = np.zeros((len(cuts), self.numbers))
         for way, pieces in enumerate(self.ways):

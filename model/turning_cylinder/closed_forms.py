@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..kernel.arithmetic import magnitude
-from .lever import pin_distance
-from .states import LeverNumbers, lift
-from .turn import stroke_ends
+from .crank_turn_state import fast_stroke_ends
+from .lever_geometry import pin_distance
+from .lever_state import LeverNumbers, work_against_gravity_and_spring
 
 
 def transmission_angle(c: LeverNumbers, lever_angle: Any) -> Any:
@@ -30,9 +30,9 @@ def dead_point_margin(c: LeverNumbers, lever_angle: Any) -> Any:
     return magnitude(psi - np.pi * np.round(np.real(psi) / np.pi))
 
 
-def travel(c: LeverNumbers) -> Any:
+def cylinder_travel(c: LeverNumbers) -> Any:
     """Return the travel of the cylinder, m."""
-    first, last = c.ends
+    first, last = c.cylinder_end_lengths
     return magnitude(last - first)
 
 
@@ -47,21 +47,21 @@ def spare_extension(c: LeverNumbers, length: Any) -> Any:
 
 def extension_ratio(c: LeverNumbers) -> Any:
     """Return the greatest length of the cylinder over its least."""
-    first, last = c.ends
+    first, last = c.cylinder_end_lengths
     return np.where(np.real(last - first) > 0.0, last / first, first / last)
 
 
-def work_out(c: LeverNumbers) -> Any:
+def work_from_start_to_end(c: LeverNumbers) -> Any:
     """Return the work that a slow cylinder does from start to end, J, against gravity and seal friction."""
-    return lift(c) + c.rub * travel(c)
+    return work_against_gravity_and_spring(c) + c.rub * cylinder_travel(c)
 
 
-def greatest_speed(c: LeverNumbers, fastest: float) -> Any:
-    """Return the greatest speed of the cylinder, m/s. fastest: greatest ds/dt of the law."""
-    return fastest * travel(c) * c.rate
+def greatest_cylinder_speed(c: LeverNumbers, greatest_law_slope: float) -> Any:
+    """Return the greatest speed of the cylinder, m/s. greatest_law_slope: ds/dt."""
+    return greatest_law_slope * cylinder_travel(c) * c.rate
 
 
-def arm_swing(c: LeverNumbers) -> Any:
+def arm_swing_angle(c: LeverNumbers) -> Any:
     """Return the swing of the line, rad, while the crank rotates fully; 2 pi if the line rotates too.
 
     At a reversal the line is a tangent of the pin's circle: its angle to OA has the sine (r - e) / f or (r + e) / f.
@@ -72,13 +72,13 @@ def arm_swing(c: LeverNumbers) -> Any:
     return np.where(swings, np.arcsin(near) + np.arcsin(far), 2.0 * np.pi)
 
 
-def arm_time_ratio(c: LeverNumbers) -> Any:
+def arm_time_ratio_at_constant_crank_speed(c: LeverNumbers) -> Any:
     """Return the time of the slow stroke over that of the fast one at constant crank speed."""
-    fast = sum(stroke_ends(c))
+    fast = sum(fast_stroke_ends(c))
     return (2.0 * np.pi - fast) / fast
 
 
-def arm_transmission_angle(c: LeverNumbers) -> Any:
+def least_arm_transmission_angle(c: LeverNumbers) -> Any:
     """Return the least angle, rad, between AB and the normal of the line: the direction of the pin force."""
     return np.arccos(magnitude(c.offset) / magnitude(c.crank - c.frame))
 
@@ -91,8 +91,8 @@ def ram_stroke(c: LeverNumbers) -> Any:
     return 2.0 * c.ram * np.where(np.real(c.crank) < np.real(c.frame), c.crank / c.frame, 1.0)
 
 
-def turn_work(c: LeverNumbers) -> Any:
+def crank_work_per_turn(c: LeverNumbers) -> Any:
     """Return the work of the crank in a full turn, J, against arm torque, ram force and friction."""
-    swing = arm_swing(c)
+    swing = arm_swing_angle(c)
     angle = np.where(np.real(c.crank) < np.real(c.frame), 2.0 * swing, swing)
-    return c.arm_torque * angle + c.ram_force * ram_stroke(c) + 2.0 * c.rub * travel(c)
+    return c.arm_torque * angle + c.ram_force * ram_stroke(c) + 2.0 * c.rub * cylinder_travel(c)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexTable, Integers, Row, Table, rarely_used_kernel
-from .states import LeverNumbers, LeverState, size, state_in_swing
-from .turn import TurnState, turn_state
+from .crank_turn_state import TurnState, turn_state
+from .lever_state import LeverNumbers, LeverState, state_in_swing, vector_length
 
 Complexes = NDArray[np.complex128]
 
@@ -53,11 +53,11 @@ def curve_of_swing(code: int, c: LeverNumbers, s: LeverState) -> Any:
     if code == 9:
         return magnitude(s.speed)
     if code == 10:
-        return size(s.pin)
+        return vector_length(s.pin)
     if code == 11:
-        return size(s.pivot)
+        return vector_length(s.pivot)
     if code == 12:
-        return size(s.cylinder_pivot)
+        return vector_length(s.cylinder_pivot)
     return 1.0 * s.angle_error
 
 
@@ -85,11 +85,11 @@ def curve_of_turn(code: int, c: LeverNumbers, s: TurnState) -> Any:
     if code == 9:
         return magnitude(s.ram_1 * c.speed)
     if code == 10:
-        return size(s.pin)
+        return vector_length(s.pin)
     if code == 11:
-        return size(s.pivot)
+        return vector_length(s.pivot)
     if code == 12:
-        return size(s.cylinder_pivot)
+        return vector_length(s.cylinder_pivot)
     return s.torque * s.torque * s.stretch
 
 

@@ -15,7 +15,7 @@ from ...model.signals.peaks import ANGLES
 from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.swing import Swing
 from ...model.swing.swing_batch import can_swing_despite_friction
-from ...model.turning_cylinder.batch import lever_passes
+from ...model.turning_cylinder.levers_of_designs import can_make_motion
 from ..cycle_peak import screen_quantities
 from ..formula.quantity import basic_quantities, values_with_formulas
 from ..formula.resolve_names import resolve_quantities
@@ -135,7 +135,7 @@ def evaluated_as_array(
 def can_move(mechanism: Mechanism, swing: Swing | None, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) rotate fully or, if a swing is given, can make it."""
     if swing is not None:
-        return (lever_passes if swing.of_lever else swings_without_dead_point)(mechanism, swing, designs)
+        return (can_make_motion if swing.of_lever else swings_without_dead_point)(mechanism, swing, designs)
     crank, rod, offset = designs[:, 0], designs[:, 1], designs[:, 2]
     with np.errstate(invalid="ignore"):
         return np.asarray((crank > 0.0) & (rod > crank + np.abs(offset)))

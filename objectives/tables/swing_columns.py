@@ -17,7 +17,7 @@ from ...model.machine.arm import Arm
 from ...model.machine.loads.load import Enters
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing, require_swing
-from ...model.turning_cylinder.machine import lever_linkage
+from ...model.turning_cylinder.lever_of_design import movable_lever_linkage
 from ..formula.quantity import basic_quantities
 from ..lever_quantity import LeverQuantity
 from ..quantity import Array, Quantity
@@ -131,7 +131,7 @@ def require_motion(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) 
     require_same_driver(mechanism, swing)
     if swing is None:
         return require_single_rotating_linkage(mechanism, linkage)
-    return (require_swing if mechanism.lever is None else lever_linkage)(mechanism, linkage, swing)
+    return (require_swing if mechanism.lever is None else movable_lever_linkage)(mechanism, linkage, swing)
 
 
 def require_loads_for_swing(mechanism: Mechanism) -> None:

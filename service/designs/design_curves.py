@@ -12,8 +12,13 @@ from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import require_swing, swing_between_crank_angles
-from ...model.turning_cylinder.forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
-from ...model.turning_cylinder.machine import crank_turn, lever_linkage, lever_machine, lever_swing
+from ...model.turning_cylinder.cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
+from ...model.turning_cylinder.lever_of_design import (
+    lever_machine,
+    lever_swing,
+    movable_lever_linkage,
+    state_at_crank_angles,
+)
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import (
     POINTS,
@@ -155,13 +160,13 @@ def swing_rows(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> list[dic
 
 def lever_design_curves(mechanism: Mechanism, linkage: Linkage, motion: Swing, count: int) -> DesignCurves:
     """Return the curves of a lever at even times, out and back: the same places and forces, but opposite speeds."""
-    linkage = lever_linkage(mechanism, linkage, motion)
+    linkage = movable_lever_linkage(mechanism, linkage, motion)
     machine, _ = lever_machine(mechanism, linkage, motion)
     if motion.of_full_turn:
         speed = mechanism.speed
         angles: Array = np.arange(count, dtype=np.float64) * math.copysign(2.0 * np.pi / count, speed)
         columns = crank_turn_columns(mechanism, linkage, angles)
-        least, greatest = machine.sizes.length_range
+        least, greatest = machine.sizes.closable_length_range
         return DesignCurves(
             0,
             2.0 * np.pi / abs(speed) if speed else None,
@@ -173,7 +178,7 @@ def lever_design_curves(mechanism: Mechanism, linkage: Linkage, motion: Swing, c
     share = np.arange(count, dtype=np.float64) * (2.0 / count)
     columns = lever_columns(lever_curves(machine, swing, np.minimum(share, 2.0 - share)))
     way = np.where(share <= 1.0, 1.0, -1.0)
-    start, end = (1e3 * float(machine.sizes.length(at)) for at in (swing.start, swing.end))
+    start, end = (1e3 * float(machine.sizes.cylinder_length(at)) for at in (swing.start, swing.end))
     return DesignCurves(
         0,
         None if swing.duration is None else 2.0 * swing.duration,
@@ -217,7 +222,7 @@ def lever_rows(machine: LeverMachine, swing: LeverSwing) -> list[dict[str, Any]]
 
 def crank_turn_columns(mechanism: Mechanism, linkage: Linkage, angles: Array) -> list[tuple[str, str, str, Array]]:
     """Return key, title, unit and metric values of each curve of a turning arm at crank angles, rad."""
-    found, speed = crank_turn(mechanism, linkage, angles), mechanism.speed
+    found, speed = state_at_crank_angles(mechanism, linkage, angles), mechanism.speed
     columns = [
         ("crank_angle_deg", "crank angle", "deg", np.degrees(angles)),
         ("length_mm", "length along the arm", "mm", 1e3 * found.length),

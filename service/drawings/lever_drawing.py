@@ -6,8 +6,8 @@ from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from ...model.turning_cylinder.forces import LeverMachine, LeverSwing
-from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
+from ...model.turning_cylinder.cylinder_and_pin_forces import LeverMachine, LeverSwing
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing, movable_lever_linkage
 from ...objectives.kinds import System, metric_unit_in
 from ..designs.length_with_tolerance import tolerances_of
 from . import layers as on
@@ -31,11 +31,11 @@ def lever_drawing(
 
     Pivots, pins, both ends of the swing and dimensions are exact. crank_angle: lever angle of the drawing, rad, within
     the swing, or any in a full turn; `usual_angle` if None. name, design: as for `design_drawing.linkage_drawing`.
-    Raises `InputError` for an angle outside, and the errors of `lever_linkage`.
+    Raises `InputError` for an angle outside, and the errors of `movable_lever_linkage`.
     """
     machine, _ = lever_machine(mechanism, linkage, swing)
     placed = lever_swing(mechanism, linkage, swing)
-    lever_linkage(mechanism, linkage, swing)
+    movable_lever_linkage(mechanism, linkage, swing)
     angle, extent = _angle_in_swing(placed, crank_angle), lever_extent(machine, placed)
     size = max(extent[2] - extent[0], extent[3] - extent[1])
     tolerances = tolerances_of(mechanism, linkage)
@@ -66,7 +66,7 @@ def _dimensions(machine: LeverMachine, angle: float, letters: Lettering, toleran
     sizes = machine.sizes
     pin = _polar(1e3 * sizes.crank, angle + sizes.pin_angle)
     pivot = _polar(1e3 * sizes.frame, sizes.frame_angle)
-    side = 1.0 if math.sin(float(sizes.relative_angle(angle))) > 0.0 else -1.0
+    side = 1.0 if math.sin(float(sizes.angle_from_frame_to_crank(angle))) > 0.0 else -1.0
     away, origin = 4.0 * letters.height, (0.0, 0.0)
     return [
         Line(on.SKELETON, origin, pin),
@@ -85,7 +85,7 @@ def _notes(machine: LeverMachine, swing: LeverSwing, angle: float, system: Syste
             f"Crank {crank}, frame (rod) {frame} at {math.degrees(sizes.frame_angle):.6g} deg, offset {offset}.",
             *(drawn, f"{TRUE_SCALE[system]}; pivots are exact.", "Widths of crank and arm are schematic."),
         )
-    lengths = (float(sizes.length(end)) for end in (swing.start, swing.end))
+    lengths = (float(sizes.cylinder_length(end)) for end in (swing.start, swing.end))
     first, last = (f"{1e3 * factor * length:.7g}" for length in lengths)
     start, end, drawn = (f"{math.degrees(at):.6g}" for at in (swing.start, swing.end, angle))
     return (

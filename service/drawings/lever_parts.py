@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...model.turning_cylinder.batch import lever_batch
-from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, numbers_of_machine
-from ...model.turning_cylinder.states import LeverNumbers
+from ...model.turning_cylinder.cylinder_and_pin_forces import LeverMachine, LeverSwing, numbers_of_machine
+from ...model.turning_cylinder.lever_state import LeverNumbers
+from ...model.turning_cylinder.levers_of_designs import lever_batch
 from . import layers as on
 from .linkage_shapes import bar, pivot_bearing
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
@@ -58,8 +58,8 @@ def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shap
     """
     size, barrel = _size(machine), barrel_length(machine, swing)
     foot, pin = 1j * machine.sizes.offset, machine.sizes.crank * complex(np.exp(1j * machine.sizes.pin_angle))
-    lengths = [float(machine.sizes.length(end)) for end in (swing.start, swing.end)]
-    longest = machine.sizes.length_range[1] if swing.of_full_turn else max(lengths)
+    lengths = [float(machine.sizes.cylinder_length(end)) for end in (swing.start, swing.end)]
+    longest = machine.sizes.closable_length_range[1] if swing.of_full_turn else max(lengths)
     end = max(longest, machine.ram) / _NECK if swing.of_full_turn else barrel
     circle: list[Shape] = [Circle(on.PINS, (0.0, 0.0), _PIN * size)]
     rod: Shape = circle[0] if swing.of_full_turn else _strip(on.ROD, complex(barrel - longest), 0j, _ROD * size)
@@ -111,7 +111,7 @@ def extent_of_levers(c: LeverNumbers, *, of_full_turn: bool = False) -> Extent:
     turn = np.exp(1j * (c.start + (end - c.start) * share))
     mass = np.where(c.lever_mass > 0.0, c.lever_mass, np.inf)
     pivot, pin = c.frame * np.exp(1j * c.frame_angle), c.crank * np.exp(1j * c.pin_angle) * turn
-    places = [0.0 * turn, pivot + 0.0 * turn, pin, (c.along + 1j * c.across) / mass * turn]
+    places = [0.0 * turn, pivot + 0.0 * turn, pin, (c.moment_along + 1j * c.moment_across) / mass * turn]
     size = np.maximum(c.crank, c.frame)
     if of_full_turn:  # the end of the slotted arm, and of the ram
         line, along = (pin - pivot) / np.abs(pin - pivot), np.exp(1j * c.frame_angle)
@@ -128,12 +128,12 @@ def extent_of_levers(c: LeverNumbers, *, of_full_turn: bool = False) -> Extent:
 def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: LeverSwing, angle: float) -> list[Shape]:
     """Return barrel, piston rod and lever at an angle."""
     sizes, size = machine.sizes, _size(machine)
-    motion = sizes.at(np.array([angle]))
+    motion = sizes.motion_at(np.array([angle]))
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
     lug = [Line(layers[0], _point(_pivot(machine)), _point(foot))] if sizes.offset else []
     if swing.of_full_turn:  # a slotted arm, of which the pin never leaves the slot
-        end = foot + max(sizes.length_range[1], machine.ram) / _NECK * line
+        end = foot + max(sizes.closable_length_range[1], machine.ram) / _NECK * line
         slotted = _strip(layers[0], foot, end, _BARREL * size)
         lever = bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)
         return [slotted, *lug, lever, *_ram(layers[0], machine, line)]
@@ -166,8 +166,8 @@ def usual_angle(swing: LeverSwing) -> float:
 def barrel_length(machine: LeverMachine, swing: LeverSwing) -> float:
     """Return the length of the drawn barrel, m."""
     if swing.of_full_turn:
-        return _NECK * machine.sizes.length_range[0]
-    return _NECK * min(float(machine.sizes.length(end)) for end in (swing.start, swing.end))
+        return _NECK * machine.sizes.closable_length_range[0]
+    return _NECK * min(float(machine.sizes.cylinder_length(end)) for end in (swing.start, swing.end))
 
 
 def _strip(layer: Layer, start: complex, end: complex, width: float) -> Outline:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
-from ...model.turning_cylinder.machine import lever_linkage, lever_machine, lever_swing
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing, movable_lever_linkage
 from .lever_parts import barrel_length, centre_of_lever, lever_extent
 from .linkage_shapes import Barrel, linkage_sizes
 from .shapes import Point
@@ -51,7 +51,7 @@ class Outlines:
 def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Outlines:
     """Return the drawn parts of a design that rotates fully or swings.
 
-    Raises the errors of `linkage_sizes`, `swing_sizes` and `lever_linkage`.
+    Raises the errors of `linkage_sizes`, `swing_sizes` and `movable_lever_linkage`.
     """
     if swing is None:
         look = linkage_sizes(mechanism, linkage)
@@ -67,7 +67,7 @@ def outlines(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> Out
 
 def _outlines_of_lever(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Outlines:
     placed = lever_swing(mechanism, linkage, swing)
-    machine, _ = lever_machine(mechanism, lever_linkage(mechanism, linkage, swing), swing)
+    machine, _ = lever_machine(mechanism, movable_lever_linkage(mechanism, linkage, swing), swing)
     sizes, body = machine.sizes, None
     if machine.lever.mass:
         centre = centre_of_lever(machine) * cmath.exp(-1j * sizes.pin_angle)

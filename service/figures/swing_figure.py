@@ -10,8 +10,8 @@ from ...model.machine.lever_cylinder import Cylinder
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.forces import SwingCurves
 from ...model.swing.swing import Swing
-from ...model.turning_cylinder.forces import LeverMachine, LeverSwing, lever_curves
-from ...model.turning_cylinder.machine import crank_turn, lever_machine, lever_swing
+from ...model.turning_cylinder.cylinder_and_pin_forces import LeverMachine, LeverSwing, lever_curves
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing, state_at_crank_angles
 from ...objectives.kinds import ANGLE, FORCE, LENGTH, RATIO, SPEED, TORQUE, System
 from ...objectives.tables.swing_curves import (
     POINTS,
@@ -148,7 +148,7 @@ def lever_figure(
 def _panels_of_turn(mechanism: Mechanism, linkage: Linkage) -> list[Panel]:
     """Return crank torque, arm speed and acceleration, and the length along the arm over a crank turn."""
     angles = np.linspace(0.0, 2.0 * np.pi, 2 * POINTS + 1)
-    found, degrees = crank_turn(mechanism, linkage, angles), np.degrees(angles)
+    found, degrees = state_at_crank_angles(mechanism, linkage, angles), np.degrees(angles)
     curves = (
         *(("torque on the crank", found.torque, TORQUE), ("length along the arm", found.length, LENGTH)),
         *(("speed of the arm over that of the crank", found.turn_1, RATIO),),

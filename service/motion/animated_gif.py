@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
-from ...model.turning_cylinder.machine import lever_machine, lever_swing
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.tables.swing_curves import curves_at_even_times
 from ..designs.design_curves import lever_design_curves

@@ -15,7 +15,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
-from ...model.turning_cylinder.machine import lever_machine, lever_swing
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
 from ...objectives.kinds import System
 from ...objectives.tables.swing_curves import curves_at_even_times, has_position_error, motion_and_drive_curves
 from ..designs.design_curves import CurveColumn, cycle_table, lever_design_curves
@@ -223,7 +223,10 @@ def swing_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system:
 
 
 def lever_playback(mechanism: Mechanism, linkage: Linkage, swing: Swing, system: System = "metric") -> Playback:
-    """Return the motion of a lever and its cylinder. system: unit system of the summary. Raises as `lever_linkage`."""
+    """Return the motion of a lever and its cylinder. system: unit system of the summary.
+
+    Raises as `movable_lever_linkage`.
+    """
     curves = lever_design_curves(mechanism, linkage, swing, ANGLES)
     placed, (machine, _) = lever_swing(mechanism, linkage, swing), lever_machine(mechanism, linkage, swing)
     angles, _, line_angles, *_ = (column.values for column in curves.columns)

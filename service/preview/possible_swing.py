@@ -15,8 +15,8 @@ from ...model.machine.mechanism import Mechanism
 from ...model.swing.closure import swings_without_dead_point
 from ...model.swing.end_angles import swing_ends
 from ...model.swing.swing import STARTS, Swing, with_start_of_machine
-from ...model.turning_cylinder.batch import lever_passes
-from ...model.turning_cylinder.machine import lever_sizes
+from ...model.turning_cylinder.lever_of_design import lever_sizes
+from ...model.turning_cylinder.levers_of_designs import can_make_motion
 from ...objectives.lever_geometry import CYLINDER_TRAVEL
 from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swing_columns import swing_quantities
@@ -50,13 +50,13 @@ class PossibleSwing(Feasibility):
         """Return the slider position of the example, m, or the length of its cylinder, at a crank angle, rad."""
         assert self.example is not None
         if self.example_lever is not None:
-            return float(lever_sizes(self.example_lever, Linkage(*self.example)).length(crank_angle))
+            return float(lever_sizes(self.example_lever, Linkage(*self.example)).cylinder_length(crank_angle))
         return float(slider_positions(crank_angle, self.branch, np.array([self.example]))[0])
 
     def ends_of(self, swing: Swing) -> tuple[float, float]:
         """Return the positions at both ends of the example's swing, m; of a full turn the least and the greatest."""
         if self.example_lever is not None and self.example is not None and swing.of_full_turn:
-            return lever_sizes(self.example_lever, Linkage(*self.example)).length_range
+            return lever_sizes(self.example_lever, Linkage(*self.example)).closable_length_range
         return self.position_at(swing.start), self.position_at(swing.end)
 
 
@@ -139,7 +139,7 @@ def _possible_lever(problem: Problem) -> PossibleSwing | None:
         return None
     light = replace(problem, objectives=(Objective(quantity=CYLINDER_TRAVEL.name, sense="minimise"),))
     box, is_uniform = sampled_designs(replace(light, constraints=()))
-    passing = lever_passes(light.mechanism, swing, box)
+    passing = can_make_motion(light.mechanism, swing, box)
     screening = run_within(PATIENCE, lambda: screened_samples(light))
     checked = light if screening is not None else replace(light, constraints=())
     sample = screened_samples(checked) if screening is None else screening

@@ -12,7 +12,7 @@ from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.swing.swing import CRANK_TURN
-from slidercrank.model.turning_cylinder.turn import PIECES, turn_state
+from slidercrank.model.turning_cylinder.crank_turn_state import PIECES, turn_state
 from slidercrank.objectives.swing_quantity import SwingQuantity
 from slidercrank.objectives.tables.swing_columns import swing_quantities
 from tests.model.turning_cylinder.turns import numbers_of, some_turn

@@ -10,7 +10,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.links import RigidLink
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing_types import LeverLaw
-from ....model.turning_cylinder.summary import LeverPoint, LeverSummary, summarise
+from ....model.turning_cylinder.swing_summary import LeverPoint, LeverSummary, summarise_swing
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind
 from ...designs.design_curves import lever_rows
@@ -118,7 +118,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
     Raises `AssemblyError` if the linkage does not close, and `InputError` for a dead point within the swing or an
     unsuitable cylinder.
     """
-    summary = summarise(request.machine, request.swing, request.cylinder, request.errors)
+    summary = summarise_swing(request.machine, request.swing, request.cylinder, request.errors)
     sizes, swing = request.machine.sizes, request.swing
     record: dict[str, Any] = {
         "crank_mm": 1e3 * sizes.crank,
@@ -134,7 +134,7 @@ def numbers(mechanism: Mechanism, _: Linkage, *, request: LeverRequest, **option
         "end_length_mm": 1e3 * summary.lengths[1],
         "travel_mm": 1e3 * abs(summary.lengths[1] - summary.lengths[0]),
         "extension_ratio": summary.extension_ratio,
-        "single_stage": summary.single_stage,
+        "single_stage": summary.suits_single_stage_cylinder,
         "push_at_start_N": summary.hold[0],
         "push_at_end_N": summary.hold[1],
     }
@@ -180,7 +180,7 @@ def _value_and_place(name: str, kind: Kind, point: LeverPoint | None) -> dict[st
 def _notes(mechanism: Mechanism, request: LeverRequest, summary: LeverSummary) -> list[str]:
     spring = request.machine.spring
     notes = [] if spring is None else [f"with the spring of the job: {spring.text}"]
-    if not summary.single_stage:
+    if not summary.suits_single_stage_cylinder:
         shortest, longest = sorted(1e3 * length for length in summary.lengths)
         notes.append(_TELESCOPIC.format(shortest=shortest, longest=longest))
     if summary.push.value == summary.pull.value == 0.0:

@@ -14,8 +14,8 @@ from ....model.machine.lever_cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing import Swing, swing_between_crank_angles
 from ....model.swing.swing_types import LeverLaw
-from ....model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
-from ....model.turning_cylinder.lever import DimensionErrors, TurningCylinder
+from ....model.turning_cylinder.cylinder_and_pin_forces import LeverBody, LeverMachine, LeverSwing, UniformBar
+from ....model.turning_cylinder.lever_geometry import DimensionErrors, TurningCylinder
 
 _GRAVITY = 9.81  # m/s^2
 _CYLINDER = {
@@ -70,7 +70,7 @@ def lever_request(
     design = derived_design(mechanism, linkage)
     given = {name: inputs[key] for key, name in _CYLINDER.items() if key in inputs}
     cylinder = replace(_cylinder_of_job(mechanism, swing), **given)
-    shortest, longest = sorted(float(sizes.length(angle)) for angle in (lever_swing.start, lever_swing.end))
+    shortest, longest = sorted(float(sizes.cylinder_length(angle)) for angle in (lever_swing.start, lever_swing.end))
     closed, _ = cylinder.closed_and_stroke(longest - shortest) or (shortest, None)
     machine = LeverMachine(
         sizes=sizes,
@@ -105,7 +105,7 @@ def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any])
         moment_across=float(design.crank_across),
         inertia=float(design.crank_inertia),
     )
-    return body.carrying(mass, centre or 0.0, inputs.get("centre_across", 0.0))
+    return body.with_point_mass(mass, centre or 0.0, inputs.get("centre_across", 0.0))
 
 
 def _gravity(mechanism: Mechanism, downward: float | None) -> tuple[float, float]:

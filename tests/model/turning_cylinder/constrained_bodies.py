@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.turning_cylinder.forces import LeverMachine
+from slidercrank.model.turning_cylinder.cylinder_and_pin_forces import LeverMachine
 
 STEP = 1e-30
 Numbers = NDArray[np.float64]

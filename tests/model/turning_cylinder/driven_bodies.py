@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from slidercrank.model.turning_cylinder.states import LeverNumbers
+from slidercrank.model.turning_cylinder.lever_state import LeverNumbers
 
 STEP = 1e-30
 Complex = NDArray[np.complex128]
@@ -42,7 +42,7 @@ class DrivenBodies:
     def __init__(self, c: LeverNumbers) -> None:
         """Place the centres; those of crank and arm follow from their first moments."""
         self.c = c
-        self.crank = c.along / c.lever_mass, c.across / c.lever_mass
+        self.crank = c.moment_along / c.lever_mass, c.moment_across / c.lever_mass
         self.arm = c.arm_moment / c.arm_mass
         self.frame = np.array([np.cos(c.frame_angle), np.sin(c.frame_angle)])
         self.normal = np.array([-self.frame[1], self.frame[0]])

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from slidercrank.model.machine.lever_spring import LeverSpring
-from slidercrank.model.turning_cylinder.forces import LeverBody, LeverMachine, LeverSwing, UniformBar
-from slidercrank.model.turning_cylinder.lever import TurningCylinder
+from slidercrank.model.turning_cylinder.cylinder_and_pin_forces import LeverBody, LeverMachine, LeverSwing, UniformBar
+from slidercrank.model.turning_cylinder.lever_geometry import TurningCylinder
 
 
 def some_sizes(random: np.random.Generator) -> TurningCylinder:
@@ -29,7 +29,7 @@ def some_ends(sizes: TurningCylinder, random: np.random.Generator) -> tuple[floa
     """Return two lever angles on one side of the dead points, in either order, some of them turns away."""
     low, high = sorted(random.uniform(math.radians(12.0), math.radians(168.0), 2).tolist())
     side = float(random.choice([-1.0, 1.0]))
-    shift = 2.0 * math.pi * int(random.integers(-2, 3)) - float(sizes.relative_angle(0.0))
+    shift = 2.0 * math.pi * int(random.integers(-2, 3)) - float(sizes.angle_from_frame_to_crank(0.0))
     ends = [side * low + shift, side * (high + 0.02) + shift]
     random.shuffle(ends)
     return ends[0], ends[1]
@@ -40,7 +40,7 @@ def some_machine(random: np.random.Generator) -> tuple[LeverMachine, LeverSwing]
     sizes = some_sizes(random)
     mass, along, across, barrel, rod = random.uniform(0.5, 90.0, 5).tolist()
     lengths = random.uniform(0.1, 1.0, 2)
-    lever = LeverBody(inertia=float(random.uniform(0.0, 5.0))).carrying(mass, 0.01 * along, 0.01 * across - 0.4)
+    lever = LeverBody(inertia=float(random.uniform(0.0, 5.0))).with_point_mass(mass, 0.01 * along, 0.01 * across - 0.4)
     gravity = random.normal(0.0, 7.0, 2).tolist()
     machine = LeverMachine(
         sizes=sizes,

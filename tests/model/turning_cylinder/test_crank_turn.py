@@ -9,15 +9,15 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.turning_cylinder.closed_forms import (
-    arm_swing,
-    arm_time_ratio,
-    arm_transmission_angle,
+    arm_swing_angle,
+    arm_time_ratio_at_constant_crank_speed,
+    crank_work_per_turn,
+    least_arm_transmission_angle,
     ram_stroke,
-    turn_work,
 )
-from slidercrank.model.turning_cylinder.lever import TurningCylinder, lever_angle_at, motion_at
-from slidercrank.model.turning_cylinder.states import lever_state
-from slidercrank.model.turning_cylinder.turn import PIECES, place_of_angle, stroke_ends, turn_state
+from slidercrank.model.turning_cylinder.crank_turn_state import PIECES, fast_stroke_ends, place_in_turn, turn_state
+from slidercrank.model.turning_cylinder.lever_geometry import TurningCylinder, lever_angle_at, motion_at
+from slidercrank.model.turning_cylinder.lever_state import lever_state
 from tests.model.turning_cylinder.driven_bodies import DrivenBodies
 from tests.model.turning_cylinder.turns import numbers_of, some_turn
 
@@ -58,7 +58,7 @@ def test_the_work_of_a_turn_is_that_of_torque_force_and_friction() -> None:
         state = turn_state(c, PLACES, PLACES)
         parts = state.torque * state.stretch * np.tile(WEIGHTS, PIECES)
         work = math.copysign(1.0, c.speed) * float(parts.sum())
-        assert work == pytest.approx(float(np.real(turn_work(c))), abs=1e-6 * float(np.abs(parts).sum()))
+        assert work == pytest.approx(float(np.real(crank_work_per_turn(c))), abs=1e-6 * float(np.abs(parts).sum()))
 
 
 def test_the_cylinder_that_moves_the_lever_in_the_same_way_has_the_same_power() -> None:
@@ -74,7 +74,8 @@ def test_the_cylinder_that_moves_the_lever_in_the_same_way_has_the_same_power() 
         assert lever_angle_at(c, state.length, angle) == pytest.approx(angle, abs=1e-10)
         ends = c._replace(start=angle - 1e-3, end=angle + 1e-3, rate=0.0)
         slow = turn_state(c._replace(speed=0.0), place, place)
-        held = lever_state(ends, "slow", (slow.length - ends.ends[0]) / (ends.ends[1] - ends.ends[0]), 0.5)
+        first, last = ends.cylinder_end_lengths
+        held = lever_state(ends, "slow", (slow.length - first) / (last - first), 0.5)
         assert held.lever_angle == pytest.approx(angle, abs=1e-10)
         sizes = abs(slow.torque) + abs(held.push * slow.length_1) + 1e-9
         assert held.push * slow.length_1 == pytest.approx(slow.torque, abs=1e-10 * sizes)
@@ -86,34 +87,36 @@ def test_the_fast_stroke_is_between_reversals_or_normals_of_the_frame(rotates: b
     for _ in range(8):
         mechanism, design = some_turn(random, rotates=rotates)
         c = numbers_of(mechanism, design)
-        for psi in (-stroke_ends(c)[0], stroke_ends(c)[1]):
+        for psi in (-fast_stroke_ends(c)[0], fast_stroke_ends(c)[1]):
             motion = motion_at(c, psi + c.frame_angle - c.pin_angle)
             across = motion.line[0] * math.cos(c.frame_angle) + motion.line[1] * math.sin(c.frame_angle)
             assert (across if rotates else motion.turn_1) == pytest.approx(0.0, abs=1e-9)
         angles = np.linspace(0.0, 2.0 * math.pi, 4001)
-        state = turn_state(c, place_of_angle(c, angles), place_of_angle(c, angles))
+        state = turn_state(c, place_in_turn(c, angles), place_in_turn(c, angles))
         assert np.mod(state.crank_angle - angles + 1.0, 2.0 * math.pi) == pytest.approx(np.ones(4001), abs=1e-9)
         gamma = np.unwrap(np.arctan2(state.line[1], state.line[0]))
-        assert float(np.ptp(gamma)) == pytest.approx(float(np.real(arm_swing(c))), rel=1e-5)
+        assert float(np.ptp(gamma)) == pytest.approx(float(np.real(arm_swing_angle(c))), rel=1e-5)
         ram = c.ram * np.sin(gamma - c.frame_angle)
         assert float(np.ptp(ram)) == pytest.approx(float(ram_stroke(c)), rel=1e-5)
         least = np.arccos(np.abs(c.offset) / np.hypot(state.length, c.offset)).min()
-        assert float(arm_transmission_angle(c)) == pytest.approx(float(least), abs=1e-4)
-        assert float(np.real(arm_time_ratio(c))) == pytest.approx(
-            TurningCylinder(crank=c.crank, frame=c.frame, frame_angle=0.0, offset=c.offset).time_ratio, rel=1e-12
-        )
+        assert float(least_arm_transmission_angle(c)) == pytest.approx(float(least), abs=1e-4)
+        sizes = TurningCylinder(crank=c.crank, frame=c.frame, frame_angle=0.0, offset=c.offset)
+        ratio = float(np.real(arm_time_ratio_at_constant_crank_speed(c)))
+        assert ratio == pytest.approx(sizes.time_ratio_of_full_turn, rel=1e-12)
 
 
 def test_a_shaper_and_a_whitworth_mechanism_have_the_numbers_of_their_triangles() -> None:
     """A crank half as long as the frame swings its arm by 60 deg. With 50 and 75 mm, the fast stroke is 2 acos(2/3)."""
     mechanism, _ = some_turn(np.random.default_rng(55))
     shaper = numbers_of(mechanism, np.array([[0.12, 0.24, 0.0]]))._replace(ram=0.45)
-    assert float(np.real(arm_time_ratio(shaper))) == pytest.approx(2.0, rel=1e-12)
-    assert math.degrees(float(np.real(arm_swing(shaper)))) == pytest.approx(60.0, rel=1e-12)
+    assert float(np.real(arm_time_ratio_at_constant_crank_speed(shaper))) == pytest.approx(2.0, rel=1e-12)
+    assert math.degrees(float(np.real(arm_swing_angle(shaper)))) == pytest.approx(60.0, rel=1e-12)
     assert 1e3 * float(ram_stroke(shaper)) == pytest.approx(450.0, rel=1e-12)
     whitworth = numbers_of(mechanism, np.array([[0.075, 0.05, 0.0]]))
     fast = 2.0 * math.acos(0.05 / 0.075)
-    assert float(np.real(arm_time_ratio(whitworth))) == pytest.approx(2.0 * math.pi / fast - 1.0, rel=1e-12)
+    assert float(np.real(arm_time_ratio_at_constant_crank_speed(whitworth))) == pytest.approx(
+        2.0 * math.pi / fast - 1.0, rel=1e-12
+    )
 
 
 def test_a_crank_that_locks_is_refused_with_its_sizes() -> None:

@@ -13,9 +13,9 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.lever_cylinder import Cylinder
 from slidercrank.model.swing.swing_types import LeverLaw
-from slidercrank.model.turning_cylinder.forces import LeverSwing, lever_curves
-from slidercrank.model.turning_cylinder.lever import DimensionErrors, TurningCylinder
-from slidercrank.model.turning_cylinder.summary import summarise
+from slidercrank.model.turning_cylinder.cylinder_and_pin_forces import LeverSwing, lever_curves
+from slidercrank.model.turning_cylinder.lever_geometry import DimensionErrors, TurningCylinder
+from slidercrank.model.turning_cylinder.swing_summary import summarise_swing
 from tests.model.turning_cylinder.machines import some_machine
 from tests.model.turning_cylinder.test_lever_forces import LIFT, carrying_80_kg
 
@@ -24,8 +24,8 @@ SLOW = LeverSwing(*LIFT)
 
 
 def test_the_published_swing_says_whether_a_single_stage_cylinder_can_make_it() -> None:
-    long, short = summarise(carrying_80_kg(0.4, 0.6), SLOW, Cylinder()), summarise(TIPPER, SLOW, Cylinder())
-    assert (long.single_stage, short.single_stage) == (False, True)
+    long, short = summarise_swing(carrying_80_kg(0.4, 0.6), SLOW, Cylinder()), summarise_swing(TIPPER, SLOW, Cylinder())
+    assert (long.suits_single_stage_cylinder, short.suits_single_stage_cylinder) == (False, True)
     assert long.extension_ratio == pytest.approx(827.145 / 390.255, rel=1e-5)
     assert short.push.value == pytest.approx(1710.09, abs=5e-3)
     assert short.push.lever_angle == pytest.approx(LIFT[0])
@@ -40,7 +40,7 @@ def test_peaks_are_those_of_a_dense_sweep_in_both_directions() -> None:
     for _ in range(12):
         machine, swing = some_machine(random)
         cylinder = Cylinder(bore=0.08, rod=0.04, seal_friction=35.0)
-        found, curves = summarise(machine, swing, cylinder), lever_curves(machine, swing, share)
+        found, curves = summarise_swing(machine, swing, cylinder), lever_curves(machine, swing, share)
         rest = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
         push = np.append(curves.push, rest.push)
         size = float(np.abs(push).max()) + 35.0
@@ -63,9 +63,9 @@ def test_peaks_are_those_of_a_dense_sweep_in_both_directions() -> None:
 
 def test_pressures_are_forces_over_the_full_and_the_annular_area() -> None:
     cylinder = Cylinder(bore=0.04, rod=0.02, seal_friction=50.0)
-    found = summarise(TIPPER, SLOW, cylinder)
+    found = summarise_swing(TIPPER, SLOW, cylinder)
     assert found.pressures == pytest.approx((1760.0899 / (math.pi * 4e-4), 0.0), rel=1e-6)
-    down = summarise(replace(TIPPER, gravity=(0.0, 9.81)), SLOW, cylinder)
+    down = summarise_swing(replace(TIPPER, gravity=(0.0, 9.81)), SLOW, cylinder)
     assert down.pressures == pytest.approx((0.0, 1760.0899 / (math.pi * 3e-4)), rel=1e-6)
     assert down.buckling_margin is None
     assert found.flows is None
@@ -77,7 +77,7 @@ def test_the_buckling_margin_is_the_load_of_the_slender_column_over_the_push() -
     assert load is not None
     assert load[0] == pytest.approx(math.pi**3 * 210e9 * 0.02**4 / 64.0, rel=1e-12)
     assert load[0] == pytest.approx(16278.0, rel=1e-4)
-    found = summarise(TIPPER, SLOW, Cylinder(rod=0.02)).buckling_margin
+    found = summarise_swing(TIPPER, SLOW, Cylinder(rod=0.02)).buckling_margin
     assert found is not None
     curves = lever_curves(TIPPER, SLOW, np.linspace(0.0, 1.0, 5001))
     assert found.value == pytest.approx(float((load[0] / curves.length**2 / curves.push).min()), rel=1e-6)
@@ -85,12 +85,12 @@ def test_the_buckling_margin_is_the_load_of_the_slender_column_over_the_push() -
 
 def test_sizes_that_take_the_whole_stroke_make_the_swing_with_it() -> None:
     cylinder = Cylinder(closed_length=0.64, stroke=0.44)
-    fitting = summarise(TIPPER, SLOW, cylinder).fitting_sizes
+    fitting = summarise_swing(TIPPER, SLOW, cylinder).fitting_sizes
     assert fitting is not None
     swapped = replace(TIPPER, sizes=replace(TIPPER.sizes, crank=0.9, frame=0.35))
-    assert summarise(swapped, SLOW, cylinder).fitting_sizes == pytest.approx(fitting[::-1], rel=1e-12)
+    assert summarise_swing(swapped, SLOW, cylinder).fitting_sizes == pytest.approx(fitting[::-1], rel=1e-12)
     lengths = [
-        TurningCylinder(crank=one, frame=other, frame_angle=math.radians(-60.0)).length(np.array(LIFT))
+        TurningCylinder(crank=one, frame=other, frame_angle=math.radians(-60.0)).cylinder_length(np.array(LIFT))
         for one, other in (fitting, fitting[::-1])
     ]
     assert np.allclose(lengths, [0.64, 1.08], rtol=1e-9)
@@ -99,13 +99,13 @@ def test_sizes_that_take_the_whole_stroke_make_the_swing_with_it() -> None:
 @pytest.mark.parametrize("law", ["constant", "harmonic", "cycloidal"])
 def test_the_cylinder_holds_the_lever_at_both_ends_whatever_the_law(law: LeverLaw) -> None:
     """Moments about O: 80 kg at 0.7 m, arm r f sin(psi) / L, psi = 40 deg."""
-    arm = 0.35 * 0.9 * math.sin(math.radians(40.0)) / float(TIPPER.sizes.length(LIFT[0]))
+    arm = 0.35 * 0.9 * math.sin(math.radians(40.0)) / float(TIPPER.sizes.cylinder_length(LIFT[0]))
     hold = 80.0 * 9.81 * 0.7 * math.cos(LIFT[0]) / arm
     swing, cylinder = LeverSwing(*LIFT, law, 4.0), Cylinder(bore=0.04, rod=0.02)
-    found = summarise(TIPPER, swing, cylinder)
+    found = summarise_swing(TIPPER, swing, cylinder)
     assert found.push.value >= hold * (1.0 - 1e-12)
     with pytest.raises(InputError, match="raise it, enlarge the bore"):
-        summarise(TIPPER, swing, replace(cylinder, supply_pressure=0.9999 * hold / (math.pi * 4e-4)))
+        summarise_swing(TIPPER, swing, replace(cylinder, supply_pressure=0.9999 * hold / (math.pi * 4e-4)))
 
 
 def test_needs_suffice_as_reported() -> None:
@@ -115,20 +115,20 @@ def test_needs_suffice_as_reported() -> None:
     )
     for field, pattern, unit, given in cases:
         with pytest.raises(InputError) as refused:
-            summarise(TIPPER, SLOW, Cylinder(**given))
+            summarise_swing(TIPPER, SLOW, Cylinder(**given))
         (reported,) = re.findall(pattern, str(refused.value))
         needed = float(reported) * unit
-        summarise(TIPPER, SLOW, Cylinder(**given | {field: needed}))
+        summarise_swing(TIPPER, SLOW, Cylinder(**given | {field: needed}))
         with pytest.raises(InputError):
-            summarise(TIPPER, SLOW, Cylinder(**given | {field: 0.9998 * needed}))
+            summarise_swing(TIPPER, SLOW, Cylinder(**given | {field: 0.9998 * needed}))
 
 
 def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
-    assert summarise(TIPPER, SLOW, Cylinder()).angle_error is None
-    assert summarise(TIPPER, SLOW, Cylinder(), DimensionErrors()).angle_error is None
-    found = summarise(TIPPER, SLOW, Cylinder(), DimensionErrors(length=1e-3)).angle_error
+    assert summarise_swing(TIPPER, SLOW, Cylinder()).angle_error is None
+    assert summarise_swing(TIPPER, SLOW, Cylinder(), DimensionErrors()).angle_error is None
+    found = summarise_swing(TIPPER, SLOW, Cylinder(), DimensionErrors(length=1e-3)).angle_error
     assert found is not None
-    assert found.value == pytest.approx(1e-3 / min(TIPPER.sizes.at(np.array(LIFT)).length_1), rel=1e-9)
+    assert found.value == pytest.approx(1e-3 / min(TIPPER.sizes.motion_at(np.array(LIFT)).length_1), rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -161,40 +161,40 @@ def test_an_error_of_the_lever_angle_needs_tolerances() -> None:
 )
 def test_a_cylinder_that_cannot_make_the_swing_is_refused_with_the_amount(sizes: dict[str, Any], part: str) -> None:
     with pytest.raises(InputError, match=part):
-        summarise(TIPPER, SLOW, Cylinder(**sizes))
+        summarise_swing(TIPPER, SLOW, Cylinder(**sizes))
 
 
 def test_a_swing_may_use_its_whole_cylinder_within_rounding() -> None:
-    lengths = TIPPER.sizes.length(np.array(LIFT))
-    needed = summarise(TIPPER, SLOW, Cylinder(bore=0.04))
+    lengths = TIPPER.sizes.cylinder_length(np.array(LIFT))
+    needed = summarise_swing(TIPPER, SLOW, Cylinder(bore=0.04))
     assert needed.pressures is not None
     closed = float(lengths[0]) * (1.0 + 1e-12)
     cylinder = Cylinder(closed_length=closed, stroke=float(lengths[1]) * (1.0 - 1e-12) - closed, bore=0.04)
-    summarise(TIPPER, SLOW, replace(cylinder, supply_pressure=needed.pressures[0] * (1.0 - 1e-12)))
+    summarise_swing(TIPPER, SLOW, replace(cylinder, supply_pressure=needed.pressures[0] * (1.0 - 1e-12)))
 
 
 def test_a_dead_length_adds_to_the_stroke_or_to_the_travel() -> None:
     lengths = 0.670740, 1.071435
     known = Cylinder(dead_length=0.2, stroke=0.44)
     assert known.closed_and_stroke(0.4) == pytest.approx((0.64, 0.44))
-    assert summarise(TIPPER, SLOW, known).fitting_sizes == pytest.approx(
-        summarise(TIPPER, SLOW, Cylinder(closed_length=0.64, stroke=0.44)).fitting_sizes
+    assert summarise_swing(TIPPER, SLOW, known).fitting_sizes == pytest.approx(
+        summarise_swing(TIPPER, SLOW, Cylinder(closed_length=0.64, stroke=0.44)).fitting_sizes
     )
     assert Cylinder(dead_length=0.22).closed_and_stroke(0.4) == pytest.approx((0.62, 0.4))
-    summarise(TIPPER, SLOW, Cylinder(dead_length=lengths[0] - (lengths[1] - lengths[0]) - 1e-5))
+    summarise_swing(TIPPER, SLOW, Cylinder(dead_length=lengths[0] - (lengths[1] - lengths[0]) - 1e-5))
     with pytest.raises(InputError, match=r"got a closed length of 700\.695 mm, and the swing needs 670\.74 mm"):
-        summarise(TIPPER, SLOW, Cylinder(dead_length=0.3))
+        summarise_swing(TIPPER, SLOW, Cylinder(dead_length=0.3))
 
 
 def test_on_a_trunnion_the_stroke_may_exceed_the_closed_length() -> None:
     cylinder = Cylinder(closed_length=0.35, stroke=0.5, mounting="trunnion", rod=0.022)
-    found = summarise(carrying_80_kg(0.4, 0.6), SLOW, cylinder)
-    assert found.single_stage
+    found = summarise_swing(carrying_80_kg(0.4, 0.6), SLOW, cylinder)
+    assert found.suits_single_stage_cylinder
     assert found.buckling_margin is not None
-    assert found.buckling_margin == summarise(carrying_80_kg(0.4, 0.6), SLOW, Cylinder(rod=0.022)).buckling_margin
+    assert found.buckling_margin == summarise_swing(carrying_80_kg(0.4, 0.6), SLOW, Cylinder(rod=0.022)).buckling_margin
     with pytest.raises(InputError, match=r'less than its closed length.* set mounting = "trunnion"'):
-        summarise(TIPPER, SLOW, replace(cylinder, mounting="clevis"))
+        summarise_swing(TIPPER, SLOW, replace(cylinder, mounting="clevis"))
     with pytest.raises(InputError, match=r"a dead length belongs to a cylinder on a clevis.*; give closed_length and"):
-        summarise(TIPPER, SLOW, Cylinder(dead_length=0.1, mounting="trunnion"))
+        summarise_swing(TIPPER, SLOW, Cylinder(dead_length=0.1, mounting="trunnion"))
     with pytest.raises(InputError, match="got both a closed length and a dead length; leave out one"):
-        summarise(TIPPER, SLOW, Cylinder(dead_length=0.1, closed_length=0.5, stroke=0.4))
+        summarise_swing(TIPPER, SLOW, Cylinder(dead_length=0.1, closed_length=0.5, stroke=0.4))

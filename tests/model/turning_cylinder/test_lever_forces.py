@@ -12,14 +12,14 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.machine.lever_spring import LeverSpring
 from slidercrank.model.quadrature import gauss_nodes_and_weights
 from slidercrank.model.swing.law import travel_speed_acceleration
-from slidercrank.model.turning_cylinder.forces import (
+from slidercrank.model.turning_cylinder.cylinder_and_pin_forces import (
     LeverBody,
     LeverMachine,
     LeverSwing,
     UniformBar,
     lever_curves,
 )
-from slidercrank.model.turning_cylinder.lever import TurningCylinder
+from slidercrank.model.turning_cylinder.lever_geometry import TurningCylinder
 from tests.model.turning_cylinder.constrained_bodies import Bodies
 from tests.model.turning_cylinder.machines import some_machine, some_spring
 
@@ -29,7 +29,7 @@ LIFT = math.radians(-20.0), math.radians(50.0)
 def carrying_80_kg(crank: float, frame: float) -> LeverMachine:
     """Return a lever that carries 80 kg at 0.70 m, its cylinder on a frame at -60 deg."""
     sizes = TurningCylinder(crank=crank, frame=frame, frame_angle=math.radians(-60.0))
-    return LeverMachine(sizes=sizes, lever=LeverBody().carrying(80.0, 0.7))
+    return LeverMachine(sizes=sizes, lever=LeverBody().with_point_mass(80.0, 0.7))
 
 
 @pytest.mark.parametrize("sprung", [False, True])
@@ -42,7 +42,7 @@ def test_forces_of_random_machines_are_those_of_free_bodies_with_constraints(spr
         share = random.uniform(0.05, 0.95, 1)
         curves = lever_curves(machine, swing, share)
         rate = 0.0 if swing.duration is None else 1.0 / swing.duration
-        first, last = (float(machine.sizes.length(angle)) for angle in (swing.start, swing.end))
+        first, last = (float(machine.sizes.cylinder_length(angle)) for angle in (swing.start, swing.end))
         s, s_1, s_2 = (float(part[0]) for part in travel_speed_acceleration(swing.law, share))
         angle, gamma = float(curves.lever_angle[0]), float(curves.cylinder_angle[0])
         guess = np.array([0.0, 0.0, angle, 0.0, 0.0, gamma, 0.0, 0.0, gamma]) + random.normal(0.0, 0.01, 9)
@@ -67,7 +67,7 @@ def test_the_work_of_the_slow_cylinder_lifts_the_weights_and_loads_the_spring() 
             machine = replace(machine, spring=some_spring(random))
         slow = replace(swing, law="slow", duration=None)
         curves = lever_curves(machine, slow, share)
-        first, last = (float(machine.sizes.length(angle)) for angle in (slow.start, slow.end))
+        first, last = (float(machine.sizes.cylinder_length(angle)) for angle in (slow.start, slow.end))
         parts = (last - first) * weight * curves.push
         work = machine.energy_to_lift(slow.start, slow.end)
         assert float(parts.sum()) == pytest.approx(work, abs=2e-6 * float(np.abs(parts).sum()))
@@ -116,7 +116,7 @@ def test_a_lever_that_lifts_80_kg_has_the_lengths_and_forces_of_the_law_of_cosin
 def test_a_cylinder_without_mass_pushes_along_the_line_of_its_pins() -> None:
     machine = replace(carrying_80_kg(0.35, 0.9), piston_rod=UniformBar(length=0.4))
     curves = lever_curves(machine, LeverSwing(*LIFT), np.linspace(0.0, 1.0, 9))
-    span = machine.sizes.at(curves.lever_angle).span
+    span = machine.sizes.motion_at(curves.lever_angle).span
     assert np.allclose(np.angle(curves.pin / span), 0.0, atol=1e-12)
     assert np.allclose(np.abs(curves.pin), curves.push, rtol=1e-12)
 

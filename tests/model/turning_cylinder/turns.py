@@ -11,8 +11,8 @@ from slidercrank.model.machine.lever_cylinder import Cylinder
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import CRANK_TURN
-from slidercrank.model.turning_cylinder.batch import lever_batch
-from slidercrank.model.turning_cylinder.states import LeverNumbers
+from slidercrank.model.turning_cylinder.lever_state import LeverNumbers
+from slidercrank.model.turning_cylinder.levers_of_designs import lever_batch
 
 
 def some_turn(random: np.random.Generator, *, rotates: bool | None = None) -> tuple[Mechanism, Array]:

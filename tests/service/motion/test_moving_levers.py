@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.turning_cylinder.machine import lever_machine, lever_swing
+from slidercrank.model.turning_cylinder.lever_of_design import lever_machine, lever_swing
 from slidercrank.optimise.job import parse_job
 from slidercrank.service.drawings.lever_parts import lever_extent, moving_lever_shapes
 from slidercrank.service.drawings.shapes import Circle, Line, Outline
@@ -58,7 +58,7 @@ def test_arm_and_ram_of_a_drawing_join_and_stay_within_its_extent(lengths: tuple
     swing = lever_swing(problem.mechanism, linkage, problem.motion)
     left, bottom, right, top = lever_extent(machine, swing)
     for angle in np.linspace(0.0, 2.0 * np.pi, 13):
-        line = complex(machine.sizes.at(np.array([angle])).line[0])
+        line = complex(machine.sizes.motion_at(np.array([angle])).line[0])
         shapes = moving_lever_shapes(machine, swing, angle)
         pin = -1j * lengths[1] + 0.5 * line
         assert [1e3 * pin.real, 1e3 * pin.imag] in [

@@ -19,8 +19,8 @@ from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import LEVER, SPRING, START, RawNumbers, raw_machine_numbers
 from ..machine.varying_numbers import number_at
 from ..swing.swing import Swing
-from .peaks import LeverBatch
-from .states import LeverNumbers
+from .curve_peaks import LeverBatch
+from .lever_state import LeverNumbers
 
 _FIELDS = Design._fields
 _MARGIN = 1e-9
@@ -49,13 +49,13 @@ def lever_batch(
     return LeverBatch(plain, law, tuple(stepped), of_full_turn=swing.of_full_turn), numbers
 
 
-def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int, Any]) -> LeverNumbers:
-    """Return numbers (n,). block: (n, rows), see `machine.design`. own: raw numbers that designs set, by slot."""
+def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, raw_numbers_by_slot: dict[int, Any]) -> LeverNumbers:
+    """Return numbers (n,). block: (n, rows), see `machine.design`. raw_numbers_by_slot: those that designs set."""
     machine = mechanism.nominal
 
     def part(name: str) -> Any:
         slot = LEVER[name]
-        number = own[slot] if slot in own else number_at(machine, f"lever.{name}")
+        number = raw_numbers_by_slot[slot] if slot in raw_numbers_by_slot else number_at(machine, f"lever.{name}")
         return np.nan if number is None else number
 
     def of_block(*names: str) -> list[Any]:
@@ -66,7 +66,7 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
         start = part("frame_angle") - part("pin_angle")
         end = start + np.pi
     else:
-        start = own.get(START["crank"], swing.start)
+        start = raw_numbers_by_slot.get(START["crank"], swing.start)
         end = start + (swing.end - swing.start) if swing.follows else swing.end
     cylinder_numbers = {name.removeprefix("cylinder."): part(name) for name in LEVER if name.startswith("cylinder.")}
     cylinder = SimpleNamespace(**cylinder_numbers)
@@ -74,12 +74,12 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     rod_of_area = 0.0 if machine.lever is not None and machine.lever.cylinder.rod is None else rod
     angles = part("frame_angle"), offset, part("pin_angle"), start, end
     sizes = LeverNumbers._make([crank, frame, *angles, *[0.0] * (len(LeverNumbers._fields) - 7)])
-    first, last = sizes.ends
+    first, last = sizes.cylinder_end_lengths
     rises = np.real(last - first) > 0.0
     closed_length, stroke = cylinder.closed_length, cylinder.stroke
-    if _is_known(cylinder.dead_length):
-        closed_length = cylinder.dead_length + (stroke if _is_known(stroke) else magnitude(last - first))
-    length = closed_length if _is_known(closed_length) else np.where(rises, first, last)
+    if _is_number_given(cylinder.dead_length):
+        closed_length = cylinder.dead_length + (stroke if _is_number_given(stroke) else magnitude(last - first))
+    length = closed_length if _is_number_given(closed_length) else np.where(rises, first, last)
     numbers: tuple[Any, ...] = (
         *(crank, frame, *angles, 0.0 if swing.duration is None else 1.0 / swing.duration),
         *of_block("crank_mass", "crank_along", "crank_across", "crank_inertia", "gravity_x", "gravity_y"),
@@ -93,28 +93,28 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, own: dict[int
     return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in LeverNumbers(*numbers)))
 
 
-def _is_known(number: Any) -> bool:
+def _is_number_given(number: Any) -> bool:
     """Return whether a number is given."""
     return not bool(np.isnan(np.real(number)).all())
 
 
-def _arm_numbers(part: Callable[[str], Any]) -> tuple[Any, ...]:
-    """Return the numbers of the arm as `LeverNumbers` has them. part: function of a number's name."""
-    mass, centre, inertia, torque, ram, *rest = (part(name) for name in LEVER if name.startswith("arm."))
+def _arm_numbers(number_by_name: Callable[[str], Any]) -> tuple[Any, ...]:
+    """Return the numbers of the arm as `LeverNumbers` has them. number_by_name: function of a name."""
+    mass, centre, inertia, torque, ram, *rest = (number_by_name(name) for name in LEVER if name.startswith("arm."))
     moment = mass * centre
-    return mass, moment, inertia + moment * centre, torque, ram if _is_known(ram) else 0.0, *rest
+    return mass, moment, inertia + moment * centre, torque, ram if _is_number_given(ram) else 0.0, *rest
 
 
-def lever_passes(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
+def can_make_motion(mechanism: Mechanism, swing: Swing, designs: Array) -> Mask:
     """Return which designs (n, 3 + k) make the swing without a dead point, or the full turn.
 
     Where they vary, the bore must exceed the piston rod, and the closed length the stroke, in each design.
     """
-    return _passes(mechanism, np.ascontiguousarray(designs, dtype=np.float64), swing).copy()
+    return _can_make_motion(mechanism, np.ascontiguousarray(designs, dtype=np.float64), swing).copy()
 
 
 @memoise_by_batch
-def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
+def _can_make_motion(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
     passing = np.isfinite(designs).all(axis=1) & (designs[:, 0] > 0.0) & (designs[:, 1] > 0.0)
     rows = np.flatnonzero(passing)
     if not len(rows):
@@ -122,18 +122,18 @@ def _passes(mechanism: Mechanism, designs: Array, /, swing: Swing) -> Mask:
     c = lever_batch(mechanism, designs[rows], swing, gradients=False)[0].plain
     if swing.of_full_turn:
         gap = np.abs(c.crank - c.frame) - np.abs(c.offset)
-        passing[rows] = (gap > _MARGIN * c.frame) & ~_unbuildable(mechanism, c)
+        passing[rows] = (gap > _MARGIN * c.frame) & ~_has_impossible_cylinder(mechanism, c)
         return passing
     first, last = (end + c.pin_angle - c.frame_angle for end in (c.start, c.end))
     between = np.floor(first / np.pi) == np.floor(last / np.pi)
     off = np.minimum(*(np.abs(np.sin(angle)) for angle in (first, last))) > _MARGIN
     with np.errstate(invalid="ignore"):
-        closing = np.minimum(*c.ends) > 0.0
-    passing[rows] = between & off & closing & ~_unbuildable(mechanism, c) & (np.abs(last - first) < np.pi)
+        closing = np.minimum(*c.cylinder_end_lengths) > 0.0
+    passing[rows] = between & off & closing & ~_has_impossible_cylinder(mechanism, c) & (np.abs(last - first) < np.pi)
     return passing
 
 
-def _unbuildable(mechanism: Mechanism, c: LeverNumbers) -> Mask:
+def _has_impossible_cylinder(mechanism: Mechanism, c: LeverNumbers) -> Mask:
     """Return which levers have an impossible cylinder, as far as it is known."""
     assert mechanism.lever is not None
     on_clevis = mechanism.lever.cylinder.mounting == "clevis"

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..machine.lever_cylinder import Cylinder
 from ..machine.mounting import Mounting
-from .forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
-from .lever import DimensionErrors, sizes_for_stroke
-from .peaks import LeverBatch, lever_peaks
-from .states import LeverNumbers
+from .curve_peaks import LeverBatch, lever_peaks
+from .cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
+from .lever_geometry import DimensionErrors, crank_and_frame_for_stroke
+from .lever_state import LeverNumbers
 
 _CURVES = (
     *("push", "pull", "pin", "pivot", "cylinder_pivot"),
@@ -32,7 +32,7 @@ class LeverPoint:
 class LeverSummary:
     """A swing out and back, SI and radians; None for what does not follow from the given numbers.
 
-    lengths: cylinder at start and end. single_stage: whether any single-stage cylinder has both, longest < 2 shortest.
+    lengths: cylinder at start and end.
     hold: push at rest at start and end, without friction of the seal. push, pull: greatest forces with it, over both
     ways and at rest at both ends; 0 where the cylinder never has to. energy_out, energy_back: work of the slow cylinder
     each way, J. power: greatest size, W. fitting_sizes: OB and OA with which the swing takes the whole stroke of the
@@ -62,7 +62,7 @@ class LeverSummary:
     fitting_sizes: tuple[float, float] | None
 
     @property
-    def single_stage(self) -> bool:
+    def suits_single_stage_cylinder(self) -> bool:
         """Whether a single-stage cylinder can have both lengths: its stroke is less than its closed length.
 
         On a trunnion it need not be.
@@ -70,7 +70,7 @@ class LeverSummary:
         return self.mounting == "trunnion" or self.extension_ratio < 2.0
 
 
-def summarise(
+def summarise_swing(
     machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, errors: DimensionErrors | None = None
 ) -> LeverSummary:
     """Return the numbers of a swing; peaks are over the continuous lever angle, and rest at both ends.
@@ -80,10 +80,10 @@ def summarise(
     sizes = machine.sizes
     sizes.require_swing(swing.start, swing.end)
     cylinder.require_sizes_to_agree(cylinder)
-    first, last = (float(sizes.length(angle)) for angle in (swing.start, swing.end))
+    first, last = (float(sizes.cylinder_length(angle)) for angle in (swing.start, swing.end))
     shortest, longest = sorted((first, last))
     fitting = _fitting_sizes(machine, swing, cylinder)
-    cylinder.require_lengths(shortest, longest, _remedy(fitting))
+    cylinder.require_lengths(shortest, longest, _remedy_text(fitting))
     rub, travel = cylinder.seal_friction, longest - shortest
     rest = lever_curves(machine, LeverSwing(swing.start, swing.end), np.array([0.0, 1.0]))
     greatest = _greatest_points(machine, swing, cylinder, errors)
@@ -119,7 +119,7 @@ def summarise(
         if speed is None or cylinder.areas is None
         else (cylinder.areas[0] * speed.value, cylinder.areas[1] * speed.value),
         buckling_margin=buckling,
-        time_ratio=sizes.time_ratio,
+        time_ratio=sizes.time_ratio_of_full_turn,
         fitting_sizes=fitting,
     )
 
@@ -129,14 +129,16 @@ def _fitting_sizes(machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder)
     if known is None or cylinder.stroke is None:
         return None
     lengths = known[0], sum(known)
-    short, long = sorted((swing.start, swing.end), key=sizes.length)
-    fitting = sizes_for_stroke(lengths, (sizes.relative_angle(short), sizes.relative_angle(long)), sizes.offset)
+    short, long = sorted((swing.start, swing.end), key=sizes.cylinder_length)
+    fitting = crank_and_frame_for_stroke(
+        lengths, (sizes.angle_from_frame_to_crank(short), sizes.angle_from_frame_to_crank(long)), sizes.offset
+    )
     if fitting is None or sizes.crank < sizes.frame:
         return fitting
     return fitting[1], fitting[0]
 
 
-def _remedy(fitting: tuple[float, float] | None) -> str:
+def _remedy_text(fitting: tuple[float, float] | None) -> str:
     if fitting is None:
         return "choose another cylinder, or move a pivot"
     crank, frame = (f"{1e3 * size:.6g} mm" for size in fitting)

@@ -25,8 +25,8 @@ from ..machine.lever_cylinder import Cylinder, buckling_number
 from ..machine.lever_spring import LeverSpring
 from ..machine.loads.load import require_word
 from ..swing.swing_types import LeverLaw
-from .lever import DimensionErrors, TurningCylinder, Vectors
-from .states import LeverNumbers, lever_state, lift
+from .lever_geometry import DimensionErrors, TurningCylinder, Vectors
+from .lever_state import LeverNumbers, lever_state, work_against_gravity_and_spring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ class LeverBody:
         require_numbers(self, "mass", "inertia", phrase="the {} of a lever", least=0.0)
         require_numbers(self, "moment_along", "moment_across", phrase="the {} of a lever")
 
-    def carrying(self, mass: float, along: float, across: float = 0.0) -> LeverBody:
+    def with_point_mass(self, mass: float, along: float, across: float = 0.0) -> LeverBody:
         """Return the lever with a point mass, kg, at a place in its own axes, m."""
         return LeverBody(
             mass=self.mass + mass,
@@ -91,7 +91,7 @@ class LeverMachine:
 
     def energy_to_lift(self, start: float, end: float) -> float:
         """Return the work, J, against gravity and spring from one lever angle to another, rad."""
-        return float(lift(numbers_of_machine(self, LeverSwing(start, end))))
+        return float(work_against_gravity_and_spring(numbers_of_machine(self, LeverSwing(start, end))))
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def lever_curves(machine: LeverMachine, swing: LeverSwing, share: Array) -> Leve
         cylinder_angle=np.unwrap(np.arctan2(state.line[1], state.line[0])),
         length=state.length,
         speed=state.speed,
-        transmission=machine.sizes.at(state.lever_angle).transmission,
+        transmission=machine.sizes.motion_at(state.lever_angle).transmission,
         push=state.push,
         pin=pin,
         pivot=pivot,

@@ -19,9 +19,9 @@ from ..signals.cycle_segments import Segments
 from ..signals.peak_search import find_maxima
 from ..swing.law import NO_TABLE, corner_times, law_code
 from ..swing.swing_types import LeverLaw
+from .crank_turn_state import PIECES
 from .curves import CURVES_OF_SWING, CURVES_OF_TURN, Complexes, fill_curves_of_swing, fill_curves_of_turn
-from .states import LeverNumbers
-from .turn import PIECES
+from .lever_state import LeverNumbers
 
 _PANELS = 1.0
 _PEAKS = 4
@@ -40,11 +40,11 @@ class LeverBatch:
     of_full_turn: bool = False
 
     @property
-    def count(self) -> int:
+    def lever_count(self) -> int:
         """Number of levers."""
         return len(self.plain.crank)
 
-    def part(self, begin: int, end: int) -> LeverBatch:
+    def levers_between(self, begin: int, end: int) -> LeverBatch:
         """Return some of the levers."""
         plain, *stepped = (
             LeverNumbers(*(number[begin:end] for number in numbers)) for numbers in (self.plain, *self.stepped)
@@ -52,21 +52,21 @@ class LeverBatch:
         return LeverBatch(plain, self.law, tuple(stepped), self.of_full_turn)
 
     @property
-    def cuts(self) -> Array:
+    def curve_breakpoints(self) -> Array:
         """Breakpoints of the curves, which do not move: fractions of the time, or places of `turn_state`."""
         return np.arange(PIECES + 1.0) if self.of_full_turn else np.array([0.0, *corner_times(self.law), 1.0])
 
     @cached_property
-    def tables(self) -> tuple[Complexes, ...]:
+    def number_tables(self) -> tuple[Complexes, ...]:
         """Numbers (n, ...) of the levers, then with each step."""
         return tuple(np.stack(numbers, axis=1, dtype=np.complex128) for numbers in (self.plain, *self.stepped))
 
-    def codes(self, curves: Sequence[str]) -> IntArray:
+    def curve_codes(self, curves: Sequence[str]) -> IntArray:
         """Return the codes of curves by name."""
         names = CURVES_OF_TURN if self.of_full_turn else CURVES_OF_SWING
         return np.array([names.index(name) for name in curves])
 
-    def values(
+    def curve_values(
         self,
         table: Complexes,
         lever: IntArray,
@@ -111,35 +111,35 @@ class _Rows:
     curves: IntArray
     numbers: int
 
-    def values(
+    def curve_values(
         self, table: Complexes, row: IntArray, place: Array | Complexes, probe: Array, *, slow: bool = False
     ) -> Complexes:
         """Return the curves (p, k) of rows at places (p, k); see `LeverBatch.values`."""
-        curve, lever = np.divmod(row, self.batch.count)
-        return self.batch.values(table, lever, self.curves[curve], place, probe, slow=slow)
+        curve, lever = np.divmod(row, self.batch.lever_count)
+        return self.batch.curve_values(table, lever, self.curves[curve], place, probe, slow=slow)
 
     def evaluate(
         self, row: IntArray, probe: Array, place: Array, *, rate: Array | None = None, gradients: bool = False
     ) -> tuple[Array, Array]:
         """Return value, slope and derivatives; see `peak_search.Curve`. Breakpoints do not move."""
-        plain, *stepped = self.batch.tables[: 1 + self.numbers] if gradients else self.batch.tables[:1]
-        found = self.values(plain, row, np.asarray(place + 1j * STEP, dtype=np.complex128), probe)
-        slopes = [self.values(table, row, place, probe).imag / STEP for table in stepped]
+        plain, *stepped = self.batch.number_tables[: 1 + self.numbers] if gradients else self.batch.number_tables[:1]
+        found = self.curve_values(plain, row, np.asarray(place + 1j * STEP, dtype=np.complex128), probe)
+        slopes = [self.curve_values(table, row, place, probe).imag / STEP for table in stepped]
         curve = np.stack([found.real, found.imag / STEP, *slopes], axis=-1)
         return curve, np.abs(found.real)
 
-    def rates(self, cuts: IntArray, probe: Array) -> Array:
+    def breakpoint_gradients(self, cuts: IntArray, probe: Array) -> Array:
         """Return the derivatives of breakpoints, which are zero."""
         return np.zeros((len(cuts), self.numbers))
 
-    def at_rest(self) -> LeverPeaks:
+    def peaks_at_rest(self) -> LeverPeaks:
         """Return the values (r, 2) with the cylinder at rest at both ends."""
-        row, ends = np.arange(len(self.curves) * self.batch.count), np.array([0.0, 1.0])
+        row, ends = np.arange(len(self.curves) * self.batch.lever_count), np.array([0.0, 1.0])
         place, rate = np.tile(ends, (len(row), 1)), LeverNumbers._fields.index("rate")
-        still = [table.copy() for table in self.batch.tables[: 1 + self.numbers]]
+        still = [table.copy() for table in self.batch.number_tables[: 1 + self.numbers]]
         for table in still:
             table[:, rate] = 0.0
-        plain, *stepped = (self.values(table, row, place, np.full(len(row), 0.5), slow=True) for table in still)
+        plain, *stepped = (self.curve_values(table, row, place, np.full(len(row), 0.5), slow=True) for table in still)
         slopes = [part.imag / STEP for part in stepped]
         gradients = np.stack(slopes, axis=-1) if slopes else np.zeros((*plain.shape, 0))
         return LeverPeaks(plain.real, 2.0 + place, gradients)
@@ -153,9 +153,9 @@ def lever_peaks(
     Those of curve c are columns c k to (c + 1) k. limit: local peaks of each curve, highest first; for a law other than
     slow, two values at rest at the ends follow.
     """
-    rows = _Rows(batch, batch.codes(curves), len(batch.stepped) if gradients else 0)
-    count = batch.count * len(curves)
-    cuts = batch.cuts
+    rows = _Rows(batch, batch.curve_codes(curves), len(batch.stepped) if gradients else 0)
+    count = batch.lever_count * len(curves)
+    cuts = batch.curve_breakpoints
     pieces = len(cuts) - 1
     row, piece = np.repeat(np.arange(count), pieces), np.tile(np.arange(pieces), count)
     first = np.arange(len(row)) + 1 - pieces if batch.of_full_turn else -1
@@ -164,12 +164,12 @@ def lever_peaks(
     found = find_maxima(rows, segments, np.full(count, _PANELS), limit=limit, signed=True)
     parts = [LeverPeaks(found.values, found.places, found.slopes)]
     if batch.law != "slow":
-        parts.append(rows.at_rest())
+        parts.append(rows.peaks_at_rest())
     columns = zip(*((part.values, part.places, part.gradients) for part in parts), strict=True)
-    return LeverPeaks(*(_by_lever(column, len(curves), batch.count) for column in columns))
+    return LeverPeaks(*(_reshape_by_lever(column, len(curves), batch.lever_count) for column in columns))
 
 
-def _by_lever(parts: tuple[Array, ...], curves: int, count: int) -> Array:
+def _reshape_by_lever(parts: tuple[Array, ...], curves: int, count: int) -> Array:
     """Return peaks in motion and at rest (c n, k, ...) as (n, c k, ...)."""
     joined = np.concatenate(parts, axis=1)
     by_curve = joined.reshape(curves, count, *joined.shape[1:])

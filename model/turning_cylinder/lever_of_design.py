@@ -10,11 +10,11 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..machine.mechanism import Mechanism
 from ..swing.swing import CRANK_TURN, Swing, with_start_of_machine
-from .batch import lever_batch
-from .forces import LeverBody, LeverMachine, LeverSwing, UniformBar
-from .lever import DimensionErrors, TurningCylinder
-from .states import LeverNumbers
-from .turn import TurnState, place_of_angle, stroke_ends, turn_state
+from .crank_turn_state import TurnState, fast_stroke_ends, place_in_turn, turn_state
+from .cylinder_and_pin_forces import LeverBody, LeverMachine, LeverSwing, UniformBar
+from .lever_geometry import DimensionErrors, TurningCylinder
+from .lever_state import LeverNumbers
+from .levers_of_designs import lever_batch
 
 
 def lever_sizes(mechanism: Mechanism, linkage: Linkage) -> TurningCylinder:
@@ -34,7 +34,7 @@ def lever_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> LeverSw
     """Return the swing of the lever of a design, or the fast stroke of its crank if it rotates fully."""
     if swing.of_full_turn:
         sizes = lever_sizes(mechanism, linkage)
-        before, after = (float(angle) for angle in stroke_ends(sizes))
+        before, after = (float(angle) for angle in fast_stroke_ends(sizes))
         zero = sizes.frame_angle - sizes.pin_angle
         return LeverSwing(zero - before, zero + after, of_full_turn=True)
     placed = with_start_of_machine(mechanism, swing)
@@ -43,7 +43,7 @@ def lever_swing(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> LeverSw
     return LeverSwing(placed.start, placed.end, placed.law, placed.duration)
 
 
-def lever_linkage(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
+def movable_lever_linkage(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> Linkage:
     """Return crank, frame and offset of one lever as floats.
 
     Raises `InputError` for a dead point within its swing, `AssemblyError` where it does not close or rotate fully.
@@ -65,8 +65,8 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
         lever_swing(mechanism, linkage, swing),
     )
     cylinder = mechanism.lever.cylinder
-    ends = float(sizes.length(placed.start)), float(sizes.length(placed.end))
-    shortest, longest = sorted(sizes.length_range if placed.of_full_turn else ends)
+    ends = float(sizes.cylinder_length(placed.start)), float(sizes.cylinder_length(placed.end))
+    shortest, longest = sorted(sizes.closable_length_range if placed.of_full_turn else ends)
     known = cylinder.closed_and_stroke(longest - shortest)
     length = shortest if known is None else known[0]
     machine = LeverMachine(
@@ -87,11 +87,11 @@ def lever_machine(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> tuple
     return machine, DimensionErrors(*errors)
 
 
-def crank_turn(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> TurnState:
+def state_at_crank_angles(mechanism: Mechanism, linkage: Linkage, crank_angle: Array) -> TurnState:
     """Return the state of a design whose crank rotates fully, at crank angles (n,), rad. Raises `AssemblyError`."""
-    checked = lever_linkage(mechanism, linkage, CRANK_TURN)
+    checked = movable_lever_linkage(mechanism, linkage, CRANK_TURN)
     design = np.array([[checked.crank, checked.rod, checked.offset]])
     batch, _ = lever_batch(mechanism.nominal, design, CRANK_TURN, gradients=False)
     numbers = LeverNumbers(*(float(number[0]) for number in batch.plain))
-    places = place_of_angle(numbers, crank_angle)
+    places = place_in_turn(numbers, crank_angle)
     return turn_state(numbers, places, places)

@@ -12,7 +12,7 @@ import numpy as np
 from ..kernel.arithmetic import analytic, inverse, root
 from ..swing.law import NO_TABLE, law_code, travel_and_derivatives_at
 from ..swing.swing_types import LeverLaw
-from .lever import Motion, angle_error_at, closing_length, cylinder_length, lever_angle_at, motion_at
+from .lever_geometry import Motion, angle_error_at, closing_length, cylinder_length, lever_angle_at, motion_at
 
 Vector = tuple[Any, Any]
 
@@ -36,8 +36,8 @@ class LeverNumbers(NamedTuple):
     end: Any
     rate: Any
     lever_mass: Any
-    along: Any
-    across: Any
+    moment_along: Any
+    moment_across: Any
     inertia: Any
     gravity_x: Any
     gravity_y: Any
@@ -72,14 +72,14 @@ class LeverNumbers(NamedTuple):
     spring_length: Any = 0.0
     spring_stiffness: Any = 0.0
 
-    def length(self, lever_angle: Any) -> Any:
+    def cylinder_length(self, lever_angle: Any) -> Any:
         """Return the length of the cylinder, m, at lever angles, rad."""
         return cylinder_length(self.crank, self.frame, self.offset, lever_angle + self.pin_angle - self.frame_angle)
 
     @property
-    def ends(self) -> tuple[Any, Any]:
+    def cylinder_end_lengths(self) -> tuple[Any, Any]:
         """Length of the cylinder at start and end, m."""
-        return self.length(self.start), self.length(self.end)
+        return self.cylinder_length(self.start), self.cylinder_length(self.end)
 
 
 class Errors(NamedTuple):
@@ -167,18 +167,20 @@ def bodies_at(c: LeverNumbers, angle: Any, motion: Motion, turn: Any, rise: Any)
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * turn, motion.turn_2 * turn * turn + motion.turn_1 * rise
     cosine, sine = np.cos(angle), np.sin(angle)
-    moment = c.along * cosine - c.across * sine, c.along * sine + c.across * cosine
+    moment = c.moment_along * cosine - c.moment_across * sine, c.moment_along * sine + c.moment_across * cosine
     x, y = motion.line
     half = 0.5 * c.barrel_length
     barrel = half * x - c.offset * y, half * y + c.offset * x
-    barrel_force = scaled(c.barrel_mass, difference(gravity, turning(barrel, line_1, line_2)))
+    barrel_force = scaled(c.barrel_mass, difference(gravity, tip_acceleration(barrel, line_1, line_2)))
     arm = scaled(0.5 * c.rod_length, motion.line)
-    rod_acceleration = difference(turning(scaled(c.crank, motion.radial), turn, rise), turning(arm, line_1, line_2))
+    rod_acceleration = difference(
+        tip_acceleration(scaled(c.crank, motion.radial), turn, rise), tip_acceleration(arm, line_1, line_2)
+    )
     rod_force = scaled(c.rod_mass, difference(gravity, rod_acceleration))
     inertia = (c.barrel_mass * c.barrel_length * c.barrel_length + c.rod_mass * c.rod_length * c.rod_length) / 12.0
     spring_pin, spring, _ = spring_at(c, angle)
     return Bodies(
-        carried=difference(difference(turning(moment, turn, rise), scaled(c.lever_mass, gravity)), spring),
+        carried=difference(difference(tip_acceleration(moment, turn, rise), scaled(c.lever_mass, gravity)), spring),
         rod=rod_force,
         barrel=barrel_force,
         about_o=c.inertia * rise - cross(moment, gravity) - cross(spring_pin, spring),
@@ -195,33 +197,33 @@ def spring_at(c: LeverNumbers, angle: Any) -> tuple[Vector, Vector, Any]:
     )
     frame = c.spring_frame * np.cos(c.spring_frame_angle), c.spring_frame * np.sin(c.spring_frame_angle)
     span = difference(pin, frame)
-    length = size(span)
+    length = vector_length(span)
     extension = length - c.spring_length
     push = c.spring_force - c.spring_stiffness * extension
     energy = (0.5 * c.spring_stiffness * extension - c.spring_force) * extension
     return pin, scaled(push * inverse(length), span), energy
 
 
-def lift(c: LeverNumbers) -> Any:
+def work_against_gravity_and_spring(c: LeverNumbers) -> Any:
     """Return the work against gravity and spring from start to end, J."""
-    first, last = (_potential(c, angle) for angle in (c.start, c.end))
+    first, last = (_potential_energy(c, angle) for angle in (c.start, c.end))
     return last - first
 
 
-def _potential(c: LeverNumbers, angle: Any) -> Any:
+def _potential_energy(c: LeverNumbers, angle: Any) -> Any:
     motion = motion_at(c, angle)
     cosine, sine = np.cos(angle), np.sin(angle)
     (x, y), (rx, ry) = motion.line, motion.radial
     half, back = 0.5 * c.barrel_length, 0.5 * c.rod_length
-    moment_x = c.along * cosine - c.across * sine
+    moment_x = c.moment_along * cosine - c.moment_across * sine
     moment_x = moment_x + c.barrel_mass * (half * x - c.offset * y) + c.rod_mass * (c.crank * rx - back * x)
-    moment_y = c.along * sine + c.across * cosine
+    moment_y = c.moment_along * sine + c.moment_across * cosine
     moment_y = moment_y + c.barrel_mass * (half * y + c.offset * x) + c.rod_mass * (c.crank * ry - back * y)
     return spring_at(c, angle)[2] - (c.gravity_x * moment_x + c.gravity_y * moment_y)
 
 
 @analytic
-def turning(vector: Vector, speed: Any, rate: Any) -> Vector:
+def tip_acceleration(vector: Vector, speed: Any, rate: Any) -> Vector:
     """Return the acceleration of the tip of a vector that turns with a body."""
     square = speed * speed
     return -vector[0] * square - vector[1] * rate, vector[0] * rate - vector[1] * square
@@ -252,6 +254,6 @@ def dot(first: Vector, second: Vector) -> Any:
 
 
 @analytic
-def size(vector: Vector) -> Any:
+def vector_length(vector: Vector) -> Any:
     """Return the magnitude of a vector."""
     return root(dot(vector, vector))

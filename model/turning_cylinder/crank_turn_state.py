@@ -19,8 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..kernel.arithmetic import analytic, arcsine, inverse
-from .lever import Motion, motion_at
-from .states import LeverNumbers, Vector, bodies_at, cross, difference, dot, scaled, turning
+from .lever_geometry import Motion, motion_at
+from .lever_state import LeverNumbers, Vector, bodies_at, cross, difference, dot, scaled, tip_acceleration
 
 PIECES = 4
 """Pieces of a turn: the second half of the fast stroke begins piece 1, the slow stroke piece 2."""
@@ -50,7 +50,7 @@ class TurnState(NamedTuple):
 
 
 @analytic
-def stroke_ends(c: Any) -> tuple[Any, Any]:
+def fast_stroke_ends(c: Any) -> tuple[Any, Any]:
     """Return the angles a and b, rad; the fast stroke is from psi = -a to psi = b.
 
     c: `LeverNumbers` or `TurningCylinder`.
@@ -68,30 +68,30 @@ def turn_state(c: LeverNumbers, place: Any, probe: Any) -> TurnState:
 
     probe: places within the same piece. Place 0 and 4 are the start of the fast stroke.
     """
-    before, after = stroke_ends(c)
+    before, after = fast_stroke_ends(c)
     piece = np.minimum(np.maximum(np.floor(probe), 0.0), PIECES - 1.0)
     fast, last = 1.0 * (piece < 2.0), 1.0 * (piece > 2.0)
     opening, middle = 1.0 * (piece < 1.0), 1.0 * (piece > 1.0) - last
     low = -opening * before + middle * after + last * np.pi
     high = (fast - opening) * after + middle * np.pi + last * (_TURN - before)
     psi = low + (place - piece) * (high - low)
-    return _state(c, psi + c.frame_angle - c.pin_angle, piece, high - low)
+    return _state_at_angle(c, psi + c.frame_angle - c.pin_angle, piece, high - low)
 
 
-def place_of_angle(c: LeverNumbers, crank_angle: Any) -> Any:
+def place_in_turn(c: LeverNumbers, crank_angle: Any) -> Any:
     """Return the places of crank angles, rad, for one crank with real numbers."""
-    before, after = stroke_ends(c)
+    before, after = fast_stroke_ends(c)
     cuts = [-before, 0.0, after, np.pi, _TURN - before]
     psi = np.mod(crank_angle + c.pin_angle - c.frame_angle + before, _TURN) - before
     return np.interp(psi, [float(cut) for cut in cuts], np.arange(PIECES + 1.0))
 
 
 @analytic
-def _state(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
+def _state_at_angle(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
     motion = motion_at(c, angle)
     way = 1.0 - 2.0 * (c.speed.real < 0.0)
     bodies = bodies_at(c, angle, motion, c.speed, 0.0 * c.speed)
-    arm, ram, moment, ram_1 = _arm(c, motion, piece, way)
+    arm, ram, moment, ram_1 = _arm_and_ram_forces(c, motion, piece, way)
     extends = way * (1.0 - 2.0 * (piece < 1.0) - 2.0 * (piece > 2.0))
     along = dot(bodies.rod, motion.line) - c.rub * extends
     across = (bodies.about_a + moment + c.offset * along) * inverse(motion.length)
@@ -106,12 +106,12 @@ def _state(c: LeverNumbers, angle: Any, piece: Any, stretch: Any) -> TurnState:
 
 
 @analytic
-def _arm(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector, Vector, Any, Any]:
+def _arm_and_ram_forces(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector, Vector, Any, Any]:
     """Return the arm's weight less m a, the ram's force on the arm, their moment about A, and y'."""
     gravity = c.gravity_x, c.gravity_y
     line_1, line_2 = motion.turn_1 * c.speed, motion.turn_2 * c.speed * c.speed
     centre = scaled(c.arm_moment, motion.line)
-    arm = difference(scaled(c.arm_mass, gravity), turning(centre, line_1, line_2))
+    arm = difference(scaled(c.arm_mass, gravity), tip_acceleration(centre, line_1, line_2))
     slow = 1.0 * (piece > 1.0)
     rotates = 1.0 * (c.frame.real < c.crank.real)
     against = c.arm_torque * way * (2.0 * slow - 1.0 + 2.0 * rotates * (1.0 - slow))
@@ -119,7 +119,7 @@ def _arm(c: LeverNumbers, motion: Motion, piece: Any, way: Any) -> tuple[Vector,
     normal = -frame[1], frame[0]
     pin = scaled(c.ram, motion.line)
     speed_1 = dot((-pin[1], pin[0]), normal)
-    acceleration = dot(turning(pin, line_1, line_2), normal)
+    acceleration = dot(tip_acceleration(pin, line_1, line_2), normal)
     push = c.ram_mass * (acceleration - dot(gravity, normal)) - slow * way * c.ram_force
     moment = cross(centre, gravity) - c.arm_inertia * line_2 - against - push * speed_1
     return arm, scaled(-push, normal), moment, speed_1 * motion.turn_1

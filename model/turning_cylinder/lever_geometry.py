@@ -57,15 +57,15 @@ class TurningCylinder:
         require_numbers(self, "frame", phrase="the frame OA of a lever", above=0.0, unit="m")
         require_numbers(self, "frame_angle", "offset", "pin_angle", phrase="the {} of a lever")
 
-    def relative_angle(self, lever_angle: Any) -> Any:
+    def angle_from_frame_to_crank(self, lever_angle: Any) -> Any:
         """Return psi, rad, for lever angles, rad from +x."""
         return lever_angle + (self.pin_angle - self.frame_angle)
 
-    def length(self, lever_angle: Any) -> Any:
+    def cylinder_length(self, lever_angle: Any) -> Any:
         """Return the length of the cylinder, m, at lever angles, rad; NaN where |offset| exceeds AB."""
-        return cylinder_length(self.crank, self.frame, self.offset, self.relative_angle(lever_angle))
+        return cylinder_length(self.crank, self.frame, self.offset, self.angle_from_frame_to_crank(lever_angle))
 
-    def lever_angle(self, length: Any, *, near: float) -> Any:
+    def lever_angle_at_length(self, length: Any, *, near: float) -> Any:
         """Return the lever angles, rad, at lengths of the cylinder, m; NaN for lengths out of reach.
 
         near: a lever angle on the same side of the dead points, at most half a turn from the results.
@@ -74,7 +74,7 @@ class TurningCylinder:
             return lever_angle_at(self, length, near)
 
     @property
-    def length_range(self) -> tuple[float, float]:
+    def closable_length_range(self) -> tuple[float, float]:
         """Least and greatest length, m, over all lever angles at which the linkage closes."""
         near, far = (self.crank - self.frame) ** 2, (self.crank + self.frame) ** 2
         least, greatest = (math.sqrt(max(square - self.offset**2, 0.0)) for square in (near, far))
@@ -82,15 +82,15 @@ class TurningCylinder:
 
     def dead_points(self, start: float, end: float) -> list[float]:
         """Return the lever angles, rad, between two at which O, A and B are in line, ends included."""
-        low, high = sorted((self.relative_angle(start), self.relative_angle(end)))
+        low, high = sorted((self.angle_from_frame_to_crank(start), self.angle_from_frame_to_crank(end)))
         first, last = math.ceil(low / math.pi), math.floor(high / math.pi)
-        return [math.pi * k - self.relative_angle(0.0) for k in range(first, last + 1)]
+        return [math.pi * k - self.angle_from_frame_to_crank(0.0) for k in range(first, last + 1)]
 
     def dead_point_margin(self, start: float, end: float) -> float:
         """Return the least angle, rad, that the lever keeps from a dead point between two lever angles."""
         if self.dead_points(start, end):
             return 0.0
-        return min(abs(math.remainder(self.relative_angle(angle), math.pi)) for angle in (start, end))
+        return min(abs(math.remainder(self.angle_from_frame_to_crank(angle), math.pi)) for angle in (start, end))
 
     def require_swing(self, start: float, end: float) -> None:
         """Raise an error unless the cylinder moves the lever all the way between two angles, rad.
@@ -99,27 +99,28 @@ class TurningCylinder:
         """
         if not math.isfinite(start) or not math.isfinite(end) or start == end:
             raise InputError(
-                f"a swing needs two different lever angles; got {_degrees(start)} and {_degrees(end)}; change one"
+                f"a swing needs two different lever angles; got {_degrees_text(start)} and {_degrees_text(end)}; "
+                "change one"
             )
         if abs(end - start) >= math.pi:
             raise InputError(
                 "a cylinder must swing its lever less than 180 deg, from one dead point to the next; got "
-                f"{_degrees(start)} to {_degrees(end)}; {smaller_swing(start, end)}"
+                f"{_degrees_text(start)} to {_degrees_text(end)}; {smaller_swing(start, end)}"
             )
         dead = self.dead_points(start, end)
         if dead:
             raise InputError(
                 "a cylinder moves the lever only between dead points, where both pivots and the pin are in line; the "
-                f"swing from {_degrees(start)} to {_degrees(end)} has one at {_degrees(dead[0])}; swing on one side "
-                "of it, or turn the frame"
+                f"swing from {_degrees_text(start)} to {_degrees_text(end)} has one at {_degrees_text(dead[0])}; swing "
+                "on one side of it, or turn the frame"
             )
-        lengths = self.length(np.array([start, end]))
+        lengths = self.cylinder_length(np.array([start, end]))
         if np.isnan(lengths).any() or not np.all(lengths > 0.0):
             angle = start if not lengths[0] > 0.0 else end
-            distance = float(pin_distance(self.crank, self.frame, self.relative_angle(angle)))
+            distance = float(pin_distance(self.crank, self.frame, self.angle_from_frame_to_crank(angle)))
             raise AssemblyError(
                 "the cylinder must reach the lever over the whole swing: |offset| < distance from A to B; got an "
-                f"offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees(angle)}; reduce "
+                f"offset of {1e3 * self.offset:.6g} mm and {1e3 * distance:.6g} mm at {_degrees_text(angle)}; reduce "
                 "the offset, or reduce the swing"
             )
 
@@ -132,23 +133,25 @@ class TurningCylinder:
                 f"{1e3 * self.offset:.6g} mm; change the crank or the frame, or reduce the offset"
             )
 
-    def at(self, lever_angle: Array) -> LeverMotion:
+    def motion_at(self, lever_angle: Array) -> LeverMotion:
         """Return the motion of lever and cylinder at lever angles (n,), rad."""
         motion = motion_at(self, lever_angle)
         radial, span, line = (part[0] + 1j * part[1] for part in (motion.radial, motion.span, motion.line))
         sine = np.abs((span.conj() * radial).imag) / np.abs(span)
         return LeverMotion(radial, span, line, *motion[3:], np.arcsin(np.minimum(sine, 1.0)))
 
-    def angle_error(self, lever_angle: Array, errors: DimensionErrors) -> Array:
+    def worst_lever_angle_error(self, lever_angle: Array, errors: DimensionErrors) -> Array:
         """Return the worst-case error of the lever angle, rad, to first order.
 
         L^2 = r^2 + f^2 - 2 r f cos(psi) - e^2 at a given length: r f sin(psi) dpsi = L dL + e de - (r - f cos(psi)) dr
         - (f - r cos(psi)) df. Without bound at a dead point.
         """
-        return np.asarray(angle_error_at(self, self.relative_angle(lever_angle), self.length(lever_angle), errors))
+        return np.asarray(
+            angle_error_at(self, self.angle_from_frame_to_crank(lever_angle), self.cylinder_length(lever_angle), errors)
+        )
 
     @property
-    def time_ratio(self) -> float | None:
+    def time_ratio_of_full_turn(self) -> float | None:
         """Time ratio of the cylinder's turn where the lever turns fully at constant speed; None where it cannot.
 
         With m the lesser and M the greater of crank and frame, the crank turns by c on the fast stroke,
@@ -269,7 +272,7 @@ def angle_at_length(crank: Any, frame: Any, offset: Any, length: Any) -> Any:
     return 2.0 * arctangent(root((square - less * less) * inverse(more * more - square)))
 
 
-def sizes_for_stroke(
+def crank_and_frame_for_stroke(
     lengths: tuple[float, float], angles: tuple[float, float], offset: float = 0.0
 ) -> tuple[float, float] | None:
     """Return the lesser and the greater of OB and OA, m, from cylinder lengths at two angles psi.
@@ -289,5 +292,5 @@ def sizes_for_stroke(
     return 0.5 * (total - difference), 0.5 * (total + difference)
 
 
-def _degrees(angle: float) -> str:
+def _degrees_text(angle: float) -> str:
     return f"{math.degrees(angle):.6g} deg"
