@@ -66,3 +66,7 @@ def extra_for_package(package: str) -> str | None:
         if match is not None and _SEPARATORS.sub("", match["name"]) == _SEPARATORS.sub("", package):
             return match["extra"]
     return None
+
+
+with NamingExtra("figures need"):
+    pass

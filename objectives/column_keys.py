@@ -5,18 +5,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from .kinds import (
-    DISPLAYED_KINDS,
-    INERTIA,
-    LENGTH,
-    PRESSURE,
-    RATIO,
-    DisplayUnit,
-    Kind,
-    System,
-    display_unit,
-    kind_in,
-)
+from .kinds import DISPLAYED_KINDS, INERTIA, LENGTH, PRESSURE, RATIO, DisplayUnit, Kind, System, display_unit, kind_in
+
+
+def count_with_noun(count: int, noun: str) -> str:
+    """Return a count with its noun: "1 design", "20 designs". The plural ends in s."""
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
 
 # Suffixes of column names, longest first because "_lbf_in" also ends with "_in".
 _DISPLAY_UNITS = sorted(

@@ -13,7 +13,7 @@ from ..model.kernel.arithmetic import arcsine, magnitude, root
 from ..model.kinematics.geometry import inner_dead_centre, outer_dead_centre
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
-from .greatest_of_formulas import GreatestOfFormulas
+from .closed_form import GreatestOfFormulas
 from .kinds import ANGLE, SPEED
 from .machine_needs import EVEN_SPEED, Need
 from .machine_needs import SPEED as TURNS

@@ -15,7 +15,7 @@ from ..model.machine.raw_numbers_of_designs import DRIVE, evaluate_formula_of_ra
 from ..model.signals.motor_curves import MotorCurve, motor_averages, motor_peaks
 from ..model.signals.peaks import STORED_PEAKS
 from ..model.signals.shaft_statistics import greatest_speed_ratio
-from .greatest_of_formulas import GreatestOfFormulas
+from .closed_form import GreatestOfFormulas
 from .kinds import ANGULAR_SPEED, ENERGY, POWER, RATIO, TORQUE
 from .machine_needs import DRIVE_TRAIN, MOTOR_LOADED, SPEED, need_of_motor_limit
 from .quantity import Array, Formula, Group, Number, Pieces, Quantity, Values, display_fact, undefined_values

@@ -13,9 +13,9 @@ from ..model.machine.two_turn_machine import cycle_turns
 from ..model.machine.work_absorption import with_loads_alone
 from ..model.signals.averages import torque_averages
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work
-from .average_torque import MEAN_TORQUE
 from .kinds import ENERGY, RATIO
 from .machine_needs import DRIVEN, HEAT, LOAD_WORK, LOSSES, WORK
+from .peak_torque import MEAN_TORQUE
 from .quantity import Array, Domain, Formula, Group, Quantity, Values, undefined_values
 
 _TURN = 2.0 * math.pi

@@ -1,16 +1,60 @@
-"""Force transmission: maximum force that moves the slider divided by the maximum force of the rod on it."""
+"""Transmission of force: the minimum transmission angle, the force transmission, and the self-locking margin.
+
+The transmission angle lies between the rod and the normal of the slider line. The margin is its distance from the
+friction angles. The force transmission is the maximum force that moves the slider divided by that of the rod on it.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ..model.cycle.self_locking import locking_margin_with_variables
+from ..model.kinematics import geometry
+from ..model.kinematics.closed_forms import ClosedForm
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.work_absorption import carries_linkage_forces, has_slider_loads
 from ..model.signals.peaks import Peaks, find_peaks
 from ..model.signals.signals import Signal
-from .kinds import RATIO
-from .machine_needs import Need
+from .bounds_over_ranges import LengthRanges, QuantityBounds
+from .closed_form import ClosedFormQuantity
+from .kinds import ANGLE, RATIO
+from .machine_needs import FRICTION, Need
 from .quantity import Array, Domain, Group, Pieces, Quantity, Values
+
+
+def _transmission_angle_bounds(box: LengthRanges) -> tuple[float, float]:
+    flattest = geometry.least_transmission_angle(box.r1, box.l0, box.a1) if box.turns else 0.0
+    return float(flattest), float(geometry.least_transmission_angle(box.r0, box.l1, box.a0))
+
+
+TRANSMISSION_ANGLE = ClosedFormQuantity(
+    name="transmission_angle",
+    key="least_transmission_angle",
+    title="least transmission angle",
+    kind=ANGLE,
+    forms=(ClosedForm.TRANSMISSION_ANGLE,),
+    rises=(False, True, False),
+    place=30,
+    group=Group.PROPORTIONS,
+    sentence=(
+        "The transmission angle is the angle between the rod and the normal of the slider line; its least value "
+        "over the turn says how well the rod pushes the slider along instead of against its guide."
+    ),
+    advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
+    formula="cos(mu_min) = (r + |e|) / l",
+    picture="transmission angle",
+    example="40 deg",
+    better="high",
+    domain=Domain.of_acute_angle("the least transmission angle must lie between 0 and 90 deg", "30 to 50 deg"),
+    # Torque and error grow without bound towards locking.
+    floor=float(np.radians(10.0)),
+    bounds=QuantityBounds(
+        compute=_transmission_angle_bounds,
+        to_raise="a longer rod, a shorter crank or a smaller |offset|",
+        to_lower="a shorter rod, a longer crank or a larger |offset|",
+    ),
+    offered=("requirement", "objective"),
+)
 
 
 class ForceTransmission(Quantity):
@@ -80,4 +124,38 @@ FORCE_TRANSMISSION = ForceTransmission(
             consequence="undefined",
         ),
     ),
+)
+
+
+class SelfLockingMargin(Quantity):
+    """Minimum transmission angle minus the friction angles; -inf if the pins alone lock the linkage (no such angle)."""
+
+    def evaluate(self, mechanism: Mechanism, dimensions: Array, *, gradients: bool = False) -> Values:
+        """Return the quantity for designs (n, 3 + k); see `Quantity`."""
+        values, slopes = locking_margin_with_variables(mechanism, dimensions, gradients=gradients)
+        return Values(values, slopes)
+
+
+SELF_LOCKING_MARGIN = SelfLockingMargin(
+    name="self_locking_margin",
+    title="self-locking margin",
+    kind=ANGLE,
+    place=200,
+    group=Group.PROPORTIONS,
+    sentence=(
+        "The margin of the least transmission angle over the angle at which friction locks the linkage, so that no "
+        "torque can drive it."
+    ),
+    advice="It must stay above 0; 10 deg or more is usual. Without friction it is undefined.",
+    formula="mu_min - arctan(f) - arcsin((rho_A + rho_B) / l): friction f of the guide, friction circles rho",
+    section="15. Self-locking",
+    picture="self-locking",
+    example="10 deg",
+    better="high",
+    domain=Domain.of_acute_angle(
+        "the self-locking margin must lie between 0, where friction locks, and 90 deg", "10 deg and more"
+    ),
+    floor=float(np.radians(5.0)),  # forces grow as 1 / sin(margin)
+    needs=(FRICTION,),
+    instead=TRANSMISSION_ANGLE.name,
 )

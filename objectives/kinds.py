@@ -12,7 +12,7 @@ import re
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ..model.input_warning import LONGEST
+from ..model.errors import LONGEST
 
 System = Literal["metric", "inch"]
 """Systems of units in which values are shown. Inch: US customary units as in machine design, with lengths in inches."""

@@ -5,10 +5,9 @@ from functools import partial
 from ..model.turning_cylinder.closed_forms import greatest_cylinder_speed, work_from_start_to_end
 from .kinds import ANGLE, ENERGY, FORCE, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW
 from .lever_quantity import LeverForm, LeverPeak
-from .position_error import POSITION_ERROR
+from .motion_deviation import POSITION_ERROR
 from .quantity import Group
-from .swing_accuracy import SWING_ANGLE_ERROR
-from .swing_drive import PEAK_ACTUATOR_FORCE, PEAK_ACTUATOR_POWER, SWING_ENERGY
+from .swing_quantities import PEAK_ACTUATOR_FORCE, PEAK_ACTUATOR_POWER, SWING_ANGLE_ERROR, SWING_ENERGY
 
 _peak = partial(LeverPeak, group=Group.DRIVE, picture="cylinder")
 _form = partial(LeverForm, group=Group.DRIVE, picture="cylinder")

@@ -14,7 +14,7 @@ from ..model.turning_cylinder.closed_forms import (
 from .kinds import ANGLE, LENGTH, RATIO
 from .lever_quantity import LeverForm
 from .quantity import Domain, Group
-from .swing_geometry import ACTUATOR_TRAVEL, SWING_TRANSMISSION_ANGLE
+from .swing_quantities import ACTUATOR_TRAVEL, SWING_TRANSMISSION_ANGLE
 
 _form = partial(LeverForm, group=Group.MOTION, picture="cylinder")
 _length = partial(_form, moved_by=("cylinder", "turning crank"))

@@ -3,8 +3,7 @@
 from functools import partial
 
 from ..model.signals.signals import Signal
-from .cycle_average import CycleAverage
-from .cycle_peak import CyclePeak
+from .cycle_peak import CycleAverage, CyclePeak
 from .kinds import INERTIA, POWER
 from .machine_needs import DRIVEN, MASSES, SPEED, WORK
 from .quantity import Group

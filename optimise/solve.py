@@ -11,12 +11,11 @@ import numpy as np
 
 from ..model.arrays import Array
 from ..model.errors import InputError
-from ..model.kernel.interruption import interrupted_by
+from ..model.kernel.batches import interrupted_by
 from .certificate.infeasibility_certificate import prove_infeasible
 from .engine.engine import Engine
 from .feasibility.best_value import Best, find_best_design
-from .feasibility.infeasibility import diagnose_infeasibility
-from .feasibility.quantities_without_value import require_finite, valueless_quantity_text_of_variants
+from .feasibility.infeasibility import diagnose_infeasibility, require_finite, valueless_quantity_text_of_variants
 from .front.front import ParetoFront, Status
 from .front.progress import REPEATING, Progress, progress_bar
 from .methods.auto.auto import deliver_front, search_with
@@ -27,14 +26,12 @@ from .methods.registry import (
     require_supported_equalities,
     require_supported_settings,
 )
-from .problem.always_zero_quantities import require_nonzero_quantities
-from .problem.contradictory_problems import require_possible_problem
+from .problem.contradictory_problems import require_nonzero_quantities, require_possible_problem
 from .problem.problem import Problem, require_problem
 from .search.assemble_front import empty_front
-from .search.checkpoints import Cancelled, Checkpoints, Record, require_records_of
+from .search.checkpoints import Cancelled, Checkpoints, Record, identity_of, require_records_of
 from .search.elimination import elimination_branches
 from .search.evaluation import Evaluator
-from .search.fingerprint import identity_of
 from .search.mirrored_branches import drop_mirrored_branches
 from .search.sample_and_zoom import Archive, Callback, Run, searched_evaluators, zoom
 

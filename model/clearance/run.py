@@ -14,13 +14,11 @@ from ..arrays import Array, Mask
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.clearance import Clearance
+from ..machine.clearance import Clearance, require_frictionless
 from ..machine.cylinder_machines import require_single_cylinder_at_constant_speed
-from ..machine.friction import require_frictionless
 from ..machine.mechanism import Mechanism
 from .equations import reported_quantities
-from .phases import FLIGHT, Integrator, Trace
-from .system import build_system
+from .phases import FLIGHT, Integrator, Trace, build_system
 
 Status = Literal["done", "cancelled"]
 
@@ -110,7 +108,7 @@ def simulate(
 
     tolerance: relative tolerance of an integration step (see `Integrator`). progress: function called after every turn.
     cancelled: function called every few steps; if it returns true, the motion so far is returned with status
-    "cancelled". Raises the errors of `system.build_system`, `InputError` for a crank at rest or if no turns remain, and
+    "cancelled". Raises the errors of `phases.build_system`, `InputError` for a crank at rest or if no turns remain, and
     `SlidercrankError` for a contact that is too soft to contain the journal.
     """
     _require_simulable(mechanism, cycles, discard, tolerance)

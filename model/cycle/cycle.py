@@ -11,9 +11,12 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..dynamics.breakpoints import breakpoints_of
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import friction_signs_in_segment, needs_friction_kernel
 from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
-from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import (
+    friction_signs_in_segment,
+    joint_forces_with_optional_friction,
+    needs_friction_kernel,
+)
 from ..errors import InputError
 from ..kernel.kernel import Row, Table, kernel
 from ..linkage.linkage import Linkage

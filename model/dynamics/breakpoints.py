@@ -10,9 +10,8 @@ from ..arrays import Array
 from ..kernel.kernel import Cube, Integers, IntegerTable, Table, kernel
 from ..machine.design import design_at
 from ..machine.raw_machine_vector import Loads
-from .friction_signs import add_guide_force_change_cuts
 from .segments import Cuts, CycleWindow, breakpoint_capacity, cut_cycle
-from .torque_with_friction import least_determinacy_margin
+from .torque_with_friction import add_guide_force_change_cuts, least_determinacy_margin
 
 
 class Breakpoints(NamedTuple):

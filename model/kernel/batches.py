@@ -1,11 +1,16 @@
-"""Batches of designs on all cores."""
+"""Batches of designs on all cores, and interruption of long waits.
+
+A polled callback ends the wait for a custom function or a kernel by raising.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, wait
-from contextvars import copy_context
+from contextvars import ContextVar, copy_context
+from dataclasses import dataclass
 from functools import lru_cache
 from threading import Lock
 from typing import Any
@@ -15,7 +20,73 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import AssemblyError
-from .interruption import poll_between_parts
+
+Poll = Callable[[], None]
+FAREWELL = 0.5
+"""Time that an interrupted call may still take, s: a process that responds survives."""
+
+
+@dataclass
+class Interruption:
+    """Callback that may end calls by raising an exception.
+
+    between_parts: callback between the parts of work that ends by itself. farewell: time that calls have left after an
+    interruption, s. killed: whether a call did not end within that time.
+    """
+
+    poll: Poll
+    between_parts: Poll | None = None
+    farewell: float = FAREWELL
+    killed: bool = False
+
+
+_CURRENT: ContextVar[Interruption | None] = ContextVar("interruption", default=None)
+
+
+@contextlib.contextmanager
+def interrupted_by(
+    poll: Poll, *, between_parts: Poll | None = None, farewell: float = FAREWELL
+) -> Iterator[Interruption]:
+    """Context in which `poll` is called several times a second during every call that this thread waits for.
+
+    between_parts: callback between the parts of long work in this thread.
+
+    A search cannot pass its callback down: a hundred places evaluate quantities without knowing about a search.
+    """
+    interruption = Interruption(poll, between_parts, farewell)
+    token = _CURRENT.set(interruption)
+    try:
+        yield interruption
+    finally:
+        _CURRENT.reset(token)
+
+
+def poll_interruption() -> None:
+    """Raise the exception that ends the current call, if there is one."""
+    interruption = _CURRENT.get()
+    if interruption is not None:
+        interruption.poll()
+
+
+def poll_between_parts() -> None:
+    """Raise the exception that ends long work between two of its parts, if there is one."""
+    interruption = _CURRENT.get()
+    if interruption is not None and interruption.between_parts is not None:
+        interruption.between_parts()
+
+
+def interruption_grace_time() -> float:
+    """Return the time that an interrupted call may still take, s."""
+    interruption = _CURRENT.get()
+    return FAREWELL if interruption is None else interruption.farewell
+
+
+def record_killed_call() -> None:
+    """Record that a call did not end in its remaining time."""
+    interruption = _CURRENT.get()
+    if interruption is not None:
+        interruption.killed = True
+
 
 _KNOTS = 10_000  # for the loads of designs that are computed together: some tenths of a second
 

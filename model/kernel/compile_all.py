@@ -17,7 +17,6 @@ from pathlib import Path
 from threading import Thread
 from typing import NamedTuple
 
-from .cache_folder import kernel_folder
 from .disk_cache import (
     INTO,
     MODEL,
@@ -30,7 +29,7 @@ from .disk_cache import (
     store_machine_code,
 )
 from .kernel import KERNELS, Kernel
-from .kernel_digest import code_lengths
+from .kernel_digest import code_lengths, kernel_folder
 
 _MOSTLY = 0.7
 """Fraction of formulas shared with another kernel above which a kernel is cheap to compile after that one."""

@@ -18,9 +18,8 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from .cache_folder import kernel_folder, log_refused_folders, read_only_folders
-from .interruption import poll_interruption
-from .kernel_digest import kernel_digest
+from .batches import poll_interruption
+from .kernel_digest import kernel_digest, kernel_folder, log_refused_folders, read_only_folders
 from .machine_code import MachineCode
 
 _log = logging.getLogger(__name__)
@@ -152,7 +151,7 @@ def compile_in_processes(folder: Path, packages: str, file: Path | None = None, 
     """Let other processes compile the missing kernels in packages; return when a file exists, or when they have ended.
 
     packages: names separated by blanks. They compile the kernel of that file next, and those in modules before the
-    others. Waits for processes that are already compiling. `interruption` ends the wait.
+    others. Waits for processes that are already compiling. `poll_interruption` ends the wait.
     """
     if file is not None:
         with contextlib.suppress(OSError), (folder / "wanted").open("a") as queue:

@@ -11,8 +11,7 @@ from ..arrays import Array
 from ..kernel.arithmetic import STEP, analytic, inverse, magnitude
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import Row, Table, kernel
-from .geometry import least_transmission_angle, outer_dead_centre, stroke, time_ratio
-from .negligible_offset import is_in_line
+from .geometry import is_in_line, least_transmission_angle, outer_dead_centre, stroke, time_ratio
 
 
 class ClosedForm(IntEnum):

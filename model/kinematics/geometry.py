@@ -3,12 +3,16 @@
 Every function accepts floats, arrays and complex numbers. `magnitude_of_offset` is |e|; passing it separately keeps the
 functions free from the kink at e = 0. They hold for full rotation, l > r + |e|, which the caller has checked. Notation
 and signs: `kinematics`.
+
+Offsets that are only rounding errors: such a linkage is in-line.
 """
 
 from __future__ import annotations
 
 import math
 from typing import Any
+
+import numpy as np
 
 from ..kernel.arithmetic import analytic, arcsine, inverse, root
 
@@ -116,3 +120,17 @@ def offset_from_excess_angle(r: Any, l: Any, sine: Any, cosine: Any) -> Any:
     """
     s2 = 2.0 * (l * l + r * r) - 2.0 * (l * l - r * r) * cosine
     return (l * l - r * r) * sine * inverse(root(s2))
+
+
+_ROUNDING = 1e-15
+"""Fraction of the rod. An offset this small changes closed-form values and positions only within rounding."""
+
+
+def is_in_line(rod: Any, offset: Any) -> Any:
+    """Return whether linkages have no offset beyond rounding, |e| <= 1e-15 l; arguments in m, broadcast."""
+    return np.abs(offset) <= _ROUNDING * np.asarray(rod)
+
+
+def offset_without_rounding(rod: Any, offset: Any) -> Any:
+    """Return offsets, m, with those below rounding set to zero; arguments broadcast."""
+    return np.where(is_in_line(rod, offset), 0.0, offset)

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, Mask
-from ..errors import AssemblyError, InputError
-from ..input_warning import LONGEST, reading_in_both_units
-from ..kinematics.negligible_offset import is_in_line
+from ..errors import LONGEST, AssemblyError, InputError, reading_in_both_units
+from ..kinematics.geometry import is_in_line
 from .dimensions import DIMENSIONS
 
 

@@ -3,8 +3,7 @@
 The work against a stroke is W = -integral of F dX, with F the load and X the distance of the slider, both positive
 outward. Springs and tables over position that act in both strokes are left out, because they return in one stroke what
 they absorb in the other. Viscous resistance is also left out, as it is always greater in the faster stroke. A constant
-force
-counts: a weight loads the stroke in which it is lifted.
+force counts: a weight loads the stroke in which it is lifted.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import InputError
-from ..machine.crank_load_checks import require_loads_repeating_each_turn
+from ..machine.loads.crank_torque import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from .linkage import Linkage
 

@@ -1,4 +1,4 @@
-"""A joint with clearance: a journal loose in its bearing, and the contact force between them.
+"""Joints: with clearance, a journal loose in its bearing with a contact force; and with Coulomb friction.
 
 The normal force over the penetration d is Hertz's, with hysteresis damping that dissipates energy in every impact:
 
@@ -10,6 +10,11 @@ where d'_0 is the speed at which the impact began and h follows from the coeffic
   materials in multibody dynamics", Multibody System Dynamics 25 (2011) 357-375. Suitable for every e.
 - lankarani-nikravesh: h = 3 (1 - e^2) / 4. Lankarani and Nikravesh, "A contact force model with hysteresis damping
   for impact analysis of multibody systems", Journal of Mechanical Design 112 (1990) 369-376. Suitable for e near one.
+
+In the guide the friction force is the coefficient times the magnitude of the guide force, against the slider's
+velocity. In a pin the friction moment is coefficient times radius times the magnitude of the pin force, against the
+relative rotation of the parts. The line of action of the pin force passes the pin's centre at a distance equal
+to coefficient times radius, the radius of the pin's *friction circle*.
 """
 
 from __future__ import annotations
@@ -18,8 +23,64 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from ..checks import require_numbers
 from ..errors import InputError
 from .loads.load import require_word
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A pin in its bearing. radius: m. coefficient: friction moment divided by radius times force."""
+
+    radius: float = 0.0
+    coefficient: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "radius", "coefficient", phrase="the {} of a pin", least=0.0)
+
+    @property
+    def friction_circle_radius(self) -> float:
+        """Radius of the friction circle, m: coefficient times radius."""
+        return self.coefficient * self.radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction:
+    """Friction in a machine; none unless given.
+
+    guide: coefficient of friction of the slider in its guide. crank_pivot: pin between frame and crank. crank_pin: pin
+    between crank and rod. slider_pin: pin between rod and slider.
+
+    The guide carries a single normal force N at the slider pin and rubs with mu |N|; the guide absorbs the moment of
+    the slider pin's friction without additional friction. If a joint does not move (the slider at a dead centre,
+    everything at zero crank speed), friction acts against the motion that follows in the crank's sense of rotation. A
+    crank at zero speed is assumed to turn counter-clockwise, as for loads that change with the stroke.
+    """
+
+    guide: float = 0.0
+    crank_pivot: Pin = Pin()
+    crank_pin: Pin = Pin()
+    slider_pin: Pin = Pin()
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "guide", phrase="the {}'s coefficient of friction", least=0.0)
+
+    @property
+    def acts(self) -> bool:
+        """Whether any joint has friction."""
+        return self.guide > 0.0 or any(
+            pin.friction_circle_radius > 0.0 for pin in (self.crank_pivot, self.crank_pin, self.slider_pin)
+        )
+
+
+def require_frictionless(friction: Friction, subject: str) -> None:
+    """Raise an error for friction if an analysis ignores it. subject: the analysis, as the subject of a sentence."""
+    if friction.acts:
+        raise InputError(
+            f"{subject} only takes joints and guide without friction; got friction that has an effect; leave "
+            "[friction] out"
+        )
+
 
 Joint = Literal["crank pivot", "crank pin", "slider pin"]
 Law = Literal["flores", "lankarani-nikravesh"]

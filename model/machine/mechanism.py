@@ -10,18 +10,60 @@ from typing import Literal
 from ..checks import require_all_finite, require_field_types, require_numbers, store_as_tuples
 from ..errors import InputError
 from .arrangement import Arrangement
-from .clearance import Clearance
+from .clearance import Clearance, Friction
 from .drive import Drive
-from .friction import Friction
 from .lever import Lever, require_lever_alone
 from .links import Bar, Counterweight, Link, RigidLink
 from .loads.load import During, Load, require_word
 from .loads.load_text import join_range_ends
-from .slider_distances import SliderDistances
 from .speed_profile import Profile
 from .strength import Strength
-from .swing_start import Start
 from .varying_numbers import Varying, require_valid_variables, with_values
+
+
+@dataclass(frozen=True, kw_only=True)
+class Start:
+    """Start of a swing: crank angle, rad, or slider position, m. None keeps the start stated for the swing itself."""
+
+    angle: float | None = None
+    place: float | None = None
+
+    def __post_init__(self) -> None:
+        require_numbers(self, "angle", "place", phrase="the {} at which a swing starts")
+
+
+DeadCentre = Literal["outer", "inner"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SliderDistances:
+    """Distances of the slider from a dead centre, m.
+
+    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: outward
+    distance from the slider pin at its outer dead centre to the centre of the guide, which is fixed to the frame.
+    """
+
+    dead_centre: DeadCentre = "outer"
+    touch: float | None = None
+    dwell: float | None = None
+    guide: float | None = None
+
+    def __post_init__(self) -> None:
+        require_word("dead_centre", self.dead_centre, DeadCentre)
+        require_numbers(self, "touch", "dwell", phrase="the {} distance of the slider", above=0.0, unit="m")
+        require_numbers(self, "guide", phrase="the {} distance of the slider")
+
+    @property
+    def text(self) -> str:
+        """The stated distances, as text after the slider's mass; empty if there are none."""
+        distances = {
+            f"meets its work {{}} before the {self.dead_centre} dead centre": self.touch,
+            f"dwells within {{}} of the {self.dead_centre} dead centre": self.dwell,
+            "guide centre {} outward from the outer dead centre": self.guide,
+        }
+        stated = ((words, distance) for words, distance in distances.items() if distance is not None)
+        return "".join(f", {words.format(f'{1e3 * distance:.6g} mm')}" for words, distance in stated)
+
 
 Branch = Literal["open", "crossed"]
 

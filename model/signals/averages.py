@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.friction_signs import needs_friction_kernel
+from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
 from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism

@@ -10,10 +10,9 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import breakpoints_of
-from ..dynamics.friction_signs import needs_friction_kernel
 from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
-from ..dynamics.torque_with_friction import least_determinacy_margin
+from ..dynamics.torque_with_friction import least_determinacy_margin, needs_friction_kernel
 from ..kinematics import geometry
 from ..machine.cylinder_machines import cylinder_machines, single_cylinder
 from ..machine.derived_designs import derived_blocks

@@ -15,8 +15,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import friction_signs_in_segment
-from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -26,7 +24,13 @@ from ..dynamics.segments import (
     load_on_slider,
 )
 from ..dynamics.speed_ratio import SpeedRatio, speed_ratio_at
-from ..dynamics.torque_with_friction import Sides, guide_side_function, joint_forces_with_optional_friction
+from ..dynamics.torque import reflected_inertia, shaking_force_and_moment
+from ..dynamics.torque_with_friction import (
+    Sides,
+    friction_signs_in_segment,
+    guide_side_function,
+    joint_forces_with_optional_friction,
+)
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, rarely_used_kernel
 from ..kinematics.position import third_slider_derivative

@@ -6,9 +6,8 @@ from enum import IntEnum, auto
 from typing import Any
 
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.inertia import reflected_inertia, shaking_force_and_moment
 from ..dynamics.segments import Segment, load_on_slider
-from ..dynamics.torque import forces_without_friction
+from ..dynamics.torque import forces_without_friction, reflected_inertia, shaking_force_and_moment
 from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_slider_derivative

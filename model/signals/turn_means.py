@@ -22,7 +22,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
-from ..dynamics.friction_signs import add_guide_force_change_cuts, cut_imaginary_shift, friction_signs_in_segment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -35,7 +34,14 @@ from ..dynamics.segments import (
     find_segment_pieces,
     load_on_slider,
 )
-from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction, least_determinacy_margin
+from ..dynamics.torque_with_friction import (
+    Sides,
+    add_guide_force_change_cuts,
+    cut_imaginary_shift,
+    friction_signs_in_segment,
+    joint_forces_with_optional_friction,
+    least_determinacy_margin,
+)
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, Cube, Row, Table, kernel

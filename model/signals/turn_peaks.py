@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.friction_signs import add_guide_force_change_cuts, cut_imaginary_shift, friction_signs_in_segment
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -27,7 +26,13 @@ from ..dynamics.segments import (
     cut_cycle,
     find_segment_pieces,
 )
-from ..dynamics.torque_with_friction import Sides, least_determinacy_margin
+from ..dynamics.torque_with_friction import (
+    Sides,
+    add_guide_force_change_cuts,
+    cut_imaginary_shift,
+    friction_signs_in_segment,
+    least_determinacy_margin,
+)
 from ..kernel.arithmetic import STEP, analytic
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, kernel
 from ..machine.design import Design, design_at

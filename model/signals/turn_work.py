@@ -17,8 +17,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..arrays import Array
-from ..dynamics.friction_signs import needs_friction_kernel
 from ..dynamics.segments import CycleWindow
+from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
 from ..machine.cylinder_machines import is_treated_as_shaft
 from ..machine.mechanism import Mechanism

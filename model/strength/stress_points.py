@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from ..arrays import Array, IntArray, Mask
 from ..dynamics.breakpoints import Breakpoints, breakpoints_of
-from ..dynamics.friction_signs import cut_imaginary_shift, friction_signs_in_segment, needs_friction_kernel
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -26,7 +25,12 @@ from ..dynamics.segments import (
     find_segment_pieces,
     load_on_slider,
 )
-from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import (
+    cut_imaginary_shift,
+    friction_signs_in_segment,
+    joint_forces_with_optional_friction,
+    needs_friction_kernel,
+)
 from ..kernel.arithmetic import STEP
 from ..kernel.kernel import ComplexCube, Cube, Flags, Integers, Row, Table, rarely_used_kernel
 from ..machine.derived_designs import derived_blocks

@@ -1,4 +1,7 @@
-"""A swing in numbers: drive, holding forces, energies, transmission angle and error at the driven side."""
+"""A swing in numbers: drive, holding forces, energies, transmission angle and error at the driven side.
+
+Sources of the error at the driven side for a crank angle in a swing.
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,43 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..linkage.linkage import Linkage
-from ..machine.friction import Friction
+from ..linkage.require_single_linkage import require_single_linkage, require_slider
+from ..machine.clearance import Friction
 from ..machine.mechanism import Mechanism
+from ..tolerance.error_distributions import SOURCES, limits_of_sources
 from .swing import Swing, require_swing, swing_between_crank_angles, without_inertia
 from .swing_cycle import SwingCycle, SwingPoint
+
+
+@dataclass(frozen=True)
+class ErrorShare:
+    """A source of an error. limit: its tolerance, m, or rad for the crank angle. error: its contribution, m or rad."""
+
+    source: str
+    limit: float
+    error: float
+
+
+def error_shares(mechanism: Mechanism, linkage: Linkage, swing: Swing, crank_angle: float) -> tuple[ErrorShare, ...]:
+    """Return each source's contribution to the worst case at the driven side, for a crank angle, rad.
+
+    If the crank drives: |dx/di| T_i for the slider position. If the slider drives: the same divided by |x'| for the
+    crank angle, with the actuator among the sources. Sources without tolerance are left out.
+    """
+    require_slider(mechanism)
+    checked = require_single_linkage(mechanism, linkage)
+    i, source_limits = checked.error_influences(crank_angle), limits_of_sources(mechanism, checked)
+    crank, rod, offset, turn = (abs(float(share)) for share in (i.crank, i.rod, i.offset, i.crank_angle))
+    rates = (crank, rod, offset, turn, rod, rod, rod, offset)
+    shares = [
+        ErrorShare(name, float(limit), rate * float(limit))
+        for name, limit, rate in zip(SOURCES, source_limits, rates, strict=True)
+    ]
+    if swing.driver == "slider":
+        shares = [share for share in shares if share.source != "crank angle"]
+        shares.append(ErrorShare("actuator", swing.actuator_tolerance, swing.actuator_tolerance))
+        shares = [ErrorShare(share.source, share.limit, share.error / turn) for share in shares]
+    return tuple(share for share in shares if share.limit)
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..errors import InputError
-from ..machine.mechanism import Mechanism
-from ..machine.swing_start import Start
+from ..machine.mechanism import Mechanism, Start
 from .swing import Swing, with_start_of_machine
 from .swing_types import Driver, Law, Side
 

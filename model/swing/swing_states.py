@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..dynamics.crank_loads import torque_without_crank_loads
-from ..dynamics.friction_signs import friction_signs_in_segment
 from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque import add_crank_couple, balance_before_pin_force
-from ..dynamics.torque_with_friction import joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import friction_signs_in_segment, joint_forces_with_optional_friction
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import motion

@@ -1,4 +1,7 @@
-"""Distributions of errors within their limits, from which a Monte Carlo simulation draws."""
+"""Distributions of errors within their limits, from which a Monte Carlo simulation draws.
+
+Sources of a position error: each dimension, the crank angle and each clearance are one source.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +10,113 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import InputError
+from ..dynamics.segments import crank_angle_at, crank_angle_from_crowded, crowded_from_crank_angle, crowding_parameter
+from ..errors import AssemblyError, InputError
+from ..linkage.linkage import Linkage
+from ..linkage.require_single_linkage import require_single_linkage, require_single_rotating_linkage
 from ..machine.loads.load import require_word
-from .error_sources import GUIDE, PINS
+from ..machine.mechanism import Mechanism
+
+SOURCES = (
+    *("crank", "rod", "offset", "crank angle"),
+    *("crank pivot clearance", "crank pin clearance", "slider pin clearance", "guide clearance"),
+)
+"""Names of the sources, in the order of all arrays here."""
+PINS = slice(4, 7)
+GUIDE = 7
+ANGLES = 256
+"""Crank angles per turn from which a search starts."""
+_TURN = 2.0 * math.pi
+
+
+def limits_of_sources(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the limit of each source, (8,), m; that of the crank angle in rad."""
+    linkage, t = require_single_linkage(mechanism, linkage), mechanism.tolerances
+    lengths = (
+        tolerance.limit(float(length))
+        for tolerance, length in ((t.crank, linkage.crank), (t.rod, linkage.rod), (t.offset, linkage.offset))
+    )
+    gap = t.clearances
+    return np.array([*lengths, t.crank_angle.absolute, gap.crank_pivot, gap.crank_pin, gap.slider_pin, gap.guide])
+
+
+def source_influences(mechanism: Mechanism, linkage: Linkage, crank_angle: ArrayLike) -> Array:
+    """Return the slider displacement per unit of each source, (8, m), m/m and m/rad, at crank angles (m,), rad.
+
+    A pin's clearance acts as an error in the rod, that of the guide as an error in the offset: see `position_error`.
+    """
+    angles = np.atleast_1d(np.asarray(crank_angle, dtype=np.float64))
+    i = require_single_rotating_linkage(mechanism, linkage).error_influences(angles)
+    return np.stack([i.crank, i.rod, i.offset, i.crank_angle, i.rod, i.rod, i.rod, i.offset])
+
+
+def limit_box(mechanism: Mechanism, linkage: Linkage) -> Array:
+    """Return the minimum and maximum of crank, rod, offset (m) and crank angle deviation (rad), (4, 2).
+
+    Clearances widen the range of the rod (pins) and of the offset (guide). Raises `AssemblyError` unless every linkage
+    in the box rotates fully, `InputError` if the crank angle may be off by half a turn.
+    """
+    linkage, limits = require_single_rotating_linkage(mechanism, linkage), limits_of_sources(mechanism, linkage)
+    half = np.add(limits[:4], [0.0, limits[PINS].sum(), limits[GUIDE], 0.0])
+    if half[3] >= math.pi:
+        raise InputError(
+            f"the tolerance of the crank angle must be below 180 deg; got {math.degrees(half[3]):g} deg; reduce it"
+        )
+    middle = np.array([linkage.crank, linkage.rod, linkage.offset, 0.0])
+    box = np.stack([middle - half, middle + half], axis=1)
+    if box[0, 0] <= 0.0 or box[1, 0] <= box[0, 1] + np.abs(box[2]).max():
+        mm = 1e3 * box
+        raise AssemblyError(
+            "every linkage within tolerances and clearances must rotate fully, rod > crank + |offset|; got at "
+            f"worst rod {mm[1, 0]:g} mm, crank {mm[0, 0]:g} to {mm[0, 1]:g} mm, offset {np.abs(mm[2]).max():g} mm; "
+            "tighten the tolerances"
+        )
+    return box
+
+
+def angle_ranges_where_error_counts(mechanism: Mechanism, linkage: Linkage, *, count: int = ANGLES) -> list[Array]:
+    """Return the crank angles, rad, over which the position error counts: an ascending array for each connected part.
+
+    count: angles per turn, concentrated where the linkage is close to locking. The ends of a part are among its angles;
+    the whole cycle is one part that ends one turn after its start.
+    """
+    linkage, window = require_single_rotating_linkage(mechanism, linkage), mechanism.tolerances.window
+    r, l, e = float(linkage.crank), float(linkage.rod), float(linkage.offset)
+    kappa = crowding_parameter(r, l, e)
+
+    def part(first: float, last: float) -> Array:
+        low, high = crowded_from_crank_angle(first, kappa), crowded_from_crank_angle(last, kappa)
+        points = max(5, math.ceil(count * (high - low) / _TURN) + 1)
+        inner_angles = [crank_angle_from_crowded(tau, kappa) for tau in np.linspace(low, high, points)[1:-1]]
+        return np.array([first, *inner_angles, last])
+
+    if window.during == "cycle" and window.start == 0.0 and window.end == 1.0:
+        return [part(0.0, _TURN)]
+    inner, outer = (float(angle) for angle in linkage.dead_centre_angles)
+    near, far = (float(x) for x in linkage.dead_centres)
+
+    def angle_at_stroke_fraction(fraction: float, first: float, span: float) -> float:
+        """Crank angle, from `first` on, at which the slider has covered a fraction of one stroke."""
+        if fraction in (0.0, 1.0):
+            return first + (span if (fraction == 1.0) == (first == inner) else 0.0)
+        angles = (crank_angle_at(near + fraction * (far - near), r, l, e, second) for second in (False, True))
+        return first + min((angle - first) % _TURN for angle in angles)
+
+    parts = []
+    for first, last in ((inner, outer), (outer, inner)):
+        # Counter-clockwise from the inner to the outer dead centre is the outward stroke, clockwise the inward one.
+        outward = (first == inner) == (mechanism.speed >= 0.0)
+        if window.during == "cycle" or (window.during == "outward stroke") == outward:
+            ends = sorted(
+                angle_at_stroke_fraction(fraction, first, (last - first) % _TURN)
+                for fraction in (window.start, window.end)
+            )
+            parts.append(part(*ends))
+    return parts
+
 
 Shape = Literal["normal", "truncated normal", "uniform", "triangular"]
 Contact = Literal["along the rod", "any direction", "anywhere"]

@@ -20,8 +20,7 @@ from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.loads.load import require_word
 from ..machine.mechanism import Mechanism
-from .error_distributions import Draw, Spreads
-from .error_sources import angle_ranges_where_error_counts, limits_of_sources, source_influences
+from .error_distributions import Draw, Spreads, angle_ranges_where_error_counts, limits_of_sources, source_influences
 
 CHUNK = 1024
 """Machines per chunk: each chunk has its own random stream, so that runs of any length begin alike."""

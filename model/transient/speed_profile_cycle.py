@@ -20,7 +20,7 @@ import numpy as np
 from ..arrays import Array
 from ..cycle.crank_speed import crank_speed_and_acceleration, speed_knots
 from ..cycle.cycle import Cycle, breakpoints, cycle
-from ..cycle.moving_mass_effects import shaking_curves
+from ..cycle.multi_cylinder import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage

@@ -13,8 +13,12 @@ from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
 from ..machine.work_absorption import may_do_work_over_a_turn
 from ..quadrature import WEIGHTS
-from .balanced_speed import balanced_speed
-from .constant_torque_motion import cut_at_energy_minima, refine_at_energy_minima, turn_by_energy_integral
+from .constant_torque_motion import (
+    balanced_speed,
+    cut_at_energy_minima,
+    refine_at_energy_minima,
+    turn_by_energy_integral,
+)
 from .crank_equation import TURN
 from .crankshaft_equation import equation_of
 from .forward_dynamics import required_drive

@@ -26,7 +26,7 @@ from typing import IO, Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.kernel.interruption import interruption_grace_time, poll_interruption, record_killed_call
+from ...model.kernel.batches import interruption_grace_time, poll_interruption, record_killed_call
 from ...model.machine.mechanism import Mechanism
 from .call_function import FunctionResult, Refused
 from .function_process import HEAD, unpack_result
@@ -70,7 +70,7 @@ class _Suspended(Exception):
 class Worker:
     """A process that runs one function. Raises `Refused` for any fault in the function, and is then closed.
 
-    An exception from `interruption.poll_interruption` also ends the call and the process.
+    An exception from `poll_interruption` also ends the call and the process.
     """
 
     def __init__(self, function: str, folders: list[str], limit: float, longest: float = float("inf")) -> None:

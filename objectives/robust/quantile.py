@@ -24,7 +24,7 @@ import numpy as np
 from ...model.arrays import IntArray
 from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..quantity import Array
-from .tolerance_box_points import quadratic_fit_points
+from .worst_points import quadratic_fit_points
 
 _FAINT = 1e-15  # smaller weights are rounding errors
 _LEAST = 2.0**-40  # a scrambled point at zero would map to minus infinity in a normal distribution

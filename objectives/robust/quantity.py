@@ -18,7 +18,7 @@ from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
 from .quantile import sample
-from .tolerance_box_points import (
+from .worst_points import (
     PointValues,
     box_corners,
     evaluate_points,
@@ -26,8 +26,8 @@ from .tolerance_box_points import (
     quadratic_fit_points,
     tolerance_limits,
     toleranced_columns,
+    worst_inner_points,
 )
-from .worst_points import worst_inner_points
 
 Side = Literal["high", "low"]
 Case = Literal["worst case", "percentile"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, overload
 
 import numpy as np
@@ -20,6 +20,7 @@ from ..cycle_peak import screen_quantities
 from ..formula.quantity import basic_quantities, values_with_formulas
 from ..formula.resolve_names import resolve_quantities
 from ..quantity import Array, Quantity, Values
+from ..registry import QUANTITIES
 from .design_input import (
     designs_as_array,
     has_finite_numbers,
@@ -28,6 +29,28 @@ from .design_input import (
     warn_of_lengths,
 )
 from .swing_columns import require_quantities_of_motion, require_same_driver, require_swing_quantity
+
+_ROUNDING = 1e-8
+"""Relative tolerance: a design within this fraction of an allowable value meets it."""
+
+
+def violations(mechanism: Mechanism, values_of: Callable[[str], ArrayLike | None]) -> dict[str, Array]:
+    """Return the violation (n,) of each allowable value by designs, SI, by the name of the quantity.
+
+    values_of: returns the values (n,) of a quantity by name, SI; NaN for a design without a value, None if no design
+    has one. Zero for a design within the allowable value; quantities that no design violates are left out.
+    """
+    excesses = {}
+    for name, quantity in QUANTITIES.items():
+        values = np.atleast_1d(np.asarray(values_of(name) if quantity.allowed_by else None, dtype=np.float64))
+        if np.isnan(values).all():
+            continue
+        allowable = quantity.allowable_value(mechanism)
+        excess = values - allowable if quantity.better == "low" else allowable - values
+        excess = np.where(excess > _ROUNDING * abs(allowable), excess, 0.0)  # zero also without a value
+        if excess.any():
+            excesses[name] = excess
+    return excesses
 
 
 @overload

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.errors import InputError
-from ...model.kinematics.negligible_offset import offset_without_rounding
+from ...model.kinematics.geometry import offset_without_rounding
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.arm import Arm
@@ -23,7 +23,12 @@ from ..lever_quantity import LeverQuantity
 from ..quantity import Array, Quantity
 from ..registry import FACTS, QUANTITIES
 from ..swing_quantity import SwingQuantity
-from .variable_columns import column_of_variable
+from .design_input import column_of_variable
+
+SLOW_STROKE, LOADED_STROKE = "slow_stroke", "loaded_stroke"
+OUTER_DEAD_CENTRE, INNER_DEAD_CENTRE = "outer_dead_centre_deg", "inner_dead_centre_deg"
+PEAK_TORQUE_ANGLE = "peak_torque_angle_deg"
+OF_A_TURN = (SLOW_STROKE, LOADED_STROKE, OUTER_DEAD_CENTRE, INNER_DEAD_CENTRE, PEAK_TORQUE_ANGLE)
 
 
 def swing_quantity_facts() -> tuple[SwingQuantity, ...]:

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...model.errors import InputError
+from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.quantity import Array
 from ...objectives.tables.design_input import designs_as_array
-from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.constraint_violation import FEASIBLE, constraints_with_floors, minimised_values
 from ..problem.problem import Problem, require_problem
 from ..problem.requirements import Constraint, Objective

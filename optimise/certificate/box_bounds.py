@@ -17,15 +17,14 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.bar_pieces import BarPeak
 from ...objectives.closed_form import ClosedFormQuantity
 from ...objectives.cycle_peak import CyclePeak
+from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
 from ...objectives.tables.evaluate_quantities import can_move
-from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.constraint_violation import restated_constraints
 from ..problem.requirements import Constraint, Objective, Range
 from ..search.candidates import Table
 from ..search.evaluation import Evaluator
-from .boundable_quantities import is_swing_form, is_usable, unbounded_reason
-from .box_conditions import Limits
+from .box_conditions import Limits, is_swing_form, is_usable, unbounded_reason
 from .enclosed_bar_demands import DemandCurve, demand_curves
 from .enclosed_cycle_curve import CycleCurve, machines_with_separate_peaks
 from .enclosed_machine import Numbers, parameter_lookup, parameters_over_boxes

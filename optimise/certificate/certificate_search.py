@@ -17,8 +17,8 @@ from ..search.candidates import Candidates
 from ..search.elimination import elimination_branches
 from ..search.evaluation import Evaluator
 from ..search.recorded_polish import polish_on_engine
-from .boundable_quantities import ignored_sides, is_usable
 from .box_bounds import Boxes
+from .box_conditions import ignored_sides, is_usable
 from .branch_and_bound import Tree, bounding_threads
 from .certificate import Certificate, Status, Step, message_of
 from .covering_designs import choose_covering, excess_over_designs, greedy_cover, hypervolume_gap_bound

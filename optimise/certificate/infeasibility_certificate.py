@@ -11,8 +11,8 @@ from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
 from ..search.elimination import EliminationBranch, elimination_branches
 from ..search.evaluation import Evaluator
-from .boundable_quantities import is_usable
 from .box_bounds import Boxes
+from .box_conditions import is_usable
 from .branch_and_bound import Tree, bounding_threads
 
 SECONDS = 5.0

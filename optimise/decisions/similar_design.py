@@ -18,8 +18,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array, IntArray
-from ...model.errors import InputError
-from ...model.input_warning import warn_user
+from ...model.errors import InputError, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage_values import implausible_length_text
 from ..front.dominance import dominating

@@ -41,8 +41,7 @@ from ..search.mirrored_branches import drop_mirrored_branches
 from ..search.polish import polish_designs
 from ..search.sample_and_zoom import BANDS, Run
 from ..search.sampling import distant_rows
-from .wish_outcome import Wished, outcomes_of
-from .wishes import Wish, minimised_aim, read_wishes
+from .wishes import Wish, Wished, minimised_aim, outcomes_of, read_wishes
 
 _NEAREST, _MORE = 3, 6  # starts per branch, and further ones if the first end in different optima
 _BRANCHES, _FINAL = 12, 2  # branches to try, best first, at first from one start each; then the best of these

@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array, IntArray
-from ...objectives.tables.variable_columns import columns_of_numbers
-from ..front.discrete_search_summary import DiscreteSearch
+from ...objectives.tables.design_input import columns_of_numbers
 from ..front.dominance import nondominated
 from ..front.front import ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose_designs
+from ..front.progress import DiscreteSearch
 from ..front.rounded_design import drop_conversion_rounding
 from ..problem.problem import Problem
 from ..problem.robust_problem import asks_robust

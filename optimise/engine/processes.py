@@ -13,7 +13,7 @@ from itertools import islice
 from typing import Any, cast
 
 from ...model.errors import EngineError, InputError
-from ...model.kernel.interruption import interruption_grace_time, poll_interruption, record_killed_call
+from ...model.kernel.batches import interruption_grace_time, poll_interruption, record_killed_call
 from .engine import Found, Item, Poll
 
 MOST_BREAKS = 3

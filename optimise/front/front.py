@@ -17,28 +17,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.arrays import Array, Mask
-from ...model.errors import InputError
-from ...model.input_warning import warn_user
+from ...model.errors import InputError, warn_user
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import System, metric_unit_in
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.tables.violations import violations
+from ...objectives.tables.evaluate_quantities import violations
 from ..problem.problem import Problem
 from ..problem.question_registry import question_about, subject_of_question
 from ..problem.requirements import Objective
 from ..problem.table_columns import sufficient_option_field
 from .choose_design import Normalisation, Priority, knee, lexicographic, scale_by_range, topsis
-from .constant_numbers import column_ranges
-from .discrete_search_summary import DiscreteSearch
 from .front_picture import figure, svg
 from .nonnegative_least_squares import nonnegative_least_squares
-from .progress import Progress
+from .progress import DiscreteSearch, Progress
 from .rounded_design import Rounded
 from .rounding import doubtful_misses, ranges_or_sizes, round_design
 from .rounding_search import Stage
-from .saved_front import front_fields, write_front
+from .saved_front import column_ranges, front_fields, write_front
 from .stationarity import STATIONARY, optimality_multipliers
 
 if TYPE_CHECKING:

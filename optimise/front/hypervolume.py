@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.kernel.kernel import Row, Table, kernel
-from .constant_numbers import column_ranges
+from .saved_front import column_ranges
 
 REFERENCE = 1.1
 """Reference point in scaled space, where the ideal is 0 and the nadir 1."""

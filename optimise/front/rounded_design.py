@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.kinds import System, metric_unit_in
-from ...objectives.tables.variable_columns import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_numbers
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint
 from ..problem.table_columns import slack_field
 from .rounding_search import REACHES
-from .slack import slack_of
+from .stationarity import slack_of
 
 if TYPE_CHECKING:
     import pandas as pd

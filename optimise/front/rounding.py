@@ -16,8 +16,7 @@ from numbers import Integral, Real
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.errors import InputError
-from ...model.input_warning import reading_in_both_units
+from ...model.errors import InputError, reading_in_both_units
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import LENGTH, SMALL_LENGTH
 from ...objectives.quantity import Quantity
@@ -25,9 +24,9 @@ from ...objectives.units import quote, to_si
 from ..problem.constraint_violation import FEASIBLE, constraints_with_floors
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
-from .constant_numbers import column_ranges
 from .rounded_design import Rounded
 from .rounding_search import RoundingSearch, Steps, number_text
+from .saved_front import column_ranges
 
 _SMALLEST = 1e-9  # relative to the greatest number in a range: a smaller step is rounding
 _LARGE = 0.1  # relative to a bound: a greater miss without a unit was probably meant in another unit

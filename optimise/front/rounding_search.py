@@ -13,8 +13,8 @@ import numpy as np
 
 from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
+from ...objectives.tables.design_input import columns_of_numbers
 from ...objectives.tables.evaluate_quantities import can_run_despite_friction
-from ...objectives.tables.variable_columns import columns_of_numbers
 from ..problem.constraint_violation import (
     FEASIBLE,
     constraints_with_floors,

@@ -25,12 +25,17 @@ from .catalogue import catalogue_files, with_catalogues, with_options
 from .custom_quantities import declared_quantities, function_module_files
 from .drive import motor_torque_warnings
 from .job_file import LARGEST, read_job_file, require_few_values_and_no_nulls
-from .load_file import names_of_load_files, with_load_points
+from .loads import names_of_load_files, with_load_points
 from .mistake_messages import LONGEST, MOST, sentences_on_mistakes
-from .mistake_order import first_mistakes
 from .model import Job, job_type_with_quantities
 from .named_files import Files
-from .plain_numbers import PlainNumbers, formula_bounds_without_unit, numbers_without_unit, read_and_note_plain_numbers
+from .plain_numbers import (
+    PlainNumbers,
+    first_mistakes,
+    formula_bounds_without_unit,
+    numbers_without_unit,
+    read_and_note_plain_numbers,
+)
 from .problem_of_job import problem_of
 from .schema import schema_of
 from .speed_profile import speed_profile_file, with_speed_points
@@ -82,8 +87,7 @@ def warn_of_problem(problem: Problem) -> None:
     are fast in every design, and about offsets that a slow stroke excludes.
     """
     from ..search.driving_load_warnings import driving_load_warnings
-    from ..search.overlong_stroke_part_warnings import overlong_part_warnings
-    from ..search.stroke_warnings import stroke_warnings
+    from ..search.stroke_warnings import overlong_part_warnings, stroke_warnings
 
     sentences = [*driving_load_warnings(problem), *overlong_part_warnings(problem)]
     for sentence in (*problem.warnings, *sentences, *stroke_warnings(problem, certain=True)):

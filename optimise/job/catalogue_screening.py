@@ -23,8 +23,8 @@ from ...objectives.formula.formulas import identifiers_in
 from ...objectives.units import to_si
 from ..problem.constraint_violation import FEASIBLE
 from .catalogue_columns import Column
+from .named_files import table_in
 from .option_amounts import excess_amount_text
-from .raw_tables import table_in
 
 ORDER = ("price", "mass")
 """Amounts that make one row smaller than another, compared before their limits."""

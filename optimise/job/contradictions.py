@@ -24,14 +24,12 @@ from ...objectives.swing_quantity import SwingQuantity
 from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import quote
 from ..feasibility.impossible_swing_reasons import require_swinging
-from ..problem.always_zero_quantities import require_nonzero_quantities
-from ..problem.contradictory_problems import require_longer_slow_stroke
+from ..problem.contradictory_problems import require_longer_slow_stroke, require_nonzero_quantities
 from ..problem.problem import Problem
 from ..problem.requirements import Range, merge_constraints
 from ..problem.restatement import restate_constraint
 from ..search.elimination import offset_signs, require_offset_for_slow_stroke
-from .impossible_options import require_possible_option
-from .linear_contradictions import require_compatible_linear_requirements
+from .linear_contradictions import require_compatible_linear_requirements, require_possible_option
 from .mistake_messages import key_of_location
 from .reachable_values import Box, require_reachable
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
 
-from pydantic import model_validator
+from pydantic import ValidationError, model_validator
 
 from ...model.errors import InputError
 from ...model.machine.speed_profile import SpeedTable
 from ...objectives.kinds import ANGULAR_SPEED, STROKE_RATE, TIME
 from ...objectives.units import quote
+from .named_files import table_in, tables_in
 from .speed_profile import SpeedProfilePart
 from .value_types import AngularAcceleration, Part, PhysicalWithin, optional_entry
+from .variables import paths_set_by_options, stated_variables
 
 Direction = Literal["counter-clockwise", "clockwise"]
 SPEED_KEYS = ("speed", "cycle_time", "strokes_per_minute")
@@ -152,3 +155,22 @@ class CrankSpeedPart(Part):
 
 def _direction_of_speed(speed: float) -> Direction:
     return "clockwise" if speed < 0.0 else "counter-clockwise"
+
+
+def stated_speed(data: Mapping[str, Any], name: str) -> float:
+    """Return the constant speed that a job's tables state, rad/s, for a file over time. Raises `InputError`.
+
+    name: file name for messages.
+    """
+    stated_mechanism = table_in(data, "mechanism")
+    varies = {f"mechanism.{key}" for key in SPEED_KEYS} & (set(stated_variables(data)) | paths_set_by_options(data))
+    if "speed_profile" in stated_mechanism or stated_mechanism.get("acceleration") or varies:
+        raise InputError(f"{name} is given over time, which needs a constant crank speed; give crank angles instead")
+    stated = {key: stated_mechanism[key] for key in (*SPEED_KEYS, "direction") if key in stated_mechanism}
+    try:
+        part = CrankSpeedPart.model_validate(stated)
+    except ValidationError:
+        stated = {}
+    if not stated:
+        raise InputError(f"{name} is given over time, which needs the crank speed; got none; give speed in [mechanism]")
+    return part.crank_speed(2 if any(load.get("cycle") == "720 deg" for load in tables_in(data, "load")) else 1)

@@ -28,9 +28,9 @@ from ...objectives.own.quantity import (
 from ...objectives.registry import FACTS
 from ...objectives.units import is_value, kind_of_any_unit, quote, value_of_one_si_unit_in
 from .constraints_and_objectives import SLOW_STROKE, Stated
+from .named_files import options_in, table_in
 from .option_amounts import kinds_of_amounts, readable_amounts
 from .part_kinds import Kinds
-from .raw_tables import options_in, table_in
 from .value_types import Part, Physical, optional_entry, required_entry
 
 

@@ -16,13 +16,13 @@ from ...objectives.formula.formulas import Units, is_formula, unknown_name_error
 from ...objectives.formula.parser import parse
 from ...objectives.kinds import LENGTH, Kind
 from ...objectives.registry import FACTS
-from ...objectives.tables.variable_columns import number_in_words
+from ...objectives.tables.design_input import number_in_words
 from ...objectives.units import is_value, kind_of_any_unit
 from .catalogue import with_options
 from .constraints_and_objectives import SLOW_STROKE, WORDS
 from .mistake_messages import key_of_location
+from .named_files import table_in
 from .option_amounts import kinds_of_amounts, readable_amounts
-from .raw_tables import table_in
 from .variables import stated_variables
 
 _MOST = 200

@@ -9,8 +9,7 @@ from pydantic import AfterValidator, Field
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
-from ...model.machine.mechanism import Mechanism
-from ...model.machine.slider_distances import SliderDistances
+from ...model.machine.mechanism import Mechanism, SliderDistances
 from ...model.machine.two_turn_machine import turns_per_cycle
 from ...model.swing.swing import Swing
 from ...objectives.units import quote
@@ -18,17 +17,14 @@ from ..methods.registry import methods_by_name
 from ..problem.problem import Settings
 from .constraints_and_objectives import ConstraintsPart, ObjectivesPart, Stated, constraint_and_objective_tables
 from .custom_quantities import MOST_QUANTITIES, Declared, QuantityPart, require_one_line, require_usable_names
-from .drive import DrivePart
-from .friction_and_clearance import ClearancePart, FrictionPart
+from .drive import ClearancePart, DrivePart, FrictionPart
 from .lever import ArmPart, CylinderPart, SpringPart, lever_of, swing_of
 from .loads import Load
 from .mechanism import MechanismPart, TolerancesPart
 from .motion import MotionPart
-from .robust import RobustPart
 from .sections_table import EXAMPLE as SECTIONS
-from .sections_table import SectionsPart
+from .sections_table import CostsPart, RobustPart, SectionsPart
 from .target_motion import TargetMotionPart
-from .tolerance_costs import CostsPart
 from .value_types import Built, Part, optional_entry, required_entry, with_entry_types
 from .variables import ChoicePart, VariablesPart, choice_type_with_constraints
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 from pydantic import Field, create_model
 
 from ...model.errors import InputError, JobError
-from ...model.machine.mechanism import Mechanism
-from ...model.machine.swing_start import Start
+from ...model.machine.mechanism import Mechanism, Start
 from ...model.machine.varying_numbers import Varying
 from ...model.swing.swing import Swing
 from ...model.swing.swing_types import Driver, Law, Side, Stated
@@ -18,7 +17,7 @@ from ...objectives.kinds import ANGLE
 from ...objectives.lever_geometry import LEVER_TRANSMISSION_ANGLE
 from ...objectives.machine_needs import SPEED
 from ...objectives.quantity import Quantity
-from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
+from ...objectives.swing_quantities import SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swing_columns import reason_undefined_for_swing, swing_quantity_facts
 from ..problem.requirements import Constraint
 from .crank_speed import SPEED_KEYS, CrankSpeedPart

@@ -1,14 +1,36 @@
-"""Files that a job names: beside the job file, or sent with it."""
+"""Files that a job names: beside the job file, or sent with it.
+
+In the tables of a job before validation, missing tables, and values of another type, count as empty.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path, PurePath
+from typing import Any
 
 from ...model.errors import InputError, JobError
 from ...model.file_name_encoding import path_from_text
 from ...objectives.units import quote
 from .text_table import TableFile, decode_file_text, read_file_bytes, read_table
+
+
+def table_in(tables: Mapping[str, Any], name: str) -> Mapping[Any, Any]:
+    """Return the table under a key; keys in it that are not text raise an error later."""
+    table = tables.get(name)
+    return table if isinstance(table, Mapping) else {}
+
+
+def tables_in(tables: Mapping[str, Any], name: str) -> list[Mapping[str, Any]]:
+    """Return the tables in the list under a key."""
+    parts = tables.get(name)
+    return [part for part in parts if isinstance(part, Mapping)] if isinstance(parts, list | tuple) else []
+
+
+def options_in(tables: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """Return the options of all choices in a job."""
+    return [option for choice in tables_in(tables, "choice") for option in tables_in(choice, "option")]
+
 
 Files = Path | Mapping[str, str | bytes]
 """The folder that contains the files, or their contents by name."""

@@ -17,7 +17,7 @@ from ...objectives.own.quantity import require_column_name
 from ...objectives.registry import FACTS
 from ...objectives.units import quote, to_si
 from .constraints_and_objectives import SLOW_STROKE
-from .raw_tables import options_in, table_in
+from .named_files import options_in, table_in
 from .value_types import Physical
 
 _MOST = 1e15

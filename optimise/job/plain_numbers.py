@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import reduce
@@ -14,12 +16,40 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import Kind
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
-from ..problem.job_remark import Change, Remark
 from ..problem.problem import Problem
-from .mistake_messages import key_of_location, keys_of_location, toml_text
+from ..problem.question_registry import Change, Remark
+from .mistake_messages import MOST, key_of_location, keys_of_location, toml_text
 from .number_paths import with_value_at_path
 from .value_types import PLAIN, Part, Table, flatten_values, plain_numbers_in
 from .variables import stated_variables, table_leaves
+
+
+def first_mistakes(sentences: list[str], tables: Mapping[str, Any]) -> list[str]:
+    """Return at most `MOST` sentences: the first ones in the order of the keys that they begin with."""
+    if len(sentences) <= MOST:
+        return sentences
+    order = {key: place for place, key in enumerate(_keys_in_order(tables, ()))}
+
+    def place(sentence: str) -> float:
+        key = sentence.partition(": ")[0]
+        while key and key not in order:
+            key = key_above(key)
+        return order.get(key, math.inf)
+
+    return sorted(sentences, key=place)[:MOST]
+
+
+def key_above(key: str) -> str:
+    """Return the key of the table or list that contains a key, "" at the top level of the file."""
+    return re.sub(r"(\.| #)?[^.#]*$", "", key)
+
+
+def _keys_in_order(part: Any, path: tuple[object, ...]) -> Iterator[str]:
+    entries = part.items() if isinstance(part, Mapping) else enumerate(part) if isinstance(part, list) else ()
+    for step, entry in entries:
+        yield key_of_location((*path, step))
+        yield from _keys_in_order(entry, (*path, step))
+
 
 _LONGEST = 60  # maximum length of a value that a warning repeats
 

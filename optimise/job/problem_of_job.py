@@ -15,7 +15,7 @@ from ...objectives.motion_deviation import motion_deviations
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.swing_columns import require_possible_cylinder, swing_quantities
-from ..discrete.unmeetable_requirements import require_meetable
+from ..discrete.discrete_messages import require_meetable
 from ..methods.registry import require_supported_settings
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.contradictory_problems import no_option_error
@@ -36,7 +36,7 @@ from .motion import (
     with_swing_margin,
 )
 from .option_amounts import amounts_of_choices, excess_amount_text
-from .robust import make_robust
+from .sections_table import make_robust
 from .target_motion import require_target
 from .variables_and_variants import (
     choices_and_variants,

@@ -1,21 +1,37 @@
-"""The table [sections] of a job file: material, pins and safety factors of the crank and the rod as bars."""
+"""Tables of a job file for sizing: [sections] with material, pins, safety factors, [costs] of tolerances, [robust]."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar, Literal
 
+from pydantic import Field, model_validator
+
+from ...model.errors import InputError, JobError
 from ...model.machine.strength import Criterion, Material, Strength
+from ...model.tolerance.error_distributions import Shape
+from ...objectives import kinds
+from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.kinds import PRESSURE
-from ..problem.section_limits import SectionLimits
+from ...objectives.peak_torque import PEAK_TORQUE
+from ...objectives.robust.quantity import SAMPLES, Case
+from ...objectives.robust.worst_points import toleranced_columns
+from ..problem.problem import Problem
+from ..problem.robust_problem import Robust, robust_problem
+from ..problem.tolerance_costs import Cost, Costs, SectionLimits
 from .value_types import (
+    AngleTolerance,
+    Built,
     Checked,
     Density,
+    Fraction,
     Limited,
     Part,
+    Physical,
     PhysicalWithin,
     PositiveLength,
     PositiveRange,
     PositiveRatio,
+    Radius,
     WearCoefficient,
     optional_entry,
     required_entry,
@@ -140,3 +156,109 @@ class SectionsPart(Checked[SectionLimits]):
         return Strength(
             material=self.material.build(), **dict(self.pins), **{name: getattr(self, name) for name in _OF_STRENGTH}
         )
+
+
+PositiveAngle = Annotated[float, Physical(kinds.ANGLE, "positive")]
+
+
+_Exponent = Annotated[PositiveRatio, Limited("from 0.25 to 4", "processes have 0.5 to 3", least=0.25, greatest=4.0)]
+
+
+class _CostPart(Checked[Cost]):
+    """Fields common to all costs. Any currency, the same for all."""
+
+    makes = Cost
+    renamed: ClassVar = {"min": "least", "max": "greatest"}
+
+    cost: PositiveRatio = required_entry("of the part that depends on the tolerance, at the tolerance `at`", 8.0)
+    fixed: Fraction = optional_entry("the rest of the cost", 5.0, default=0.0)
+    exponent: _Exponent = optional_entry(
+        "k of fixed + cost (at / tolerance)^k, 0.25 to 4; 1: reciprocal", 1.0, default=1.0
+    )
+
+
+class LengthCostPart(_CostPart):
+    """Cost of the tolerance of a length: fixed + cost (at / tolerance)^exponent."""
+
+    at: PositiveLength = required_entry("the tolerance at which `cost` applies", "0.05 mm")
+    min: Radius = optional_entry("smallest tolerance that can be made", "0.005 mm", default=0.0)
+    max: PositiveLength | None = optional_entry("greatest permissible tolerance", "0.2 mm")
+
+
+class AngleCostPart(_CostPart):
+    """Cost of the tolerance of the crank angle: fixed + cost (at / tolerance)^exponent."""
+
+    at: PositiveAngle = required_entry("the tolerance at which `cost` applies", "0.1 deg")
+    min: AngleTolerance = optional_entry("smallest tolerance that can be made", "0.01 deg", default=0.0)
+    max: PositiveAngle | None = optional_entry("greatest permissible tolerance", "1 deg")
+
+
+class CostsPart(Built[Costs]):
+    """Costs of holding each tolerance, for the allocation of tolerances; a tolerance without a cost stays unchanged."""
+
+    makes = Costs
+
+    crank: LengthCostPart | None = optional_entry("of the crank", {"cost": 8.0, "at": "0.05 mm", "min": "0.005 mm"})
+    rod: LengthCostPart | None = optional_entry("of the rod", {"cost": 6.0, "at": "0.05 mm", "fixed": 2.0})
+    offset: LengthCostPart | None = optional_entry("of the offset", {"cost": 4.0, "at": "0.1 mm", "exponent": 2.0})
+    crank_angle: AngleCostPart | None = optional_entry(
+        "of the crank angle", {"cost": 10.0, "at": "0.1 deg", "max": "1 deg"}
+    )
+
+    @model_validator(mode="after")
+    def _require_any_cost(self) -> CostsPart:
+        if not self.model_fields_set:
+            raise InputError(
+                "must name at least one of crank, rod, offset and crank_angle; got an empty table; "
+                'add for example crank = { cost = 8.0, at = "0.05 mm" }'
+            )
+        return self
+
+
+class RobustPart(Checked[Robust]):
+    """Tolerances within the optimisation, per quantity; equalities, targets and position errors stay unchanged."""
+
+    makes = Robust
+    renamed: ClassVar = {"spread": "shape"}
+
+    kind: Case = optional_entry(
+        "percentile: value met by a percentage of all machines; worst case: value met by all machines within the "
+        "limits",
+        "percentile",
+        default="percentile",
+    )
+    share: Annotated[float, Field(strict=True, ge=0.5, lt=1.0)] = optional_entry(
+        "percentage of the machines, for a percentile", 0.99, default=0.99
+    )
+    order: Literal[1, 2] = optional_entry(
+        "order of a worst case. 1: linear in the errors; 2: exact at the worst corner", 2, default=2
+    )
+    spread: Shape = optional_entry(
+        "of the errors within the limits, for a percentile; normal: the limit is three standard deviations",
+        "normal",
+        default="normal",
+    )
+    samples: Annotated[int, Field(strict=True, ge=64, le=65536)] = optional_entry(
+        "machines drawn for a percentile, the same for all designs", SAMPLES, default=SAMPLES
+    )
+    quantities: Annotated[tuple[str, ...], Field(min_length=1, max_length=50)] | None = optional_entry(
+        "objectives and constraints to make robust; default: all for which this is possible",
+        [PEAK_TORQUE.name, TRANSMISSION_ANGLE.name],
+    )
+
+
+def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
+    """Return the problem made robust if the job requests it. Raises JobError if that is impossible."""
+    if part is None:
+        return problem
+    if problem.motion is not None:
+        raise JobError("robust: needs a rotating crank; this crank swings; leave the table out")
+    if not toleranced_columns(problem.part(0).mechanism):
+        raise JobError(
+            "robust: needs tolerances of crank, rod or offset; got none (that of the crank angle affects no quantity "
+            'of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
+        )
+    try:
+        return robust_problem(problem, part.build())
+    except InputError as error:
+        raise JobError(f"robust: {error}") from None

@@ -14,8 +14,7 @@ from ...model.machine.speed_profile import Harmonics, Profile, SpeedTable
 from ...objectives.kinds import ANGLE, ANGULAR_SPEED, TIME
 from ...objectives.units import value_of_one_si_unit_in
 from .curve_file import Curve, curve_of_table, drop_closing_point
-from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
-from .raw_tables import table_in
+from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, table_in, unread_file_error
 from .value_types import Angle, AngularSpeed, Checked, Number, Source, optional_entry, summary_entry
 
 _TOLERANCE = 1e-3  # relative tolerance for a table's mean against the speed, and for the end of a turn against 360 deg

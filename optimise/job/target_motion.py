@@ -11,11 +11,10 @@ from ...model.errors import InputError, JobError
 from ...model.kinematics.target_motion import Freedom, TargetMotion
 from ...objectives.kinds import ANGLE, LENGTH, TIME
 from ...objectives.motion_deviation import DEVIATIONS
+from .crank_speed import stated_speed
 from .curve_file import convert_time_to_angle, curve_of_table, drop_closing_point
 from .loads import require_increasing
-from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, unread_file_error
-from .raw_tables import table_in
-from .stated_speed import stated_speed
+from .named_files import MOST_POINTS, SOURCE, Files, read_named_table, require_point_count, table_in, unread_file_error
 from .value_types import Angle, Checked, Length, Part, Source, optional_entry, summary_entry
 
 

@@ -27,8 +27,8 @@ from .mistake_messages import (
     mistake_sentence,
     schema_nodes_at,
 )
-from .mistake_order import key_above
 from .model import Job
+from .plain_numbers import key_above
 from .schema import schema_of
 
 _LONGEST = 1000  # maximum length of a line to read and edit

@@ -18,9 +18,8 @@ from ...objectives.formula.formulas import ROOTS
 from ...objectives.units import quote, quoted_if_unprintable
 from .constraints_and_objectives import ConstraintsPart
 from .mistake_messages import DEEPEST
-from .named_files import LARGEST, unread_file_error
+from .named_files import LARGEST, options_in, table_in, unread_file_error
 from .option_amounts import Amounts
-from .raw_tables import options_in, table_in
 from .value_grids import states_value_grid
 from .value_types import AnyRange, Part, PositiveRange, optional_entry, required_entry, with_entry_types
 

@@ -18,17 +18,15 @@ from pydantic import ValidationError
 from ...model.errors import InputError, JobError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import SlowStroke
-from ...model.machine.mechanism import Mechanism
+from ...model.machine.mechanism import Mechanism, Start
 from ...model.machine.raw_numbers_of_designs import unit_of_number
-from ...model.machine.swing_start import Start
 from ...model.machine.varying_numbers import Varying
 from ...objectives.catalogue_amount import Amount
 from ...objectives.formula.formulas import Formulas
 from ...objectives.kinds import ANGULAR_SPEED
 from ...objectives.units import plus_minus_ends, quote
-from ..problem.discrete_values import Discrete
 from ..problem.problem import Variant
-from ..problem.requirements import Constraint, Range
+from ..problem.requirements import Constraint, Discrete, Range
 from .constraints_and_objectives import constraints_of, slow_stroke_of
 from .crank_speed import TIME_KEYS
 from .mistake_messages import sentences_on_mistakes

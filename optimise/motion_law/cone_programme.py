@@ -235,7 +235,7 @@ class _Cone:
             return self.time()
         slowness = self.programme.slowness
         if aim == "long cycle":
-            return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`reachable_energies`)
+            return self.cp.sum(self.places) / len(self.ones)  # one law is slowest at every angle (`law_limits`)
         square = self.cp.Variable(len(self.ones))
         self.rules.append(self._product_at_least_square(square, self.energy_root, self.torques))
         return slowness @ square

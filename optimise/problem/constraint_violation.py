@@ -8,17 +8,16 @@ import numpy as np
 
 from ...model.arrays import Array, Mask
 from ...model.cycle.gas_work import compressor_may_deliver_nothing
-from ...objectives.gas import VOLUMETRIC_EFFICIENCY
+from ...objectives.flow import VOLUMETRIC_EFFICIENCY
+from ...objectives.force_transmission import SELF_LOCKING_MARGIN, TRANSMISSION_ANGLE
 from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
 from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
 from ...objectives.lever_turn import ARM_TRANSMISSION_ANGLE
 from ...objectives.quantity import Quantity
 from ...objectives.robust.quantity import RobustQuantity
-from ...objectives.self_locking import SELF_LOCKING_MARGIN
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
-from ...objectives.swing_geometry import SWING_TRANSMISSION_ANGLE
+from ...objectives.swing_quantities import SWING_TRANSMISSION_ANGLE
 from ...objectives.time_ratio import TIME_RATIO
-from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from .problem import Problem
 from .requirements import Constraint, Objective, merge_constraints
 from .restatement import restate_constraint

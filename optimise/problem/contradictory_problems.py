@@ -1,11 +1,12 @@
-"""Contradictory problems that a search would not notice."""
+"""Contradictory problems that a search would not notice, such as objectives that are zero for every design."""
 
 from __future__ import annotations
 
-from ...model.errors import InfeasibleError
+from ...model.errors import InfeasibleError, InputError
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.time_ratio import TIME_RATIO
 from .problem import Problem
+from .question_registry import Change, Remark
 
 
 def require_possible_problem(problem: Problem) -> None:
@@ -53,3 +54,42 @@ def _require_consistent_stroke_ratios(part: Problem) -> None:
                         f"{'above' if is_slow else 'below'} 1; got constraints.{quantity.name} with {word} "
                         f"{bound:.6g}; leave out one of the two"
                     )
+
+
+def require_nonzero_quantities(problem: Problem) -> None:
+    """Raise an error for a quantity that is zero for every design, robust or not, in all variants.
+
+    `InputError` for an objective, `InfeasibleError` for a constraint that zero violates.
+    """
+    machines = [part.mechanism for part in problem.parts()]
+    for objective in problem.objectives:
+        reason = problem.quantity(objective.quantity).zero_because(machines)
+        if reason:
+            raise InputError(f"objectives.{objective.quantity}: {reason}")
+    for constraint in problem.constraints:
+        quantity = problem.quantity(constraint.quantity)
+        for word, bound in constraint.sides:
+            excluding = {"min": bound > 0.0, "max": bound < 0.0, "equals": bound != 0.0}[word]
+            reason = quantity.zero_because(machines) if excluding else None
+            if reason:
+                raise InfeasibleError(
+                    f"constraints.{quantity.name}: {word} {bound * quantity.unit.factor:.6g} {quantity.unit.symbol} "
+                    f"excludes zero, and it is zero for every design of this job: {reason}"
+                )
+
+
+def idle_constraint_warnings(problem: Problem) -> list[str]:
+    """Return a warning for each constraint on a quantity that is zero, and so meets it, for every design."""
+    machines = [part.mechanism for part in problem.parts()]
+    reasons = {
+        sentence.quantity: problem.quantity(sentence.quantity).zero_because(machines)
+        for sentence in problem.constraints
+    }
+    return [
+        Remark(
+            f"constraints.{name} excludes no design: it is zero for every design of this job; {reason}",
+            Change(f"constraints.{name}", None, "Remove the requirement"),
+        )
+        for name, reason in reasons.items()
+        if reason
+    ]

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, TypeVar, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...model.errors import InputError
-from ...model.input_warning import reading_in_both_units, warn_user
+from ...model.errors import InputError, reading_in_both_units, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import real_or_complex_array
@@ -24,6 +23,7 @@ from ...objectives.formula.resolve_names import resolve_quantities
 from ...objectives.kinds import ANGLE, unit_text
 from ...objectives.quantity import Array, Quantity, Values
 from ...objectives.registry import QUANTITIES
+from ...objectives.tables.all_quantities import missing_value_reason
 from ...objectives.tables.curve_deviation import deviations
 from ...objectives.tables.cycle_curves import Curve, cycle_curves, cycle_table, even_angles
 from ...objectives.tables.design_input import (
@@ -34,11 +34,10 @@ from ...objectives.tables.design_input import (
     short_text,
     warn_of_lengths,
 )
+from ...objectives.tables.evaluate_quantities import violations
 from ...objectives.tables.measured_curves import samples_of_measured_table
-from ...objectives.tables.missing_value_reasons import missing_value_reason
 from ...objectives.tables.swing_columns import quantities_for_swing, require_motion, require_quantities_of_motion
 from ...objectives.tables.swing_curves import curves_of_both_strokes, motion_and_drive_curves, swing_table
-from ...objectives.tables.violations import violations
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -15,7 +15,7 @@ from ...model.checks import require_field_types, store_as_tuples
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage, SlowStroke
-from ...model.machine.crank_load_checks import require_loads_repeating_each_turn
+from ...model.machine.loads.crank_torque import require_loads_repeating_each_turn
 from ...model.machine.loads.load import require_word
 from ...model.machine.mechanism import Mechanism
 from ...objectives.bounds_over_ranges import QuantityBounds
@@ -34,10 +34,8 @@ from ...objectives.tables.swing_columns import (
     swing_quantities,
 )
 from .design_analysis import Analysis, analyse_machine, machine_and_design_row
-from .discrete_values import Discrete, require_distinct_numbers
 from .question_registry import question_about
-from .requirements import Constraint, Objective, Range, Word, merge_constraints
-from .section_limits import SectionLimits
+from .requirements import Constraint, Discrete, Objective, Range, Word, merge_constraints, require_distinct_numbers
 from .table_columns import (
     choice_field,
     note_field,
@@ -45,7 +43,7 @@ from .table_columns import (
     sufficient_amount_field,
     sufficient_option_field,
 )
-from .tolerance_costs import Costs
+from .tolerance_costs import Costs, SectionLimits
 
 if TYPE_CHECKING:
     from ...model.swing.summary import SwingSummary

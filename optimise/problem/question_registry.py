@@ -3,12 +3,15 @@
 The questions of interfaces belong to a layer above the problem, which therefore cannot import them. Entry points in the
 group `slidercrank.questions` invert the dependency, as those in `slidercrank.quantities` do: each is a mapping from
 names to questions.
+
+A `Remark` is a sentence about a job with the change to the job that resolves it.
 """
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -17,6 +20,37 @@ from ...model.errors import InputError
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage
     from ...model.machine.mechanism import Mechanism
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change to a job. path: key in its tables, such as "load #1.force". label: its effect, as an instruction.
+
+    value: new value at the key, as a job file writes it; None removes the key.
+    """
+
+    path: str
+    value: Any
+    label: str
+
+
+class Remark(str):
+    """A sentence about a job, and the change that resolves it."""
+
+    change: Change | None
+
+    def __new__(cls, sentence: str, change: Change | None = None) -> Remark:
+        """Return a sentence with its change."""
+        remark = super().__new__(cls, sentence)
+        remark.change = change
+        return remark
+
+
+def changes_of(sentences: Iterable[str]) -> list[dict[str, Any]]:
+    """Return the changes that resolve sentences, each with its sentence, path, value and label."""
+    remarks = [sentence for sentence in sentences if isinstance(sentence, Remark)]
+    return [{"sentence": str(remark), **vars(remark.change)} for remark in remarks if remark.change is not None]
+
 
 GROUP = "slidercrank.questions"
 SUBJECTS = {"design": "a design", "front": "a front", "runs": "several runs", "job": "a job"}

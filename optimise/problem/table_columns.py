@@ -9,8 +9,8 @@ from ...model.errors import InputError
 from ...model.machine.varying_numbers import Varying
 from ...objectives.quantity import Quantity
 from ...objectives.registry import FACTS
-from ...objectives.tables.turn_columns import OF_A_TURN
-from ...objectives.tables.variable_columns import columns_of_numbers
+from ...objectives.tables.design_input import columns_of_numbers
+from ...objectives.tables.swing_columns import OF_A_TURN
 
 RESIDUAL, STATUS = "residual", "status"
 """Columns with the distance of a design from stationarity, and whether stationarity is proven."""

@@ -8,21 +8,20 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, sorted_unique
-from ...model.kinematics.negligible_offset import offset_without_rounding
+from ...model.kinematics.geometry import offset_without_rounding
 from ...objectives.catalogue_amount import Amount
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.formula.quantity import FormulaQuantity
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ideal_and_range, ignore_progress
-from ..front.slack import slack_of
-from ..front.stationarity import STATIONARY, optimality_multipliers
+from ..front.stationarity import STATIONARY, optimality_multipliers, slack_of
 from ..problem.constraint_violation import constraints_with_floors
 from ..problem.problem import Problem
 from ..problem.table_columns import RESIDUAL, STATUS, choice_field, note_field, slack_field
 from .candidates import FrontCandidates
 from .cheapest_sufficient_option import cheapest_sufficient_options
+from .checkpoints import software_versions
 from .evaluation import Evaluator
-from .fingerprint import software_versions
 from .piece_rows import ACTIVE
 from .sample_and_zoom import Run
 

@@ -24,9 +24,9 @@ from ...model.machine.work_absorption import loads_may_do_work_over_a_turn, with
 from ...model.signals.averages import torque_averages
 from ...model.swing.work import net_work_of_loads
 from ...objectives.energy import DELIVERED_WORK
-from ..problem.job_remark import Change, Remark
 from ..problem.problem import Problem
-from .designs_for_warnings import sampled_designs
+from ..problem.question_registry import Change, Remark
+from .stroke_warnings import sampled_designs
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront

@@ -20,17 +20,24 @@ from ...model.errors import InfeasibleError
 from ...model.kernel.arithmetic import STEP
 from ...model.kinematics import geometry
 from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.linear import Linear
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
 from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO
-from ...objectives.transmission_angle import TRANSMISSION_ANGLE
 from ..problem.problem import Problem
 from ..problem.requirements import Constraint, Range
 from ..problem.restatement import restate_constraint
-from .elimination_rule import Rule
 from .lever_rules import lever_rules
-from .linear_rules import NOTHING, Block, equation_blocks, evaluate_linear_rule, linear_equations, solve_for_target
-from .swing_rules import swing_rules
+from .linear_rules import (
+    NOTHING,
+    Block,
+    Rule,
+    equation_blocks,
+    evaluate_linear_rule,
+    linear_equations,
+    solve_for_target,
+    swing_rules,
+)
 
 _LINEAR = "linear: "
 """Prefix for the origin of a rule from linear equalities."""

@@ -11,8 +11,7 @@ from ...model.arrays import IntArray, Mask
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.quantity import Array, Pieces, Quantity
 from ...objectives.tables.evaluate_quantities import can_run_despite_friction
-from ..engine.chunks import Chunked, Shared
-from ..engine.engine import Engine, Serial
+from ..engine.engine import Chunked, Engine, Serial, Shared
 from ..problem.constraint_violation import (
     FEASIBLE,
     Side,

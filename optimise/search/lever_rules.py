@@ -21,7 +21,7 @@ from ...objectives.lever_geometry import (
 )
 from ...objectives.lever_turn import ARM_SWING, ARM_TIME_RATIO
 from ..problem.problem import Problem
-from .elimination_rule import Rule
+from .linear_rules import Rule
 
 _LEAST, _GREATEST = LEAST_CYLINDER_LENGTH.name, GREATEST_CYLINDER_LENGTH.name
 _TRAVEL, _RATIO = CYLINDER_TRAVEL.name, EXTENSION_RATIO.name

@@ -16,10 +16,9 @@ from ..front.hypervolume import ReportProgress
 from ..front.progress import REPEATING, Progress
 from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from .candidates import Candidates, FrontCandidates
+from .candidates import Candidates, FrontCandidates, FrontVolume
 from .checkpoints import Checkpoints
 from .evaluation import Evaluator
-from .front_growth import FrontVolume
 from .least_violation import least_violation
 from .recorded_polish import polish_recorded
 from .sampling import first_samples, random_generator, sample_near

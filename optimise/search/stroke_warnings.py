@@ -1,24 +1,96 @@
-"""Warnings before and after a search: a fast loaded stroke, and offsets that a slow stroke excludes."""
+"""Warnings about the strokes: a fast loaded one, excluded offsets, a part longer than the stroke."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...model.arrays import Mask
+from ...model.arrays import Array, Mask
 from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage, SlowStroke
 from ...model.linkage.loaded_stroke import loaded_stroke
-from ..problem.job_remark import Change, Remark
+from ...model.machine.loads.load import Load
+from ...model.machine.loads.position_table import PositionTable
+from ...objectives.proportions import STROKE
+from ..problem.constraint_violation import FEASIBLE
 from ..problem.problem import Problem
-from .designs_for_warnings import sampled_designs
-from .elimination import offset_signs
+from ..problem.question_registry import Change, Remark
+from ..problem.requirements import Constraint
+from .elimination import EliminationBranch, elimination_branches, offset_signs
+from .evaluation import Evaluator
+from .sampling import first_samples
 
 if TYPE_CHECKING:
     from ..front.front import ParetoFront
+
+
+_SAMPLES = 32
+"""Number of designs per branch, besides those with extreme numbers and stroke."""
+_TRIED = 4096
+"""Number of points over all branches from which these are taken: checks that need no cycle cost a microsecond per
+point."""
+_BRANCHES = 20
+"""Maximum number of branches; with very many choices, the first ones."""
+_NARROW = 0.1
+"""Relative width of a range that points rarely hit; its middle is required instead."""
+
+
+def sampled_designs(problem: Problem) -> Iterator[tuple[Problem, Array]]:
+    """Yield designs (n, 3 + k) that make the required motion, with the problem for their choices.
+
+    They meet the requirements on lengths, stroke and everything else that needs no cycle. If no point does, those with
+    the least violation count.
+    """
+    branches = elimination_branches(problem)[:_BRANCHES]
+    count = max(_SAMPLES, _TRIED // len(branches))
+    for branch in branches:
+        part = problem.part(branch.variant)
+        tried = [_try_points(part, branch, count)]
+        if not _has_feasible(tried[0]):
+            middle = replace(part, constraints=tuple(map(_middle_of_narrow_range, part.constraints)))
+            tried += [
+                _try_points(middle, middle_branch, count)
+                for middle_branch in elimination_branches(middle)
+                if middle_branch.sign == branch.sign
+            ]
+        designs, misses = next(filter(_has_feasible, tried), tried[0])
+        order = np.argsort(np.maximum(misses, FEASIBLE), kind="stable")
+        count_feasible = np.count_nonzero(misses <= FEASIBLE) or _SAMPLES
+        yield part, _representative_rows(part, designs[order][:count_feasible])
+
+
+def _try_points(part: Problem, branch: EliminationBranch, count: int) -> tuple[Array, Array]:
+    """Return designs (n, 3 + k) of a branch that make the required motion, and their violation (n,)."""
+    evaluator = Evaluator(part, branch)
+    points = first_samples(count, len(branch.free), 0, 0)
+    points = points[evaluator.can_evaluate(points)]
+    return branch.dimensions(points), evaluator.violation_without_cycle(points)
+
+
+def _has_feasible(tried: tuple[Array, Array]) -> bool:
+    return bool((tried[1] <= FEASIBLE).any())
+
+
+def _middle_of_narrow_range(constraint: Constraint) -> Constraint:
+    """Return the middle of a narrow range as a required value."""
+    lower, upper = constraint.lower, constraint.upper
+    if lower is None or upper is None or upper - lower > _NARROW * max(abs(lower), abs(upper)):
+        return constraint
+    return replace(constraint, lower=0.5 * (lower + upper), upper=0.5 * (lower + upper))
+
+
+def _representative_rows(part: Problem, designs: Array) -> Array:
+    """Return the first designs and those with extreme numbers and stroke."""
+    if not len(designs):
+        return designs
+    stroke = STROKE.evaluate(part.mechanism, designs).values
+    columns = np.column_stack([designs, np.where(np.isfinite(stroke), stroke, designs[:, 0])])
+    rows = {*range(min(_SAMPLES, len(designs))), *columns.argmin(axis=0).tolist(), *columns.argmax(axis=0).tolist()}
+    return designs[sorted(rows)]
 
 
 def stroke_warnings(problem: Problem, *, certain: bool = False) -> list[str]:
@@ -111,3 +183,46 @@ def _fast_stroke_warning(problem: Problem, extent: str, loaded: list[str]) -> st
         f'slow_stroke = "{opposite}"',
         Change("constraints.slow_stroke", required, f"Require a slow {required} stroke"),
     )
+
+
+_ROUNDING = 1e-9
+"""Relative: a part that is longer by less is the whole stroke, as intended."""
+
+
+def overlong_part_warnings(problem: Problem) -> list[str]:
+    """Return a warning for each force whose part of the stroke is longer than every sampled stroke.
+
+    Does not apply to a swing, which need not have dead centres.
+    """
+    if problem.motion is not None or not any(
+        _part_length(load) for part in problem.parts() for load in part.mechanism.loads
+    ):
+        return []
+    machines, longest = [], 0.0
+    for part, designs in sampled_designs(problem):
+        strokes = STROKE.evaluate(part.mechanism, designs).values
+        machines.append(part.mechanism)
+        longest = max([longest, *strokes[np.isfinite(strokes)].tolist()])
+    warnings = []
+    for k, load in enumerate(problem.mechanism.loads):
+        least = min(_part_length(machine.loads[k]) for machine in machines)
+        if isinstance(load, PositionTable) and least > longest * (1.0 + _ROUNDING) > 0.0:
+            place = "last" if (load.datum, load.during) in _LAST else "first"
+            warnings.append(
+                f"load #{k + 1} acts over the {place} {1e3 * least:.6g} mm of the {load.during}, but the longest "
+                f"stroke of the sampled designs is {1e3 * longest:.4g} mm, so it acts over the whole stroke; shorten "
+                "this part, or leave it out"
+            )
+    return warnings
+
+
+_LAST = {("outer dead centre", "outward stroke"), ("inner dead centre", "inward stroke")}
+
+
+def _part_length(load: Load) -> float:
+    """Return the length, m, over which a constant force acts in a stroke; 0 for any other load."""
+    if not isinstance(load, PositionTable) or load.during == "cycle" or load.datum == "crank pivot":
+        return 0.0
+    first, *others = load.positions
+    is_constant = len(others) == 2 and first == 0.0 and load.forces[0] == load.forces[1] and load.forces[2] == 0.0
+    return others[0] if is_constant and others[0] == others[1] else 0.0

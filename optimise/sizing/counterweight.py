@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
+from ...model.cycle.multi_cylinder import ShakingCurves, shaking_curves
 from ...model.errors import InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage

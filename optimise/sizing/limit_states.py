@@ -50,7 +50,7 @@ from typing import Any
 
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.strength import Material
-from ..problem.section_limits import SectionLimits
+from ..problem.tolerance_costs import SectionLimits
 from .section_loads import JointLoads, Range, Whip
 
 AMPLIFICATION = "amplification"

@@ -12,7 +12,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism, Tolerance
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
-from ...model.tolerance.error_sources import angle_ranges_where_error_counts, limits_of_sources, source_influences
+from ...model.tolerance.error_distributions import angle_ranges_where_error_counts, limits_of_sources, source_influences
 from ..problem.tolerance_costs import NAMES, Costs
 from .input_words import Kind
 

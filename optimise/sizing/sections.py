@@ -22,13 +22,13 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
+from ...model.machine.clearance import require_frictionless
 from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
-from ...model.machine.friction import require_frictionless
 from ...model.machine.links import Bar
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.strength import Material
 from ...model.optional_packages import import_extra
-from ..problem.section_limits import SectionLimits
+from ..problem.tolerance_costs import SectionLimits
 from .limit_states import (
     AMPLIFICATION,
     Above,

@@ -1,6 +1,6 @@
 """Shaking force and moment as affine functions of the masses that balance them, with exact peaks and means.
 
-At constant crank speed w (`model.dynamics.inertia`, alpha = 0), C is the first moment of everything fixed to the crank,
+At constant crank speed w (`model.dynamics.torque`, alpha = 0), C is the first moment of everything fixed to the crank,
 in its axes, R(theta) the rotation into the frame, and for the rod m is its mass, S its first moment and I its inertia
 about the crank pin:
 
@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.cycle.moving_mass_effects import shaking_curves
+from ...model.cycle.multi_cylinder import shaking_curves
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.linkage import Linkage
 from ...model.machine.design import link_properties

@@ -17,7 +17,7 @@ from mcp.server.session import ServerSession
 from ...model.errors import SlidercrankError
 from ...model.optional_packages import NamingExtra
 from ...optimise.front.progress import Progress, stage_text
-from ...optimise.search.fingerprint import version_of
+from ...optimise.search.checkpoints import version_of
 from ..resources.disk import full_places_text, is_disk_full
 from ..runs.result import json_ready
 from . import questions, runs

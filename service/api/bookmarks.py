@@ -7,7 +7,7 @@ from fastapi import APIRouter, Path, Query, Response
 from pydantic import BaseModel, Field
 
 from ...model.errors import InputError
-from ...objectives.tables.variable_columns import column_of_variable
+from ...objectives.tables.design_input import column_of_variable
 from ...optimise.problem.table_columns import choice_field
 from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import all_columns

@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, Field
 from pydantic_core import to_json
 
 from ...model.errors import InfeasibleError, InputError
-from ...optimise.job.raw_tables import table_in
+from ...optimise.job.named_files import table_in
 from ..designs.columns import Column, all_columns, find_columns
 from ..designs.design_selection_options import chosen_row
 from ..designs.judged_requirements import front_violations_in_words, violations_in_words

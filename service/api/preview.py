@@ -17,7 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import Kind
 from ...objectives.machine_needs import ONE_TIMING
 from ...objectives.tables.curve_extremes import curve_extremes
-from ...optimise.problem.job_remark import changes_of
+from ...optimise.problem.question_registry import changes_of
 from ..designs.design_curves import cycle_table
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model

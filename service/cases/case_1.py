@@ -2,7 +2,7 @@
 
 import math
 
-from ...model.classical.polygons import Polygons, motion_polygons
+from ...model.classical.loop_equations import Polygons, motion_polygons
 from ...model.linkage.inverse_kinematics import crank_motion
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Branch

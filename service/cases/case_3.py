@@ -2,7 +2,7 @@
 
 import math
 
-from ...model.classical.static_forces import static_forces
+from ...model.classical.loop_equations import static_forces
 from ...model.linkage.inverse_kinematics import crank_angle_at
 from ...model.linkage.linkage import Linkage
 from .printed_values import Numbers

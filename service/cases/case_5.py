@@ -7,8 +7,12 @@ from functools import partial
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.classical.lumped import rotating_and_reciprocating_masses
-from ...model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
+from ...model.classical.approximations import (
+    drive_torque_equation_48,
+    rotating_and_reciprocating_masses,
+    series_acceleration,
+    series_torque,
+)
 from ...model.linkage.linkage import Linkage
 from ...model.machine.links import RigidLink
 from ...model.machine.mechanism import Mechanism

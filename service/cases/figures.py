@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...model.arrays import Array
-from ...model.classical.series import series_acceleration, series_torque
-from ...model.classical.static_forces import static_forces
+from ...model.classical.approximations import series_acceleration, series_torque
+from ...model.classical.loop_equations import static_forces
 from ..figures.panel_drawing import save_figure
 from ..figures.panel_figure import CRANK_ANGLE, Line, Panel, PanelFigure, crank_angle_panel
 from ..questions.clearance.figure import speed_runs, speeds_figure

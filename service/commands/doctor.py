@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import typer
 
 from ...model.errors import NotFound, SlidercrankError
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ..jobs.stores import Address, has_store, is_store_specified, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text
@@ -218,7 +218,7 @@ def _free_space(name: str, folder: Path) -> Check:
 
 def _check_compiled_model() -> Check:
     """Check the folder with the compiled model; if it is missing, every process spends minutes on compilation."""
-    from ...model.kernel.cache_folder import choose_folder
+    from ...model.kernel.kernel_digest import choose_folder
 
     folder, _, refused, other_folders = choose_folder()
     if not refused:

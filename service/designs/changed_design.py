@@ -9,9 +9,9 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
+from ...objectives.tables.design_input import column_of_variable
 from ...objectives.tables.evaluate_quantities import can_move, evaluated_as_array
 from ...objectives.tables.swing_columns import require_motion
-from ...objectives.tables.variable_columns import column_of_variable
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Constraint
 from ..runs.result import Result, Row, rows_of_columns
@@ -96,7 +96,7 @@ def judged_variation(design: StoredDesign, result: Result, minimised: Array) -> 
 
 def _dominating_and_dominated(result: Result, row: Row, minimised: Array) -> dict[str, list[int]]:
     """Return the positions of designs that dominate a row, and of those that the row dominates."""
-    from ...optimise.front.constant_numbers import column_ranges
+    from ...optimise.front.saved_front import column_ranges
 
     values = minimised_values(replace(result, designs=[row], exact=None))[0]
     finite = np.where(np.isfinite(minimised), minimised, math.inf)

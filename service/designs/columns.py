@@ -48,7 +48,7 @@ def find_column(name: str, keys: Collection[str]) -> Column:
     key = _key_of_name(name, keys) if same is None else same
     plain, unit, factor = name_unit_and_factor_of_key(key)
     from ...objectives.quantity import Group
-    from ...objectives.tables.variable_columns import number_in_words
+    from ...objectives.tables.design_input import number_in_words
 
     slack = key.startswith("slack_")
     words = number_in_words(plain.removeprefix("slack_").removeprefix("choice_"))

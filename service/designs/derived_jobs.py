@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.tables.variable_columns import column_of_variable
+from ...objectives.tables.design_input import column_of_variable
 from ...optimise.problem.problem import Problem
 from ..runs.result import Result
 from .columns import find_column

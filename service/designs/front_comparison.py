@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.kinds import System, metric_unit_in
 from ..runs.result import Result, StoredObjective
 from .design_selection_options import minimised_values

@@ -111,7 +111,7 @@ def requirements_of(part: Problem) -> list[Requirement]:
 
 def ranges_as_requirements(part: Problem) -> list[Requirement]:
     """Return the ranges of crank, rod, offset and the extra variables, in their units."""
-    from ...objectives.tables.variable_columns import columns_of_numbers
+    from ...objectives.tables.design_input import columns_of_numbers
 
     columns = columns_of_numbers(part.mechanism.varying)
     ranges = []
@@ -188,7 +188,7 @@ def violations_of(mechanism: Mechanism, row: Row) -> dict[str, float]:
     row: metric row of the design; the returned values are also metric.
     """
     from ...objectives.registry import QUANTITIES
-    from ...objectives.tables.violations import violations
+    from ...objectives.tables.evaluate_quantities import violations
 
     def value_of(name: str) -> float | None:
         value = row.get(QUANTITIES[name].field)

@@ -12,9 +12,9 @@ from ...objectives.column_keys import name_unit_and_factor_of_key
 from ...objectives.formula.dimensional_analysis import kind_of_formula
 from ...objectives.formula.expression import Name, Node, evaluate_in_algebra, formula_text, names_in
 from ...objectives.formula.formulas import Units
+from ...objectives.formula.linear import Slopes
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import column_key_of_formula
-from ...objectives.formula.slopes import Slopes
 from ...objectives.kinds import Kind
 from ...objectives.quantity import Array, Values
 from ...objectives.units import kind_of_any_unit

@@ -14,7 +14,7 @@ from ...model.errors import RunError
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import Varying
-from ...objectives.tables.variable_columns import column_of_variable
+from ...objectives.tables.design_input import column_of_variable
 from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
 from ...optimise.problem.table_columns import choice_field

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...model.arrays import Array
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.kinds import unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront

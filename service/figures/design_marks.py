@@ -5,9 +5,9 @@ from typing import Any
 
 from ...model.arrays import Array
 from ...objectives.kinds import System, metric_unit_in
-from ...objectives.tables.variable_columns import column_of_variable
-from ...optimise.front.constant_numbers import is_constant
+from ...objectives.tables.design_input import column_of_variable
 from ...optimise.front.front import ParetoFront
+from ...optimise.front.saved_front import is_constant
 from ...optimise.problem.requirements import Objective
 from ..render.numerals import title_with_unit
 from .style import INK, KNEE_MARKER, MARKERS, VERMILION

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...model.arrays import Array
 from ...model.optional_packages import NamingExtra
-from ...optimise.front.constant_numbers import is_constant
+from ...optimise.front.saved_front import is_constant
 from ..render.numerals import format_on_scale
 from ..resources.memory import without_garbage_collection
 

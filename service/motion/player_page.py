@@ -11,7 +11,7 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
 from ...objectives.kinds import System, metric_unit_in, unit_text
-from ...optimise.front.constant_numbers import is_constant
+from ...optimise.front.saved_front import is_constant
 from ..designs.design_curves import CurveColumn
 from ..drawings import layers as on
 from ..drawings.svg import opening_tag, svg_elements

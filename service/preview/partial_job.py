@@ -14,7 +14,7 @@ from ...objectives.registry import QUANTITIES
 from ...objectives.units import Sign
 from ...optimise.job.constraints_and_objectives import ConstraintsPart, constraints_of
 from ...optimise.job.crank_speed import SPEED_KEYS, CrankSpeedPart
-from ...optimise.job.raw_tables import table_in
+from ...optimise.job.named_files import table_in
 from ...optimise.job.value_types import RangeOf
 from ...optimise.job.variables_and_variants import range_of_dimension
 from ...optimise.problem.problem import Problem

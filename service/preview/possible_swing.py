@@ -18,10 +18,10 @@ from ...model.swing.swing import STARTS, Swing, with_start_of_machine
 from ...model.turning_cylinder.lever_of_design import lever_sizes
 from ...model.turning_cylinder.levers_of_designs import can_make_motion
 from ...objectives.lever_geometry import CYLINDER_TRAVEL
-from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
+from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE, SWING_TRANSMISSION_ANGLE
 from ...objectives.tables.swing_columns import swing_quantities
 from ...optimise.job.motion import MotionPart, with_swing_margin
-from ...optimise.job.raw_tables import table_in
+from ...optimise.job.named_files import table_in
 from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.requirements import Objective

@@ -106,8 +106,8 @@ def with_undefined_values(
     """
     from ...objectives.peak_torque import PEAK_TORQUE
     from ...objectives.registry import QUANTITIES
-    from ...objectives.tables.missing_value_reasons import missing_value_reason
-    from ...objectives.tables.turn_columns import PEAK_TORQUE_ANGLE
+    from ...objectives.tables.all_quantities import missing_value_reason
+    from ...objectives.tables.swing_columns import PEAK_TORQUE_ANGLE
 
     reasons: dict[str, str] = {}
     for quantity in (*QUANTITIES.values(), *custom):

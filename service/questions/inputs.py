@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
-from ...model.errors import InputError
-from ...model.input_warning import reading_in_both_units, warn_user
+from ...model.errors import InputError, reading_in_both_units, warn_user
 from ...objectives.kinds import DisplayUnit, Kind
 
 if TYPE_CHECKING:

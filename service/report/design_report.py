@@ -3,11 +3,10 @@
 import time
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import metric_key
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun, metric_key
 from ...objectives.kinds import unit_text
 from ...objectives.proportions import STROKE
-from ...objectives.swing_geometry import ACTUATOR_TRAVEL, SWING_ANGLE
+from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..designs.changed_design import Variation
 from ..designs.columns import choice_column_keys, find_column
 from ..render.numerals import format_cell, format_cell_with_unit

@@ -5,7 +5,7 @@ from functools import partial
 
 from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.kinds import unit_text
-from ...optimise.search.fingerprint import version_of
+from ...optimise.search.checkpoints import version_of
 from ..designs.columns import find_column
 from ..designs.judged_requirements import front_violations_in_words
 from ..figures.parallel_coordinates import parallel_coordinates

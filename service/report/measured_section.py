@@ -3,7 +3,7 @@
 from dataclasses import replace
 from functools import partial
 
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.kinds import System
 from ...objectives.tables.measured_curves import Measured
 from ..figures.panel_drawing import draw_panel_figure

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.tolerance.error_sources import limits_of_sources
+from ...model.tolerance.error_distributions import limits_of_sources
 from ...objectives.kinds import System, metric_unit_in
 from ..questions.sensitivity.figure import tornado_figure, tornado_rows
 from ..questions.tolerances.analysis import PositionError, numbers

@@ -3,8 +3,7 @@
 import math
 from functools import cached_property
 
-from ...model.swing.error_sources import error_shares
-from ...model.swing.summary import SwingSummary, summarise
+from ...model.swing.summary import SwingSummary, error_shares, summarise
 from ...model.swing.swing import Swing
 from ...objectives.kinds import metric_unit_in
 from ...objectives.tables.swing_curves import driven_error_kind, driven_side_name

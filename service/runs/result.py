@@ -140,7 +140,7 @@ def stored_objectives(problem: Problem) -> list[StoredObjective]:
 
 def result_of(front: ParetoFront, run: str) -> Result:
     """Return the result of a run from its front."""
-    from ...optimise.problem.always_zero_quantities import idle_constraint_warnings
+    from ...optimise.problem.contradictory_problems import idle_constraint_warnings
     from ...optimise.search.driving_load_warnings import front_driving_load_warnings
     from ...optimise.search.stroke_warnings import front_stroke_warnings
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.friction import Friction
+from ...model.machine.clearance import Friction
 from ...model.machine.links import Bar, Link
 from ...model.machine.loads.load_text import join_range_ends
 from ...model.machine.mechanism import Mechanism, Tolerance
@@ -14,23 +14,21 @@ from ...model.machine.strength import Strength
 from ...model.machine.two_turn_machine import cycle_turns
 from ...model.machine.varying_numbers import Varying
 from ...model.swing.end_angles import swing_start_column
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
-from ...objectives.tables.variable_columns import column_of_variable, columns_of_numbers
-from ...optimise.job.impossible_options import impossible_option_notes, impossible_options
-from ...optimise.problem.always_zero_quantities import idle_constraint_warnings
+from ...objectives.tables.design_input import column_of_variable, columns_of_numbers
+from ...optimise.job.linear_contradictions import impossible_option_notes, impossible_options
 from ...optimise.problem.constraint_violation import constraints_with_floors
-from ...optimise.problem.discrete_values import Discrete
-from ...optimise.problem.job_remark import changes_of
+from ...optimise.problem.contradictory_problems import idle_constraint_warnings
 from ...optimise.problem.problem import Problem
-from ...optimise.problem.requirements import Constraint, Objective, Range
+from ...optimise.problem.question_registry import changes_of
+from ...optimise.problem.requirements import Constraint, Discrete, Objective, Range
 from ...optimise.problem.restatement import restate_constraint
 from ...optimise.problem.tolerance_costs import Cost
 from ...optimise.search.driving_load_warnings import driving_load_warnings
 from ...optimise.search.elimination import EliminationBranch, elimination_branches
-from ...optimise.search.overlong_stroke_part_warnings import overlong_part_warnings
-from ...optimise.search.stroke_warnings import stroke_warnings
+from ...optimise.search.stroke_warnings import overlong_part_warnings, stroke_warnings
 
 _MOST_VALUES = 6  # maximum number of values of a variable that are all listed
 

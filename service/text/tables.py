@@ -9,8 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import metric_key
-from ...objectives.count_text import count_with_noun
+from ...objectives.column_keys import count_with_noun, metric_key
 from ..designs.columns import Column, choice_column_keys, find_column
 from ..designs.display_units import row_without_noise
 from ..designs.judged_requirements import front_violations_in_words, violations_in_words
@@ -130,7 +129,7 @@ def usual_keys(result: Result) -> list[str]:
 
 def _varying_usual_columns(result: Result) -> tuple[list[Column], list[str]]:
     """Return the columns of `usual_keys` that differ between designs, and the others in words."""
-    from ...optimise.front.constant_numbers import is_constant
+    from ...optimise.front.saved_front import is_constant
 
     objectives = {objective.column for objective in result.objectives}
     wishes = {objective.column: objective for objective in result.objectives}
@@ -178,7 +177,7 @@ def _front_table(result: Result, rows: Sequence[int], columns: Sequence[Column])
 
 def _best_rows(result: Result, objective: StoredObjective) -> list[int]:
     """Return the positions of the designs that are best in an objective, within rounding; none if all are equal."""
-    from ...optimise.front.constant_numbers import SAME
+    from ...optimise.front.saved_front import SAME
 
     ranks = [objective.minimised_value(row) for row in result.designs]
     least = min(ranks)

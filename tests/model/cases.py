@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor

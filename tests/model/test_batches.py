@@ -11,8 +11,7 @@ from textwrap import dedent
 
 import pytest
 
-from slidercrank.model.kernel.batches import in_chunks
-from slidercrank.model.kernel.interruption import interrupted_by, poll_interruption
+from slidercrank.model.kernel.batches import in_chunks, interrupted_by, poll_interruption
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 

@@ -11,8 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.model.clearance import equations
-from slidercrank.model.clearance.phases import Integrator
-from slidercrank.model.clearance.system import build_system
+from slidercrank.model.clearance.phases import Integrator, build_system
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Clearance, Joint

@@ -14,12 +14,10 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Clearance
+from slidercrank.model.machine.clearance import Clearance, Friction, Pin
 from slidercrank.model.machine.drive import ConstantTorque, Drive
-from slidercrank.model.machine.friction import Friction, Pin
 from slidercrank.model.machine.links import Counterweight, RigidLink
-from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.machine.work_absorption import may_do_work_over_a_turn

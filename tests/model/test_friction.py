@@ -15,7 +15,7 @@ from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle
 from slidercrank.model.cycle.efficiency import cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism

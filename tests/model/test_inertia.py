@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.cycle.multi_cylinder import ShakingCurves, shaking_curves
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.stroke_force import StrokeForce

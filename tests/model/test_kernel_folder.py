@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from slidercrank.model.kernel import cache_folder
-from slidercrank.model.kernel.cache_folder import Chosen, choose_folder
+from slidercrank.model.kernel import kernel_digest
+from slidercrank.model.kernel.kernel_digest import Chosen, choose_folder
 
 pytestmark = pytest.mark.skipif(sys.platform in ("darwin", "win32"), reason="caches are where Linux keeps them")
 
@@ -107,8 +107,8 @@ def test_kernels_that_nobody_else_can_have_put_there_are_read_where_nothing_can_
     kernels = home / "slidercrank/kernels"
     kernels.mkdir(parents=True)
     kernels.parent.chmod(0o777 if open_to_others else 0o755)
-    refusal = cache_folder._refusal
-    monkeypatch.setattr(cache_folder, "_refusal", lambda of: "cannot be written" if of == kernels else refusal(of))
+    refusal = kernel_digest._refusal
+    monkeypatch.setattr(kernel_digest, "_refusal", lambda of: "cannot be written" if of == kernels else refusal(of))
     found = choose_folder()
     assert found.folder is not None
     assert found.folder.parent.name == f"slidercrank-{os.getuid()}"

@@ -25,6 +25,7 @@ from numba.core import event
 from slidercrank.model.errors import SlidercrankError
 from slidercrank.model.kernel import compile_all, compiler, disk_cache
 from slidercrank.model.kernel.arithmetic import arcsine
+from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.kernel.compile_all import compile_missing
 from slidercrank.model.kernel.disk_cache import (
     KernelSource,
@@ -32,7 +33,6 @@ from slidercrank.model.kernel.disk_cache import (
     report_compilation_progress,
     store_machine_code,
 )
-from slidercrank.model.kernel.interruption import interrupted_by
 from slidercrank.model.kernel.kernel import KERNELS, Integers, Kernel, Row, Table, kernel
 from slidercrank.model.kernel.kernel_digest import kernel_digest
 from slidercrank.model.kernel.machine_code import Leaf, MachineCode, load_entry_point

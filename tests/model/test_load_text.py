@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.loads.position_table import PositionTable

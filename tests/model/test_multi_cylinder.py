@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.moving_mass_effects import shaking_curves
-from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle, shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.cylinder_machines import member_machines, single_cylinder
-from slidercrank.model.machine.friction import Friction
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks

@@ -15,7 +15,7 @@ QUADRATURES = {
     "model/transient/steady_cycle.py": "collocation: the unknown is the motion itself",
     "model/motion_law/law_turn.py": "values and integrals within the cells of a turn, of polynomials through its nodes",
     "model/signals/panel_polynomials.py": "extremes of the polynomials that quadrature has fitted",
-    "model/machine/elapsed_time.py": "the series of an integral that quadrature has fitted",
+    "model/machine/speed_profile.py": "the series of an integral that quadrature has fitted",
 }
 ITERATIONS = {
     "model/signals/turn_peaks.py": "peaks of one crank, compiled with the curves",

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 from slidercrank.model.machine.links import Bar, Link
 from slidercrank.model.machine.loads.added_mass import AddedMass
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.load import During, Load
 from slidercrank.model.machine.loads.position_table import PositionTable

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.two_turn_machine import cycle_turns

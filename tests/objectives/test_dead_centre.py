@@ -10,8 +10,7 @@ import pytest
 from scipy.optimize import brentq
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.slider_distances import DeadCentre, SliderDistances
+from slidercrank.model.machine.mechanism import Branch, DeadCentre, Mechanism, SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.dead_centre import DWELL_ANGLE, TOUCH_SPEED, angle_and_travel_rate_before_dead_centre
 from slidercrank.optimise.job import parse_job

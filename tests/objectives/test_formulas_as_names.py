@@ -13,7 +13,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.formula.expression import Call, Name
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
-from slidercrank.objectives.tables.sweep import Axis, sweep
+from slidercrank.objectives.tables.sensitivity import Axis, sweep
 from tests import random_formulas
 from tests.random_formulas import MACHINE, designs
 

@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 import pytest
 
-from slidercrank.model.kernel.interruption import interrupted_by
+from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own import function_process_client as own_worker
 from slidercrank.objectives.own import guard_process

@@ -10,10 +10,9 @@ import pytest
 
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.slider_distances import SliderDistances
+from slidercrank.model.machine.mechanism import Mechanism, SliderDistances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.joint_forces import GUIDE_MOMENT
 from slidercrank.objectives.registry import QUANTITIES

@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 import pytest
 
-from slidercrank.model.kernel.interruption import interrupted_by
+from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own.call_function import Refused
 from slidercrank.objectives.own.function_process_client import Worker

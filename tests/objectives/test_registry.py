@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.cycle_average import CycleAverage
+from slidercrank.objectives.cycle_peak import CycleAverage
 from slidercrank.objectives.registry import FACTS, QUANTITIES, quantity
 
 # Names in job files are promises: they never change.

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Tolerance, Tolerances
-from slidercrank.model.tolerance.error_distributions import Spreads, error_distribution
-from slidercrank.model.tolerance.error_sources import limits_of_sources
+from slidercrank.model.tolerance.error_distributions import Spreads, error_distribution, limits_of_sources
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity, Side

@@ -13,7 +13,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.sweep import Axis, sweep
+from slidercrank.objectives.tables.sensitivity import Axis, sweep
 from tests.model.cases import SMOOTH
 
 DESIGN = np.array([0.04, 0.064, 0.0])

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.model.machine.links import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
-from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying

@@ -8,7 +8,7 @@ import pytest
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.closed_form import ClosedFormQuantity
 from slidercrank.objectives.cycle_peak import CyclePeak, screen_peaks
-from slidercrank.objectives.gas import GasQuantity
+from slidercrank.objectives.flow import GasQuantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.tables.all_quantities import analyse
 from tests.model.varying_machines import BARS, BODIES, RUBBED, VARIED, unit_steps, varied_designs

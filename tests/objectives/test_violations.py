@@ -13,7 +13,7 @@ from slidercrank.model.machine.drive import Drive
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.strength import Material, Strength
 from slidercrank.objectives.registry import FACTS
-from slidercrank.objectives.tables.violations import violations
+from slidercrank.objectives.tables.evaluate_quantities import violations
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.sections_table import EXAMPLE
 from tests.model.cases import random_designs

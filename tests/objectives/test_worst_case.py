@@ -12,7 +12,7 @@ from scipy.stats import qmc
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity, Side
-from slidercrank.objectives.robust.tolerance_box_points import tolerance_limits
+from slidercrank.objectives.robust.worst_points import tolerance_limits
 from tests.model.cases import SMOOTH, STROKES
 
 Array = NDArray[np.float64]

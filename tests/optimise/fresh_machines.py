@@ -13,7 +13,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.tolerance.error_distributions import error_distribution
 from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.robust.quantity import RobustQuantity
-from slidercrank.objectives.robust.tolerance_box_points import tolerance_limits
+from slidercrank.objectives.robust.worst_points import tolerance_limits
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.problem.robust_problem import robust_quantities
 

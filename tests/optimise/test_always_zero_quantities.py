@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.kinematics.negligible_offset import offset_without_rounding
+from slidercrank.model.kinematics.geometry import offset_without_rounding
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
@@ -19,7 +19,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.always_zero_quantities import require_nonzero_quantities
+from slidercrank.optimise.problem.contradictory_problems import require_nonzero_quantities
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Objective
 from slidercrank.optimise.solve import solve

@@ -12,8 +12,8 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.optimise.job import load_job, needed_files, parse_job, read_job
 from slidercrank.optimise.job.catalogue import MOST_OPTIONS, read_catalogue
-from slidercrank.optimise.job.impossible_options import impossible_option_notes
 from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import distance
 

@@ -17,8 +17,8 @@ from slidercrank.model.errors import JobError
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.job.catalogue import read_catalogue
-from slidercrank.optimise.job.impossible_options import impossible_option_notes
 from slidercrank.optimise.job.job_notes import notes_of
+from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
 from tests.optimise.catalogues import front_of
 
 SIX = """name,peak_torque max (N m),price (EUR),maker

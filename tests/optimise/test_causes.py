@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
@@ -19,7 +19,7 @@ from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.robust.quantity import RobustQuantity
 from slidercrank.objectives.tables.all_quantities import analyse
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.always_zero_quantities import idle_constraint_warnings, require_nonzero_quantities
+from slidercrank.optimise.problem.contradictory_problems import idle_constraint_warnings, require_nonzero_quantities
 from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range
 from slidercrank.optimise.solve import solve

@@ -18,9 +18,8 @@ from slidercrank.optimise.methods.registry import methods_by_name
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.robust_problem import Robust, robust_problem
 from slidercrank.optimise.search import checkpoints
-from slidercrank.optimise.search import fingerprint as identity
-from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record
-from slidercrank.optimise.search.fingerprint import identity_of
+from slidercrank.optimise.search import checkpoints as identity
+from slidercrank.optimise.search.checkpoints import Cancelled, Checkpoints, Identity, Numbers, Record, identity_of
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import Bounds, degrees, problem, search_little, shipped
 

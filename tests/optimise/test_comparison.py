@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare_fronts
+from slidercrank.optimise.decisions.price_of_robustness import compare_fronts
 from tests.optimise.independent import Array
 
 

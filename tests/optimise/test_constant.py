@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from slidercrank.optimise.front.choose_design import knee, lexicographic, scale_by_range, topsis
-from slidercrank.optimise.front.constant_numbers import SAME, column_ranges, is_constant
 from slidercrank.optimise.front.hypervolume import hypervolume, ideal_and_range, ignore_progress
-from slidercrank.optimise.front.slack import slack_of
+from slidercrank.optimise.front.saved_front import SAME, column_ranges, is_constant
+from slidercrank.optimise.front.stationarity import slack_of
 from slidercrank.optimise.problem.constraint_violation import constraints_with_floors
 from slidercrank.optimise.problem.requirements import Constraint
 from slidercrank.optimise.search.assemble_front import columns_of_designs

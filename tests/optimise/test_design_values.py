@@ -12,8 +12,7 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.machine.drive import Drive
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.slider_distances import SliderDistances
+from slidercrank.model.machine.mechanism import Mechanism, SliderDistances
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal

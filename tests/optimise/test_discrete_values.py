@@ -27,7 +27,7 @@ from slidercrank.optimise.discrete.combinations import (
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.value_grids import SERIES
-from slidercrank.optimise.problem.discrete_values import Discrete
+from slidercrank.optimise.problem.requirements import Discrete
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
 from tests.optimise.catalogues import brute_force, distance, random_job

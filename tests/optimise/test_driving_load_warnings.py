@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputWarning
-from slidercrank.model.machine.loads.crank_torque import CrankTorque
-from slidercrank.model.machine.loads.crank_torque_table import CrankTorqueTable
+from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
@@ -23,12 +22,12 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.problem_from_tables import problem as stated
 from slidercrank.optimise.problem.problem import Problem
-from slidercrank.optimise.search.designs_for_warnings import sampled_designs
 from slidercrank.optimise.search.driving_load_warnings import (
     driving_load_warnings,
     front_driving_load_warnings,
     net_work,
 )
+from slidercrank.optimise.search.stroke_warnings import sampled_designs
 from slidercrank.optimise.solve import solve
 from tests.model.test_load_text import random_load
 from tests.model.virtual_work import crank_torque, path, slider_load

@@ -10,12 +10,12 @@ import pytest
 
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.compressor import Compressor
+from slidercrank.objectives.flow import VOLUMETRIC_EFFICIENCY
 from slidercrank.objectives.formula.expression import Call, Name
 from slidercrank.objectives.formula.linear import linear_unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
-from slidercrank.objectives.gas import VOLUMETRIC_EFFICIENCY
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.job.impossible_options import impossible_option_notes
+from slidercrank.optimise.job.linear_contradictions import impossible_option_notes
 from slidercrank.optimise.solve import solve
 
 pytestmark = pytest.mark.usefixtures("little")

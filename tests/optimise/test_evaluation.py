@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.transmission_angle import TRANSMISSION_ANGLE
+from slidercrank.objectives.force_transmission import TRANSMISSION_ANGLE
 from slidercrank.optimise.problem.constraint_violation import FEASIBLE, constraints_with_floors, minimised_values
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective

@@ -16,7 +16,7 @@ from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.optimise.job import Job, job_schema, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.search.driving_load_warnings import net_work
-from slidercrank.optimise.search.overlong_stroke_part_warnings import overlong_part_warnings
+from slidercrank.optimise.search.stroke_warnings import overlong_part_warnings
 
 LENGTHS = {"crank": ["20 mm", "100 mm"], "rod": ["200 mm", "400 mm"], "offset": ["0 mm", "50 mm"]}
 

@@ -12,8 +12,8 @@ from slidercrank.optimise.front.dominance import nondominated
 from slidercrank.optimise.front.hypervolume import REFERENCE
 from slidercrank.optimise.front.progress import Progress
 from slidercrank.optimise.problem.problem import Problem
+from slidercrank.optimise.search.candidates import FrontVolume
 from slidercrank.optimise.search.checkpoints import Record
-from slidercrank.optimise.search.front_growth import FrontVolume
 from slidercrank.optimise.search.sample_and_zoom import Archive, Run
 from slidercrank.optimise.solve import solve
 

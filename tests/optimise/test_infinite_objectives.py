@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.feasibility.quantities_without_value import require_finite
+from slidercrank.optimise.feasibility.infeasibility import require_finite
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.search.elimination import elimination_branches
 from slidercrank.optimise.search.evaluation import Evaluator

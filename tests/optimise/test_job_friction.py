@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import JobError
-from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.objectives.force_transmission import SELF_LOCKING_MARGIN
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.self_locking import SELF_LOCKING_MARGIN
 from slidercrank.optimise.job import Job, parse_job
 from slidercrank.optimise.job.job_notes import notes_of
 from slidercrank.optimise.job.problem_of_job import problem_of

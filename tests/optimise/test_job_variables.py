@@ -11,7 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.varying_numbers import Varying
-from slidercrank.objectives.tables.variable_columns import column_of_variable
+from slidercrank.objectives.tables.design_input import column_of_variable
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Range

@@ -14,7 +14,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.objectives.lever_quantity import LeverQuantity
 from slidercrank.objectives.tables.swing_columns import swing_quantity_facts
-from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
+from slidercrank.optimise.certificate.box_conditions import unbounded_reason
 from slidercrank.optimise.problem.constraint_violation import (
     FEASIBLE,
     constraints_with_floors,

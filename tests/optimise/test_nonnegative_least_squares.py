@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog, nnls
 
+from slidercrank.optimise.front.choose_design import nearest_neighbours
 from slidercrank.optimise.front.front import _losses_of_cheapest_gain
-from slidercrank.optimise.front.neighbours import nearest_neighbours
 from slidercrank.optimise.front.nonnegative_least_squares import nonnegative_least_squares
 from tests.optimise.independent import Array
 

@@ -13,9 +13,9 @@ import pytest
 import slidercrank as sc
 from slidercrank.model.errors import InputError
 from slidercrank.model.kinematics.target_motion import TargetMotion
-from slidercrank.objectives.average_torque import RMS_TORQUE
 from slidercrank.objectives.kinds import LENGTH
 from slidercrank.objectives.motion_deviation import MotionDeviation
+from slidercrank.objectives.peak_torque import RMS_TORQUE
 from slidercrank.optimise.front.choose_design import closeness
 from slidercrank.optimise.problem.problem import Settings, Variant
 from slidercrank.optimise.problem.requirements import Constraint, Objective, Range

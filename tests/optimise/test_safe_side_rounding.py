@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.objectives.units import kind_of_symbol, to_si
-from slidercrank.optimise.feasibility.safe_side_rounding import Side, isolated_value_in_full_digits, round_to_safe_side
+from slidercrank.optimise.feasibility.relaxation import Side, isolated_value_in_full_digits, round_to_safe_side
 
 UNITS = sorted({(quantity.unit.symbol, quantity.unit.factor) for quantity in QUANTITIES.values()})
 

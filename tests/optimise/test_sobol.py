@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from slidercrank.optimise.search.sobol import sobol
+from slidercrank.optimise.search.sampling import sobol
 
 
 @pytest.mark.parametrize("dimension", range(1, 13))

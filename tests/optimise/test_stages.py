@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.arrays import Array, IntArray
-from slidercrank.model.kernel.interruption import interrupted_by
+from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.mechanism import Mechanism

@@ -10,8 +10,7 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.optimise.decisions.wish import Wishes, wish
-from slidercrank.optimise.decisions.wish_outcome import Wished
-from slidercrank.optimise.decisions.wishes import minimised_aim
+from slidercrank.optimise.decisions.wishes import Wished, minimised_aim
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job.problem_from_tables import problem as stated
 from slidercrank.optimise.methods.scalar_objective import SUM

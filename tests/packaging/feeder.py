@@ -6,22 +6,21 @@ import math
 
 import numpy as np
 
-from slidercrank.model.classical.static_forces import static_forces
+from slidercrank.model.classical.loop_equations import static_forces
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.moving_mass_effects import shaking_curves
+from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.kinematics import geometry
 from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.inverse_kinematics import crank_angle_at, crank_from_stroke
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.averages import signal_averages, torque_averages
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes
-from slidercrank.model.tolerance.first_order import first_order_position_errors
+from slidercrank.model.tolerance.exact_worst_case import first_order_position_errors, position_deviation_extremes
 
 FEEDER = Linkage(0.040, 0.064, -0.020)
 ANGLE = math.radians(30.0)

@@ -17,7 +17,7 @@ import slidercrank as sc
 from slidercrank.model.errors import InputError, InputWarning
 from slidercrank.objectives.lever_quantity import LeverQuantity
 from slidercrank.objectives.registry import FACTS
-from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
+from slidercrank.optimise.certificate.box_conditions import unbounded_reason
 from slidercrank.optimise.problem.requirements import Objective, Sense
 from tests.service import sized
 

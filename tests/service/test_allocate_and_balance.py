@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from slidercrank.model.cycle.moving_mass_effects import shaking_curves
+from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import Counterweight
 from slidercrank.model.machine.mechanism import Window
-from slidercrank.model.tolerance.first_order import first_order_position_errors
+from slidercrank.model.tolerance.exact_worst_case import first_order_position_errors
 from slidercrank.optimise.job import load_job
 from slidercrank.optimise.sizing.counterweight import RodSpace, best_balance
 from slidercrank.optimise.sizing.input_words import Kind

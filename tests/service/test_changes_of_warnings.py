@@ -13,7 +13,7 @@ import pytest
 from typer.testing import CliRunner
 
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.job_remark import Change, Remark
+from slidercrank.optimise.problem.question_registry import Change, Remark
 from slidercrank.service.cli import app
 from slidercrank.service.text.job_in_words import problem_in_words
 

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.comparison import TORQUE, compare_approximations
-from slidercrank.model.classical.polygons import motion_polygons
-from slidercrank.model.classical.static_forces import static_forces
+from slidercrank.model.classical.approximations import TORQUE, compare_approximations
+from slidercrank.model.classical.loop_equations import motion_polygons, static_forces
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.colors import to_rgb
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare_fronts
+from slidercrank.optimise.decisions.price_of_robustness import compare_fronts
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.service.agents.call import Call
 from slidercrank.service.agents.server import TOOLS

@@ -18,8 +18,7 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
-from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.slider_distances import SliderDistances
+from slidercrank.model.machine.mechanism import Branch, Mechanism, SliderDistances
 from slidercrank.model.machine.speed_profile import Harmonics
 from slidercrank.objectives.dead_centre import TOUCH_SPEED
 from slidercrank.service.questions.press import analysis as press

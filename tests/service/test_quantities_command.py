@@ -9,7 +9,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.objectives.registry import FACTS
-from slidercrank.objectives.tables.turn_columns import OF_A_TURN
+from slidercrank.objectives.tables.swing_columns import OF_A_TURN
 from slidercrank.optimise.problem.table_columns import RESIDUAL
 from slidercrank.service.commands.job_files import TERMS
 from tests.service.conftest import Command

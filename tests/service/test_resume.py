@@ -15,8 +15,7 @@ import pytest
 from slidercrank.model.errors import EngineError, InputError, MissingExtra
 from slidercrank.optimise.front.front import ParetoFront
 from slidercrank.optimise.job import read_job
-from slidercrank.optimise.search.checkpoints import Record
-from slidercrank.optimise.search.fingerprint import identity_of
+from slidercrank.optimise.search.checkpoints import Record, identity_of
 from slidercrank.optimise.solve import solve
 from slidercrank.service.jobs.submission import submit
 from slidercrank.service.runs.result import csv_text

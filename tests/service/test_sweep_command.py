@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.objectives.tables.sweep import Axis, sweep
+from slidercrank.objectives.tables.sensitivity import Axis, sweep
 from slidercrank.service.questions.sweep.analysis import parse_axis
 from slidercrank.service.questions.sweep.figure import sweep_figure, sweep_grid
 from tests.model.cases import SMOOTH

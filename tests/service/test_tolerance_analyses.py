@@ -22,8 +22,12 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
-from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
+from slidercrank.model.tolerance.exact_worst_case import (
+    first_order_position_errors,
+    fractions_of_sum,
+    position_deviation_extremes,
+    worst_position_error,
+)
 from slidercrank.model.tolerance.monte_carlo import simulate, variance_contributions
 from slidercrank.objectives.tables.sensitivity import sensitivity
 from slidercrank.service.questions.discovery import TOPICS

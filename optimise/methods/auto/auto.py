@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from ....model.arrays import Array, IntArray, Mask, sorted_unique
+from ...front.choose_design import nearest_neighbours
 from ...front.dominance import dominating, nondominated
 from ...front.front import ParetoFront
 from ...front.hypervolume import ReportProgress, choose_designs
-from ...front.neighbours import nearest_neighbours
 from ...problem.constraint_violation import FEASIBLE
 from ...problem.problem import Problem
 from ...search.assemble_front import SELECTING, assemble_front, objective_ranges

@@ -8,7 +8,7 @@ import time
 import numpy as np
 
 from ....model.arrays import Array, IntArray
-from ....model.kernel.interruption import interrupted_by
+from ....model.kernel.batches import interrupted_by
 from ....objectives.own.quantity import runs_custom_function
 from ...front.dominance import nondominated
 from ...front.front import ParetoFront

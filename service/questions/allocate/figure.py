@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.tolerance.error_sources import SOURCES, angle_ranges_where_error_counts
-from ....model.tolerance.first_order import FirstOrder, first_order_position_errors
+from ....model.tolerance.error_distributions import SOURCES, angle_ranges_where_error_counts
+from ....model.tolerance.exact_worst_case import FirstOrder, first_order_position_errors
 from ....objectives.kinds import LENGTH, System
 from ....optimise.problem.tolerance_costs import Costs, costs_of_tolerances
 from ....optimise.sizing.tolerance_allocation import Allocation

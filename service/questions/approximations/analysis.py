@@ -6,13 +6,13 @@ from typing import Annotated
 import numpy as np
 
 from ....model.arrays import Array
-from ....model.classical.comparison import (
+from ....model.classical.approximations import (
     Errors,
     approximation_errors_over_offset,
     compare_approximations,
     relative_error,
+    rotating_and_reciprocating_masses,
 )
-from ....model.classical.lumped import rotating_and_reciprocating_masses
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, TORQUE, Kind

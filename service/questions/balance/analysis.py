@@ -6,8 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from ....model.arrays import Array
-from ....model.cycle.moving_mass_effects import ShakingCurves, shaking_curves
-from ....model.cycle.multi_cylinder import MultiCylinderCurves, multi_cylinder_curves
+from ....model.cycle.multi_cylinder import MultiCylinderCurves, ShakingCurves, multi_cylinder_curves, shaking_curves
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.links import Counterweight
@@ -48,7 +47,7 @@ def _without_counterweight(mechanism: Mechanism) -> Mechanism | None:
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     """Return peaks and root mean squares of shaking force and moment of one linkage, with and without counterweight.
 
-    Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.inertia`).
+    Root mean squares are over time. Inertia forces only: gravity and load are ignored (`model.dynamics.torque`).
     Values without counterweight are None if the machine has none. Raises `InputError` if the crank has no speed.
     """
     if not MOTION.is_met(mechanism):

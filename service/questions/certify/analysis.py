@@ -6,7 +6,7 @@ from typing import Any
 from ....model.arrays import Array
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import LENGTH
-from ....objectives.tables.variable_columns import columns_of_numbers
+from ....objectives.tables.design_input import columns_of_numbers
 from ....optimise.certificate.certificate import Certificate, Step
 from ....optimise.certificate.certify import certify_designs
 from ....optimise.certificate.defaults import EPSILON, SECONDS

@@ -14,7 +14,7 @@ import numpy as np
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
-from ....optimise.decisions.front_comparison import compare_fronts
+from ....optimise.decisions.price_of_robustness import compare_fronts
 from ...designs.design_selection_options import minimised_values
 from ...designs.display_units import convert_objective
 from ...designs.front_comparison import comparison_sentences
@@ -24,7 +24,7 @@ from ...runs.result import Result, StoredObjective, objective_record
 from ..front_or_job_question import Answer
 
 if TYPE_CHECKING:
-    from ....optimise.decisions.front_comparison import Comparison
+    from ....optimise.decisions.price_of_robustness import Comparison
     from .runs import ComparedRun
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.motion_law.cam_table import cam_table
+from ....model.motion_law.motion_law import cam_table
 from ....model.transient.crank_equation import TURN
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ANGULAR_SPEED, SPEED, TORQUE, Kind, System

@@ -10,8 +10,7 @@ from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import cycle_turns
-from ....objectives.column_keys import kind_of_key
-from ....objectives.count_text import count_with_noun
+from ....objectives.column_keys import count_with_noun, kind_of_key
 from ....objectives.kinds import ANGLE
 from ....objectives.tables.curve_deviation import Deviation, deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves

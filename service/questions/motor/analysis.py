@@ -10,12 +10,11 @@ from scipy.optimize import minimize_scalar
 from ....model.arrays import Array
 from ....model.cycle.crank_speed import crank_speed_and_acceleration
 from ....model.cycle.cycle import breakpoints, cycle
-from ....model.cycle.moving_mass_effects import shaking_curves
-from ....model.cycle.multi_cylinder import multi_cylinder_curves
+from ....model.cycle.multi_cylinder import multi_cylinder_curves, shaking_curves
 from ....model.cycle.self_locking import locking_margin
 from ....model.linkage.linkage import Linkage
+from ....model.machine.clearance import Friction
 from ....model.machine.cylinder_machines import cylinder_machines
-from ....model.machine.friction import Friction
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import TURN, cycle_turns
 from ....model.signals.averages import signal_averages, torque_averages

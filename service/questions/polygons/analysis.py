@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ....model.classical.polygons import Polygons, motion_polygons
+from ....model.classical.loop_equations import Polygons, motion_polygons
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....objectives.kinds import ACCELERATION, LENGTH, SPEED

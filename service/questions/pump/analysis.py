@@ -13,10 +13,9 @@ from ....model.machine.arrangement import Arrangement
 from ....model.machine.cylinder_machines import member_machines
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
-from ....objectives.average_torque import MEAN_TORQUE
 from ....objectives.flow import FLOW, FLOW_RIPPLE, liquid_pumps
 from ....objectives.kinds import TORQUE, VOLUME_FLOW
-from ....objectives.peak_torque import PEAK_TORQUE
+from ....objectives.peak_torque import MEAN_TORQUE, PEAK_TORQUE
 from ....objectives.quantity import Quantity
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list

@@ -88,7 +88,7 @@ def _record_of_rounding(rounded: Rounded, row: int) -> Answer:
 def steps_of(texts: Sequence[str], part: Problem, key: str) -> dict[str, float]:
     """Return the steps by name, SI. key: name of the input, for messages. Raises `InputError`."""
     from ....model.machine.raw_numbers_of_designs import unit_of_number
-    from ....objectives.tables.variable_columns import column_of_variable
+    from ....objectives.tables.design_input import column_of_variable
 
     kinds = dict.fromkeys(DIMENSIONS, LENGTH)
     names = {name: name for name in DIMENSIONS} | {f"{name}_mm": name for name in DIMENSIONS}

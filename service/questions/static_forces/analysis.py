@@ -6,10 +6,10 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.classical.static_forces import static_forces
+from ....model.classical.loop_equations import static_forces
 from ....model.cycle.cycle import cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.friction import Friction
+from ....model.machine.clearance import Friction
 from ....model.machine.links import Counterweight, RigidLink
 from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce

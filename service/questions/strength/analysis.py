@@ -19,7 +19,7 @@ from ....objectives.kinds import ANGLE, LENGTH, PRESSURE
 from ....objectives.link_strength import STATIC_SAFETY, greatest_eye_stresses
 from ....objectives.quantity import Group
 from ....objectives.registry import QUANTITIES
-from ....objectives.tables.missing_value_reasons import missing_value_reason
+from ....objectives.tables.all_quantities import missing_value_reason
 from ...designs.judged_requirements import violations_of
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, number_list, value_from_record, words

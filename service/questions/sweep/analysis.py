@@ -13,7 +13,7 @@ from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH
 from ....objectives.registry import FACTS
-from ....objectives.tables.sweep import Axis, Parameter, sweep
+from ....objectives.tables.sensitivity import Axis, Parameter, sweep
 from ....objectives.units import closest_word
 from ...designs.display_units import convert_rows
 from ...designs.rotating_crank import require_rotating_crank

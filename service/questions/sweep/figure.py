@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from ....model.arrays import Array
 from ....objectives.kinds import System, metric_unit_in
 from ....objectives.quantity import Quantity
-from ....objectives.tables.sweep import Axis
-from ....optimise.front.constant_numbers import is_constant
+from ....objectives.tables.sensitivity import Axis
+from ....optimise.front.saved_front import is_constant
 from ...figures.style import (
     BLUE,
     MUTED,

@@ -14,9 +14,8 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....model.signals.first_peak import first_peaks
 from ....model.signals.signals import Signal
-from ....model.tolerance.error_sources import SOURCES, limits_of_sources, source_influences
-from ....model.tolerance.exact_worst_case import worst_position_error
-from ....model.tolerance.first_order import fractions_of_sum
+from ....model.tolerance.error_distributions import SOURCES, limits_of_sources, source_influences
+from ....model.tolerance.exact_worst_case import fractions_of_sum, worst_position_error
 from ....model.tolerance.monte_carlo import simulate, summarise_sample, variance_contributions, yield_within
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words

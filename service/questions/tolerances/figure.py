@@ -11,9 +11,8 @@ from ....model.cycle.cycle import cycle
 from ....model.errors import AssemblyError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
-from ....model.tolerance.error_sources import SOURCES, limits_of_sources
-from ....model.tolerance.exact_worst_case import position_deviation_extremes
-from ....model.tolerance.first_order import fractions_of_sum
+from ....model.tolerance.error_distributions import SOURCES, limits_of_sources
+from ....model.tolerance.exact_worst_case import fractions_of_sum, position_deviation_extremes
 from ....model.tolerance.monte_carlo import simulate, variance_contributions
 from ....objectives.kinds import LENGTH, System
 from ...figures import style

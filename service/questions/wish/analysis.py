@@ -6,7 +6,7 @@ from typing import Any
 
 from ....objectives.kinds import System, metric_unit_in
 from ....optimise.decisions.wish import Wishes
-from ....optimise.decisions.wish_outcome import Outcome, Wished
+from ....optimise.decisions.wishes import Outcome, Wished
 from ....optimise.front.front import ParetoFront
 from ...designs.display_units import convert_row
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, column, heading, value_from_record, words

@@ -8,14 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.comparison import TORQUE, approximation_errors_over_offset, compare_approximations
-from slidercrank.model.classical.lumped import (
+from slidercrank.model.classical.approximations import (
+    TORQUE,
+    approximation_errors_over_offset,
+    compare_approximations,
+    drive_torque_equation_48,
     link_mass_properties,
     mechanism_with_lumped_rod,
     rod_mass_share_at_crank_pin,
     rotating_and_reciprocating_masses,
+    series_acceleration,
+    series_torque,
 )
-from slidercrank.model.classical.series import drive_torque_equation_48, series_acceleration, series_torque
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage

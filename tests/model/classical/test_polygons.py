@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.polygons import Polygons, motion_polygons
+from slidercrank.model.classical.loop_equations import Polygons, motion_polygons
 from slidercrank.model.errors import AssemblyError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.classical.static_forces import static_forces
+from slidercrank.model.classical.loop_equations import static_forces
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage

@@ -15,14 +15,13 @@ from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.drag import Drag
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.motion_law.cam_table import CamTable, cam_table
 from slidercrank.model.motion_law.law_turn import LawTurn
-from slidercrank.model.motion_law.motion_law import MotionLaw
+from slidercrank.model.motion_law.motion_law import CamTable, MotionLaw, cam_table
 from slidercrank.model.transient.crank_equation import CrankEquation
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from tests.model.law_cases import random_case

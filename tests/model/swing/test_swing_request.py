@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.swing_start import Start
+from slidercrank.model.machine.mechanism import Mechanism, Start
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_request import SwingRequest, resolve_swing

@@ -15,9 +15,12 @@ from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.error_sources import angle_ranges_where_error_counts, limit_box
-from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
-from slidercrank.model.tolerance.first_order import first_order_position_errors
+from slidercrank.model.tolerance.error_distributions import angle_ranges_where_error_counts, limit_box
+from slidercrank.model.tolerance.exact_worst_case import (
+    first_order_position_errors,
+    position_deviation_extremes,
+    worst_position_error,
+)
 from tests.model.cases import Array
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 

@@ -15,8 +15,8 @@ from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance
 from slidercrank.model.signals.fast_torque_and_error import is_supported, screened_maxima
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.model.tolerance.error_sources import limits_of_sources
-from slidercrank.model.tolerance.first_order import first_order_position_errors, higher_order_bound
+from slidercrank.model.tolerance.error_distributions import limits_of_sources
+from slidercrank.model.tolerance.exact_worst_case import first_order_position_errors, higher_order_bound
 from tests.model.cases import SMOOTH, random_designs
 from tests.model.tolerance.machines import PUBLISHED, SUPPORT, random_cases
 

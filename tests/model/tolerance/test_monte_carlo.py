@@ -14,8 +14,12 @@ from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerance, Tolerances, Window
 from slidercrank.model.tolerance.error_distributions import Contact, Shape, Spreads, error_distribution
-from slidercrank.model.tolerance.exact_worst_case import position_deviation_extremes, worst_position_error
-from slidercrank.model.tolerance.first_order import first_order_position_errors, fractions_of_sum
+from slidercrank.model.tolerance.exact_worst_case import (
+    first_order_position_errors,
+    fractions_of_sum,
+    position_deviation_extremes,
+    worst_position_error,
+)
 from slidercrank.model.tolerance.monte_carlo import (
     CHUNK,
     simulate,

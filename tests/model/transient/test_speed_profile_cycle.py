@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.cycle.crank_speed import crank_speed_and_acceleration
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.moving_mass_effects import shaking_curves
-from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle
+from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves, multi_cylinder_cycle, shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement

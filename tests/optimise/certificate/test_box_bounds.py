@@ -12,7 +12,7 @@ import pytest
 from slidercrank.model.arrays import Array
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
@@ -21,13 +21,12 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
-from slidercrank.model.machine.mechanism import Clearances, Mechanism, Tolerances, Window
-from slidercrank.model.machine.slider_distances import SliderDistances
+from slidercrank.model.machine.mechanism import Clearances, Mechanism, SliderDistances, Tolerances, Window
 from slidercrank.model.machine.speed_profile import Harmonics, SpeedTable
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.objectives.registry import QUANTITIES
-from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
 from slidercrank.optimise.certificate.box_bounds import Boxes
+from slidercrank.optimise.certificate.box_conditions import unbounded_reason
 from slidercrank.optimise.problem.constraint_violation import FEASIBLE, minimised_values
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Constraint, Objective

@@ -18,7 +18,7 @@ from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.swing import Swing
 from slidercrank.objectives.tables.swing_columns import swing_quantities
-from slidercrank.optimise.certificate.boundable_quantities import unbounded_reason
+from slidercrank.optimise.certificate.box_conditions import unbounded_reason
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective, Sense
 from tests.case_count import ALL_CASES

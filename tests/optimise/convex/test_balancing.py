@@ -11,7 +11,7 @@ import pytest
 import scipy.optimize
 from numpy.typing import NDArray
 
-from slidercrank.model.cycle.moving_mass_effects import shaking_curves
+from slidercrank.model.cycle.multi_cylinder import shaking_curves
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.links import RigidLink

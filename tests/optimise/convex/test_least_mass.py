@@ -8,7 +8,7 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.optimise.job import parse_job
-from slidercrank.optimise.problem.section_limits import SectionLimits
+from slidercrank.optimise.problem.tolerance_costs import SectionLimits
 from slidercrank.optimise.sizing.sections import size_sections
 from slidercrank.optimise.solve import solve
 from tests.optimise.problems import search_little

@@ -15,14 +15,14 @@ from scipy.optimize import minimize
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.friction import Friction
+from slidercrank.model.machine.clearance import Friction
 from slidercrank.model.machine.links import Bar
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.mechanism import Branch, Mechanism
 from slidercrank.model.machine.strength import Material
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
-from slidercrank.optimise.problem.section_limits import SectionLimits
+from slidercrank.optimise.problem.tolerance_costs import SectionLimits
 from slidercrank.optimise.sizing.limit_states import joint_load_terms, rod_loads
 from slidercrank.optimise.sizing.section_loads import greatest_rod_accelerations, joint_loads
 from slidercrank.optimise.sizing.sections import Sections, size_sections

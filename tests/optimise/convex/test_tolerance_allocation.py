@@ -14,8 +14,8 @@ from scipy.optimize import minimize_scalar
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Branch, Clearances, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.tolerance.error_sources import angle_ranges_where_error_counts
-from slidercrank.model.tolerance.first_order import first_order_position_errors
+from slidercrank.model.tolerance.error_distributions import angle_ranges_where_error_counts
+from slidercrank.model.tolerance.exact_worst_case import first_order_position_errors
 from slidercrank.optimise.problem.tolerance_costs import NAMES, Cost, Costs
 from slidercrank.optimise.sizing.input_words import Kind
 from slidercrank.optimise.sizing.tolerance_allocation import Allocation, allocate_tolerances

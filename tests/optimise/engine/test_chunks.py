@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from slidercrank.optimise.engine import chunks
-from slidercrank.optimise.engine.chunks import Chunked, Shared
-from slidercrank.optimise.engine.engine import Poll, Serial
+from slidercrank.optimise.engine import engine as chunks
+from slidercrank.optimise.engine.engine import Chunked, Poll, Serial, Shared
 from slidercrank.optimise.engine.processes import Processes
 from slidercrank.optimise.solve import solve
 from tests.optimise.engine import work

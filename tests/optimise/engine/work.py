@@ -12,7 +12,7 @@ import psutil
 from numpy.typing import NDArray
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.engine.chunks import Shared
+from slidercrank.optimise.engine.engine import Shared
 
 Array = NDArray[np.float64]
 

@@ -22,9 +22,8 @@ from slidercrank.model.motion_law.law_turn import LawTurn
 from slidercrank.model.motion_law.motion_law import MotionLaw
 from slidercrank.model.transient.speed_profile_cycle import speed_profile_cycle
 from slidercrank.optimise.motion_law.input_words import LawObjective
-from slidercrank.optimise.motion_law.law_limits import LawRequest, resolve_limits
+from slidercrank.optimise.motion_law.law_limits import LawRequest, Reachable, resolve_limits
 from slidercrank.optimise.motion_law.optimal_law import GAP, LIMIT_TOLERANCE, OptimalLaw, optimal_law
-from slidercrank.optimise.motion_law.reachable_energies import Reachable
 from tests.case_count import case_count
 from tests.model.law_cases import random_case
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.optimise.decisions.front_comparison import compare_fronts
+from slidercrank.optimise.decisions.price_of_robustness import compare_fronts
 from slidercrank.service.client import Client
 from slidercrank.service.designs.front_comparison import NEAR
 from slidercrank.service.questions.compare.analysis import differences_between_jobs

@@ -1,4 +1,4 @@
-/** Whether numbers are equal within rounding, by the rule of optimise/front/constant_numbers.py, which gives the reason. */
+/** Whether numbers are equal within rounding, by the rule of optimise/front/saved_front.py, which gives the reason. */
 
 const SAME = 1e-9; // relative range of equal numbers
 

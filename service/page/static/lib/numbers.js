@@ -156,7 +156,7 @@ export function withPower(value, digits) {
 
 /**
  * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
- * asked for: what optimise/feasibility/safe_side_rounding.py does for sentences, in the unit that is shown.
+ * asked for: what optimise/feasibility/relaxation.py does for sentences, in the unit that is shown.
  * @param {number} value @param {string} unit @param {"up" | "down"} side @param {number} digits
  */
 export function limitText(value, unit, side, digits = 5) {
