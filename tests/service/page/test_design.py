@@ -359,7 +359,7 @@ def test_designs_stand_side_by_side_at_the_same_angle(opened: Opened) -> None:
     assert turns == {"(-10.000)"}
     assert page.locator("figure[data-key='torque_Nm'] .curve").count() == 3
     columns = page.get_by_role("region", name="All numbers").locator("thead th").all_inner_texts()
-    assert columns == ["Quantity", "Unit", "Design 3", "Design 1", "change", "Design 5", "change"]
+    assert columns == ["Quantity", "Design 3", "Design 1", "change", "Design 5", "change"]
     angles = page.locator(".numbers tr", has=page.get_by_role("link", name="outer dead centre", exact=True))
     assert all(text.endswith("°") for text in angles.locator("td.quiet.number").all_inner_texts())
     ratios = page.locator(".objective").first.locator(".of-other")

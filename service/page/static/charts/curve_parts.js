@@ -10,6 +10,7 @@ import { crankAt, extremes } from "./cycle.js";
  */
 
 export const MARGIN = { left: 56, right: 12, top: 25, bottom: 24 };
+const NARROW = 220; // pixels of a chart that has room for every second tick alone
 const NAMES = { turn: ["inner", "outer"], swing: ["start", "end"] };
 
 /** @typedef {{ x: Page.Scale, y: Page.Scale, abscissa: Abscissa, height: number }} Pen Scales of a chart, and what it is drawn over. */
@@ -35,16 +36,18 @@ export function axes({ x, y, abscissa, height }, width) {
       }),
       svg("text", { x: MARGIN.left - 5, y: y.at(tick) + 4, "text-anchor": "end" }, y.text(tick)),
     ]),
-    ticks.map(({ at, text: words }) =>
-      svg(
-        "text",
-        {
-          x: x.at(at),
-          y: height - 6,
-          "text-anchor": x.at(at) > width - 3 * MARGIN.right ? "end" : "middle",
-        },
-        words,
-      ),
+    ticks.map(
+      ({ at, text: words }, n) =>
+        (width > NARROW || n % 2 === 0) &&
+        svg(
+          "text",
+          {
+            x: x.at(at),
+            y: height - 6,
+            "text-anchor": x.at(at) > width - 3 * MARGIN.right ? "end" : "middle",
+          },
+          words,
+        ),
     ),
   );
 }

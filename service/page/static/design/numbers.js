@@ -112,17 +112,17 @@ function table(caption, designs, groups, names) {
     "tr",
     {},
     h("th", { scope: "col" }, "Quantity"),
-    h("th", { scope: "col" }, "Unit"),
     heading(first),
     others.map((one) => [heading(one), h("th", { scope: "col", class: "number" }, "change")]),
   );
   /** @param {Api.Column} column */
-  const unitCell = ({ unit }) => h("td", { class: "quiet" }, unitOf(unit));
-  /** @param {Api.Column} column */
   const line = (column) =>
     headedRow(
-      helpLink(column, names),
-      others.length > 0 && unitCell(column),
+      [
+        helpLink(column, names),
+        others.length > 0 &&
+          column.unit && [", ", h("span", { class: "quiet unit" }, unitOf(column.unit))],
+      ],
       cell(first.row[column.key], column, { name: first.name }),
       others.map(({ row, name }) => [
         cell(row[column.key], column, { name }),
@@ -132,7 +132,7 @@ function table(caption, designs, groups, names) {
           difference(row[column.key], first.row[column.key], column.unit),
         ),
       ]),
-      others.length === 0 && unitCell(column),
+      others.length === 0 && h("td", { class: "quiet" }, unitOf(column.unit)),
     );
   const bodies = groups.map(({ title, columns }) =>
     h(
@@ -142,7 +142,7 @@ function table(caption, designs, groups, names) {
         h(
           "tr",
           { class: "group-title" },
-          h("th", { scope: "rowgroup", colspan: 3 + 2 * others.length }, title),
+          h("th", { scope: "rowgroup", colspan: 2 + 2 * others.length }, title),
         ),
       columns.map(line),
     ),
