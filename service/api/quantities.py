@@ -42,7 +42,8 @@ class QuantityModel(BaseModel):
     allowed_by: str = Field(description='origin of its allowable value; "" without one', examples=[""])
     offered: list[str] = Field(description="parts of a form that offer it", examples=[["motion"]])
     motion: str = Field(
-        description="motion to which it applies: turn or swing of a crank, or lever; empty for all", examples=["turn"]
+        description="motions to which it applies: turn or swing of a crank, lever, arm; empty for all",
+        examples=["turn"],
     )
 
 

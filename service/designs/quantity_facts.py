@@ -33,7 +33,8 @@ def _motion_of(quantity: Quantity) -> str:
     from ...objectives.lever_quantity import LeverQuantity
 
     if isinstance(quantity, LeverQuantity):
-        return "lever"
+        words = {"cylinder": "lever", "turning crank": "arm"}
+        return ", ".join(words[driver] for driver in quantity.moved_by if driver in words)
     return "swing" if quantity.table == "motion" else "turn" if quantity.turning else ""
 
 

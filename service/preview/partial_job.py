@@ -28,15 +28,15 @@ _MOST_POINTS = 100
 def problem_in_crank_rod_offset(tables: Mapping[str, Any], full_problem: Problem | None) -> Problem | None:
     """Return the problem in crank, rod and offset that a job states; None while there is none.
 
-    None while their ranges cannot be read, and for a swing.
+    None while their ranges cannot be read, for a swing, and for a cylinder that turns.
 
     full_problem: problem of the whole job, if it is valid; of several options the first is used. Requirements that need
     the machine are omitted without it; those too expensive for a preview are always omitted.
     """
     ranges, requirements = ranges_of(tables), table_in(tables, "constraints")
-    if ranges is None or table_in(tables, "motion").get("kind") == "swing":
-        return None
     stated = table_in(tables, "mechanism")
+    if ranges is None or "inversion" in stated or table_in(tables, "motion").get("kind") == "swing":
+        return None
     machine = _massless_machine(stated) if full_problem is None else full_problem.part(0).mechanism.nominal
     with_machine = full_problem is not None and sum(len(load.knots()[0]) for load in machine.loads) <= _MOST_POINTS
     problem = Problem(

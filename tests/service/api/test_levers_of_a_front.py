@@ -99,6 +99,7 @@ def test_designs_of_a_crank_that_turns_an_arm_are_answered_or_refused_in_one_sen
             assert found["outlines"]["extent_mm"][0] < found["outlines"]["extent_mm"][2]
             preview = client.post(f"{API}/preview", json={"job": SHAPER})
             assert preview.status_code == 200, preview.text
+            assert preview.json()["wrong"] == []
             swing = preview.json()["swing"]
             assert (swing["from_deg"], swing["to_deg"]) == pytest.approx((0.0, 360.0))
             least = min(swing["example"]["crank_mm"], swing["example"]["rod_mm"])

@@ -54,7 +54,7 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     expect(page.locator("#notices")).to_contain_text("stroke, least transmission angle, time ratio, peak torque")
     checked(page)
     job = text_of(page)
-    assert job["motion"] == {"kind": "swing", "from": "0 deg", "to": "60 deg", "driver": "slider"}
+    assert job["motion"] == {"kind": "swing", "from": "30 deg", "to": "90 deg", "driver": "slider"}
     assert job["objectives"] == {"peak_actuator_force": "minimise"}
     expect(page.get_by_label("slow stroke", exact=True)).to_have_count(0)
     page.get_by_label("driven end", exact=True).select_option("crank")
@@ -64,7 +64,7 @@ def test_a_crank_that_is_let_swing_keeps_what_fits_and_says_what_was_taken_out(f
     expect(said).to_contain_text("or let the slider be the driven end")
     expect(said).not_to_contain_text("[")
     page.get_by_label("driven end", exact=True).select_option("slider")
-    page.get_by_label("to crank angle", exact=True).fill("0")
+    page.get_by_label("to crank angle", exact=True).fill("30")
     expect(page.get_by_text(re.compile("swing needs two different crank angles"))).to_be_visible()
     page.get_by_label("to crank angle", exact=True).fill("355")
     expect(page.get_by_role("complementary")).to_contain_text("No linkage within these ranges makes the swing.")

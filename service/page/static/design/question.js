@@ -4,7 +4,7 @@ import { address, get, isAbort, post, statusOf } from "../lib/api.js";
 import { link } from "../lib/address.js";
 import { blocks } from "../lib/blocks.js";
 import { fill, formOf, h, numberField } from "../lib/dom.js";
-import { apiSystem, inDisplayUnit, readySystem, unitOf } from "../lib/numbers.js";
+import { apiSystem, inDisplayUnit, readySystem, text, unitOf } from "../lib/numbers.js";
 import { parseQuantity } from "../lib/quantity_text.js";
 import { sentenceOf } from "../lib/refusals.js";
 
@@ -143,7 +143,9 @@ function fieldOf({ key, unit, usual, example, words, several }, value) {
       )
     : numberField({
         name: key,
-        placeholder: usual || example,
+        placeholder: unit
+          ? text(parseQuantity(usual || example, unit).value ?? "", unit)
+          : usual || example,
         value:
           value === null ? "" : String(Number(inDisplayUnit(Number(value), unit).toPrecision(8))),
       });

@@ -12,20 +12,19 @@ import { speed } from "./speed.js";
 const PATH = ["motion"];
 const INVERSION = ["mechanism", "inversion"];
 const LEVER = "lever moved by a pivoting cylinder";
-/** Keys that only a lever has. */
-const OF_LEVER = ["mechanism.frame_angle", "mechanism.pin_angle", "cylinder"];
-/** Keys that a lever does not have. */
-const NOT_OF_LEVER = [
-  ...["speed", "cycle_time", "strokes_per_minute", "direction", "acceleration", "speed_profile"],
-  ...["rod", "slider", "cylinders", "branch"],
-]
+const TURNED = "rotates fully and turns a pivoting cylinder or an arm";
+const SPEED = ["speed", "cycle_time", "strokes_per_minute", "direction"];
+/** Keys that only a lever, or such a crank, has. */
+const OF_LEVER = ["mechanism.frame_angle", "mechanism.pin_angle", "cylinder", "arm", "spring"];
+/** Keys that neither has. */
+const NOT_OF_LEVER = ["acceleration", "speed_profile", "rod", "slider", "cylinders", "branch"]
   .map((key) => `mechanism.${key}`)
   .concat("load", "drive", "friction", "clearance", "costs", "target_motion", "sections", "robust")
   .concat("tolerances.crank_angle", "tolerances.clearances");
 /** Ways to state the ends of a swing: keys, and initial values. @type {Record<string, Record<string, string>>} */
 const ENDS = {
-  "two crank angles": { from: "0 deg", to: "60 deg" },
-  "crank angle and swing": { from: "0 deg", swing: "60 deg" },
+  "two crank angles": { from: "30 deg", to: "90 deg" },
+  "crank angle and swing": { from: "30 deg", swing: "60 deg" },
   "two slider positions": { slider_from: "300 mm", slider_to: "200 mm" },
   "slider position and travel": { slider_from: "300 mm", slider_travel: "-100 mm" },
 };
@@ -42,21 +41,27 @@ const LAW = [
   { key: "law_times", label: "fraction of the time", kind: null },
   { key: "law_shares", label: "fraction of the travel", kind: null },
 ];
-const FIRST = { kind: "swing", from: "0 deg", to: "60 deg", driver: "slider" };
+const FIRST = { kind: "swing", from: "30 deg", to: "90 deg", driver: "slider" };
 
 /** Return whether the crank of a job swings. @param {Form.Whole} form */
 export function swings(form) {
   return form.at([...PATH, "kind"]) === "swing";
 }
 
-/** Return whether a job is for a lever moved by a cylinder. @param {Form.Whole} form */
+/** Return whether a job is for a lever moved by a cylinder, or a crank that turns a cylinder or an arm. @param {Form.Whole} form */
 export function isLever(form) {
   return form.at(INVERSION) !== undefined;
 }
 
 /** Return whether a quantity, or a kind of load, applies to the motion of a job. @param {Form.Whole} form @param {{ motion: string }} of */
 export function appliesToMotion(form, { motion }) {
-  return motion === "" || motion === (isLever(form) ? "lever" : swings(form) ? "swing" : "turn");
+  return motion === "" || motion.split(", ").includes(motionOf(form));
+}
+
+/** Return the motion of a job in the words of the service. @param {Form.Whole} form */
+function motionOf(form) {
+  const [swing, turn] = isLever(form) ? ["lever", "arm"] : ["swing", "turn"];
+  return swings(form) ? swing : turn;
 }
 
 /** Return the name of the keys that state the ends of a job's swing. @param {Form.Whole} form */
@@ -91,19 +96,21 @@ export function motion(form, turning) {
   const kind = choice(
     {
       ...form,
-      at: (path) => (lever ? LEVER : form.at(path)),
+      at: (path) => (!lever ? form.at(path) : swings(form) ? LEVER : TURNED),
       put: (_, value) => change(form, value),
     },
     [...PATH, "kind"],
     {
-      options: ["swing", LEVER],
+      options: ["swing", LEVER, TURNED],
       fallback: "rotates fully",
       label: "the crank",
-      why: "The crank rotates fully at a given speed, swings back and forth between two angles, or is a lever that a cylinder on a second fixed pivot moves; the rod is then the frame between the pivots.",
+      why: "The crank rotates fully at a given speed, swings back and forth between two angles, or is a lever that a cylinder on a second fixed pivot moves. It may also turn that cylinder, or an arm, as in shapers. With a second pivot, the rod is the frame between the pivots.",
       changed: () => form.redraw(),
     },
   );
-  if (!swings(form)) return [kind, speed(form), turning];
+  const angles =
+    lever && ["frame_angle", "pin_angle"].map((key) => byschema(form, ["mechanism", key]));
+  if (!swings(form)) return [kind, speed(form), angles, turning];
   /** @param {string} key @param {string} label */
   const motionField = (key, label) => byschema(form, [...PATH, key], { label });
   const slow = (form.at([...PATH, "law"]) ?? "slow") === "slow";
@@ -140,11 +147,10 @@ export function motion(form, turning) {
       motionField(key, LABELS[/** @type {keyof typeof LABELS} */ (key)]),
     ),
     how.includes("slider") ? motionField("crank_side", "side of the crank pin") : null,
-    lever
-      ? ["frame_angle", "pin_angle"].map((key) => byschema(form, ["mechanism", key]))
-      : choosing("driver", "driven end", (driver) =>
-          driver === "slider" ? [] : ["actuator_tolerance"],
-        ),
+    angles ||
+      choosing("driver", "driven end", (driver) =>
+        driver === "slider" ? [] : ["actuator_tolerance"],
+      ),
     motionField("margin", "margin from dead points"),
     choosing("law", "motion over time", (law) => [
       ...(law === "" || law === "slow" ? ["duration"] : []),
@@ -180,12 +186,15 @@ export function motion(form, turning) {
 
 /** Switch between swing, full rotation and lever; remove values that do not apply, and report that. @param {Form.Whole} form @param {unknown} kind */
 function change(form, kind) {
-  const lever = kind === LEVER;
-  form.put(PATH, kind === undefined ? undefined : structuredClone(FIRST));
+  const lever = kind === LEVER || kind === TURNED;
+  const swinging = kind !== undefined && kind !== TURNED;
+  form.put(PATH, swinging ? structuredClone(FIRST) : undefined);
   for (const place of lever ? NOT_OF_LEVER : OF_LEVER) form.put(place.split("."), undefined);
+  if (kind === LEVER) for (const key of SPEED) form.put(["mechanism", key], undefined);
+  if (kind === TURNED) form.put(["tolerances"], undefined);
   form.put(INVERSION, lever ? "turning cylinder" : undefined);
   if (lever) {
-    form.put([...PATH, "driver"], undefined);
+    if (swinging) form.put([...PATH, "driver"], undefined);
     form.put(["mechanism", "frame_angle"], form.at(["mechanism", "frame_angle"]) ?? "-60 deg");
   }
   /** @type {string[]} */
@@ -202,14 +211,9 @@ function change(form, kind) {
     }
   }
   if (!isTable(form.at(["objectives"]))) {
-    const first =
-      form
-        .judging()
-        .find(
-          (one) =>
-            swings(form) && one.motion !== "" && appliesToMotion(form, one) && one.kind === "force",
-        ) ??
-      form.judging().find((one) => appliesToMotion(form, one) && one.offered.includes("objective"));
+    const first = form
+      .judging()
+      .find(({ motion: own, kind: of }) => own === motionOf(form) && (!swinging || of === "force"));
     if (first)
       form.put(["objectives", first.name], first.better === "high" ? "maximise" : "minimise");
   }

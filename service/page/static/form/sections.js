@@ -40,6 +40,8 @@ const FORM_TABLES = new Set([
   "drive",
   "costs",
   "cylinder",
+  "arm",
+  "spring",
 ]);
 
 /** Return the sections of the form for a job. @param {Form.Whole} form */
@@ -58,9 +60,9 @@ export function sections(form) {
       fields(
         motion(form, [
           requirements(form, offered(form, "motion")),
-          swings(form) && form.at(["constraints", "slow_stroke"]) === undefined
-            ? null
-            : byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" }),
+          turning(form, "constraints.slow_stroke", () =>
+            byschema(form, ["constraints", "slow_stroke"], { label: "slow stroke" }),
+          ),
         ]),
       ),
       cranked(form, "mechanism.branch", () =>
@@ -99,7 +101,12 @@ export function sections(form) {
     section(
       "Masses and loads",
       fields(masses(form)),
-      isLever(form) && byschema(form, ["cylinder"], { label: "cylinder" }),
+      isLever(form) && [
+        byschema(form, ["cylinder"], { label: "cylinder" }),
+        swings(form)
+          ? more(["Gas or coil spring", has(form, "spring")], byschema(form, ["spring"]))
+          : more(["Arm and ram", has(form, "arm")], byschema(form, ["arm"])),
+      ],
       cranked(form, "sections", () =>
         more(["Material and pins", strengthGiven(form)], strength(form)),
       ),
@@ -192,11 +199,12 @@ function more(title, ...content) {
 }
 
 /**
- * Return a part for a fully rotating crank; for a swinging one only if the job has it, so that it can be removed.
+ * Return a part for a fully rotating crank with a slider; for another machine only if the job has it, so that it can be removed.
  * @param {Form.Whole} form @param {string} place @param {() => Dom.Child} part
  */
 function turning(form, place, part) {
-  return swings(form) && form.at(place.split(".")) === undefined ? null : part();
+  const isOther = swings(form) || isLever(form);
+  return isOther && form.at(place.split(".")) === undefined ? null : part();
 }
 
 /**
