@@ -1,14 +1,20 @@
 """Curves of a design over its cycle, and its outlines for drawings, as JSON."""
 
+import cmath
+import math
+
 from pydantic import BaseModel, Field
 
 from ...model.cycle.stroke_times import slow_stroke
 from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.swing.swing import Swing
+from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing, movable_lever_linkage
 from ..designs.design_curves import design_curves
 from ..designs.stored_designs import StoredDesign
-from ..drawings.outlines import outlines
+from ..drawings.lever_parts import barrel_length, centre_of_lever, lever_extent
+from ..drawings.linkage_shapes import linkage_sizes
+from ..drawings.swing_parts import half_body_side, swing_sizes
 from ..runs.result import json_ready
 from .fronts import ColumnModel, OfDesign
 
@@ -114,27 +120,52 @@ def cycle_model(design: StoredDesign, angles: int) -> CycleModel:
 
 
 def outlines_model(mechanism: Mechanism, linkage: Linkage, swing: Swing | None) -> OutlinesModel:
-    """Return the outlines of a design as its drawings show them."""
-    drawn = outlines(mechanism, linkage, swing)
-    actuator, body, lever = drawn.actuator, drawn.body, drawn.lever
+    """Return the outlines of a design that rotates fully or swings.
+
+    Raises the errors of `linkage_sizes`, `swing_sizes` and `movable_lever_linkage`.
+    """
+    if swing is not None and mechanism.lever is not None:
+        return _outlines_of_lever(mechanism, linkage, swing)
+    drawn = None if swing is None else swing_sizes(mechanism, linkage, swing)
+    look = linkage_sizes(mechanism, linkage) if drawn is None else drawn.look
+    actuator, body = (None, None) if drawn is None else (drawn.cylinder, drawn.body)
     return OutlinesModel(
-        extent_mm=drawn.extent,
-        slider_length_mm=drawn.slider[0],
-        slider_height_mm=drawn.slider[1],
+        extent_mm=look.extent if drawn is None else drawn.extent,
+        slider_length_mm=1.5 * look.slider_size,
+        slider_height_mm=look.block,
         cylinders=[
-            BarrelModel(bore_mm=barrel.bore, foot_mm=barrel.foot, head_mm=barrel.head) for barrel in drawn.barrels
+            BarrelModel(bore_mm=barrel.bore, foot_mm=barrel.foot, head_mm=barrel.head) for barrel in look.barrels
         ],
         actuator=None
         if actuator is None
         else ActuatorModel(face_mm=actuator.near_end, foot_mm=actuator.foot, width_mm=actuator.width),
-        body=None if body is None else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=drawn.body_side),
-        lever=None
-        if lever is None
-        else LeverOutlinesModel(
-            frame_angle_deg=lever.frame_angle,
-            pin_angle_deg=lever.pin_angle,
-            start_deg=lever.start,
-            end_deg=lever.end,
-            barrel_mm=lever.barrel,
+        body=None
+        if body is None
+        else BodyModel(along_mm=body[0], across_mm=body[1], side_mm=2.0 * half_body_side(look)),
+        lever=None,
+    )
+
+
+def _outlines_of_lever(mechanism: Mechanism, linkage: Linkage, swing: Swing) -> OutlinesModel:
+    placed = lever_swing(mechanism, linkage, swing)
+    machine, _ = lever_machine(mechanism, movable_lever_linkage(mechanism, linkage, swing), swing)
+    sizes, body = machine.sizes, None
+    if machine.lever.mass:
+        centre = centre_of_lever(machine) * cmath.exp(-1j * sizes.pin_angle)
+        side = 0.08 * max(1e3 * sizes.crank, 1e3 * sizes.frame)
+        body = BodyModel(along_mm=1e3 * centre.real, across_mm=1e3 * centre.imag, side_mm=side)
+    return OutlinesModel(
+        extent_mm=lever_extent(machine, placed),
+        slider_length_mm=0.0,
+        slider_height_mm=0.0,
+        cylinders=[],
+        actuator=None,
+        body=body,
+        lever=LeverOutlinesModel(
+            frame_angle_deg=math.degrees(sizes.frame_angle),
+            pin_angle_deg=math.degrees(sizes.pin_angle),
+            start_deg=math.degrees(placed.start),
+            end_deg=math.degrees(placed.end),
+            barrel_mm=1e3 * barrel_length(machine, placed),
         ),
     )
