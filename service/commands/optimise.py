@@ -173,8 +173,7 @@ def _problem_with_settings(job: Path, settings: SettingOptions) -> tuple[Problem
     """Return the problem of a job file and its tables, both with the given options applied, and its files."""
     from ...optimise.job import load_job, needed_files, read_job
     from ...optimise.job.job_notes import notes_of
-    from ..jobs.direct_run import job_and_attached_files
-    from ..workers.direct_search import with_settings
+    from ..workers.direct_search import job_and_attached_files, with_settings
 
     problem, tables = load_job(job), read_job(job)
     for note in notes_of(tables):

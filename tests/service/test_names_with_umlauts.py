@@ -12,8 +12,8 @@ import pytest
 
 from slidercrank.model.file_name_encoding import path_from_text, path_text
 from slidercrank.optimise.job import load_job, needed_files
-from slidercrank.service.jobs.direct_run import job_and_attached_files
 from slidercrank.service.store.address import address_without_secrets, url_of
+from slidercrank.service.workers.direct_search import job_and_attached_files
 from slidercrank.service.workers.worker_process import WorkerSettings
 from tests.service import fronts
 from tests.service.conftest import Command
