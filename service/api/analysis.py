@@ -24,9 +24,8 @@ from .blocks import AnswerBlock, sentence_blocks
 from .computing import LongRoute
 from .fronts import OfDesign
 from .job_requests import problem_of_tables
-from .models import UnitsParameter
 from .problem_documents import problem_responses
-from .settings import SettingsDep
+from .settings import SettingsDep, UnitsParameter
 from .stored_fronts import DesignNumber, FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["designs"], responses=problem_responses(409))

@@ -20,7 +20,7 @@ from ..store import Store
 from ..workers.heartbeat import EXHAUSTED, end_process_tree
 from ..workers.logs import Format, set_up_logs
 from . import front_files
-from .computing import Computing
+from .computing import Computing, RateLimit
 from .events import Feed
 from .health import Metrics, Timed
 from .job_requests import EXAMPLE, JSON, TOML, Submission
@@ -29,7 +29,6 @@ from .security import Guard
 from .settings import DEFAULT, Settings
 from .stored_fronts import StoredFronts
 from .strict_input import StrictInput
-from .throttle import RateLimit
 
 PREFIX = "/api/v1"
 _PARTS = (

@@ -20,9 +20,8 @@ from ..store.bookmarks_and_wishes import bookmark_design, bookmarks_of, history_
 from .computing import QuickRoute
 from .front_files import download_response, file_endpoint_options
 from .fronts import Cells, ColumnModel, column_models
-from .models import PLAIN_DIGITS, UnitsParameter
 from .problem_documents import problem_responses
-from .settings import StoreDep
+from .settings import PLAIN_DIGITS, StoreDep, UnitsParameter
 from .stored_fronts import LONGEST, SHORTEST, FrontDep, StoredFront
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))

@@ -20,9 +20,8 @@ from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import LongRoute
 from .figures import require_figures
 from .front_files import SEALED, download_response, file_endpoint_options
-from .models import UnitsParameter
 from .problem_documents import problem_responses
-from .settings import StoreDep
+from .settings import StoreDep, UnitsParameter
 from .stored_fronts import RequestedDesign, RequestedDesignDep
 
 if TYPE_CHECKING:

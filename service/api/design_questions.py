@@ -29,8 +29,8 @@ from .figures import figure_response, require_figures
 from .front_files import file_endpoint_options
 from .fronts import OfDesign
 from .input_parameters import inputs_from_query, parameter_of
-from .models import UnitsParameter
 from .problem_documents import problem_responses
+from .settings import UnitsParameter
 from .stored_fronts import DesignNumber, FrontDep, RequestedDesign, RequestedDesignDep
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from fastapi.sse import format_sse_event
 from ...model.errors import NotFound, StoreError
 from ..store import Event, Store
 from ..store.records import ENDED
-from .models import LARGEST, PLAIN_DIGITS, EventPage, JobNumber
-from .settings import StoreDep
+from .models import EventPage
+from .settings import LARGEST, PLAIN_DIGITS, JobNumber, StoreDep
 
 router = APIRouter(tags=["jobs"])
 HEARTBEAT = 15.0

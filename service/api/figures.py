@@ -17,9 +17,8 @@ from ..store.bookmark import Bookmark
 from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import LongRoute
 from .front_files import SEALED, file_endpoint_options
-from .models import UnitsParameter
 from .problem_documents import problem_responses
-from .settings import SettingsDep, StoreDep
+from .settings import SettingsDep, StoreDep, UnitsParameter
 from .stored_fronts import FrontDep, Numbers, NumbersDep, RequestedDesign, StoredFront, requested_design
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from ..designs.selection import numbered_rows
 from ..runs.result import csv_text
 from ..runs.run_folder import slug
 from .computing import QuickRoute
-from .models import UnitsParameter
 from .problem_documents import problem_responses
+from .settings import UnitsParameter
 from .stored_fronts import FrontDep, StoredFront
 
 router = APIRouter(route_class=QuickRoute, tags=["fronts"], responses=problem_responses(409))

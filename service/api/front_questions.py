@@ -23,9 +23,8 @@ from .computing import LongRoute
 from .events import STREAM, STREAM_HEADERS
 from .fronts import OfDesign
 from .input_parameters import body_model_of, inputs_from_query, parameter_of
-from .models import LARGEST, PLAIN_DIGITS, UnitsParameter
 from .problem_documents import problem_responses
-from .settings import StoreDep
+from .settings import LARGEST, PLAIN_DIGITS, StoreDep, UnitsParameter
 from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 
 router = APIRouter(route_class=LongRoute, responses=problem_responses(409))

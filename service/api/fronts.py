@@ -20,9 +20,8 @@ from ..designs.judged_requirements import front_violations_in_words, violations_
 from ..designs.selection import chosen_rows, no_match_message, result_part
 from ..page.router import response_with_etag
 from ..runs.result import StoredObjective, json_ready
-from .models import PLAIN_DIGITS, JobNumber
 from .problem_documents import json_with_etag_options, problem_responses
-from .settings import StoreDep
+from .settings import PLAIN_DIGITS, JobNumber, StoreDep
 from .stored_fronts import DesignNumber, FrontDep, FrontsDep, StoredFront
 
 router = APIRouter(tags=["fronts"], responses=problem_responses(409))

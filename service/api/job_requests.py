@@ -15,8 +15,7 @@ from ...model.errors import InputError, JobError
 from ...optimise.problem.problem import Problem
 from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..store import NO_LIMITS, Artefact, Limits
-from .models import LARGEST
-from .settings import Settings
+from .settings import LARGEST, Settings
 from .strict_input import PARSED_BODY, read_body_in_turn, read_json, require_shallow_and_portable
 
 JSON, TOML = "application/json", "application/toml"

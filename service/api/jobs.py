@@ -17,9 +17,9 @@ from ..page.router import content_tag, response_with_etag
 from ..store import State
 from ..store.job_rows import Order
 from .front_files import download_response, export_formats
-from .models import LARGEST, PLAIN_DIGITS, FrontPointsList, JobFiles, JobNumber, JobPage, JobStateModel
+from .models import FrontPointsList, JobFiles, JobPage, JobStateModel
 from .problem_documents import json_with_etag_options, problem_responses
-from .settings import StoreDep
+from .settings import LARGEST, PLAIN_DIGITS, JobNumber, StoreDep
 
 router = APIRouter(tags=["jobs"])
 _FILE: dict[int | str, dict[str, Any]] = {

@@ -1,37 +1,12 @@
 """JSON models for the API's answers about jobs; the API schema follows from them."""
 
-import re
 from typing import Annotated, Any
 
-from fastapi import Path, Query
-from pydantic import BaseModel, BeforeValidator, Field
-from pydantic_core import PydanticKnownError
+from pydantic import BaseModel, Field
 
-from ...objectives.kinds import System
 from ..store import State
 
-LARGEST = 2**53 - 1
-_INTEGER = re.compile(r"-?(0|[1-9][0-9]*)")
-
-
-def _require_plain_integer(text: Any) -> Any:
-    if isinstance(text, str) and not _INTEGER.fullmatch(text):
-        raise PydanticKnownError("int_parsing")
-    return text
-
-
-PLAIN_DIGITS = BeforeValidator(_require_plain_integer)
-"""Validator for a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
-
-It must follow the numeric limits; otherwise the schema lists them under names unknown to JSON Schema.
-"""
-JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
-"""A path parameter."""
 Count = Annotated[int, Field(ge=0)]
-UnitsParameter = Annotated[
-    System, Query(description="system of units of the answer; in the inch system keys such as crank_mm become crank_in")
-]
-"""A query parameter."""
 
 
 class ResponseModel(BaseModel, frozen=True):

@@ -1,10 +1,14 @@
-"""API settings chosen by the operator, and how requests reach them and the store."""
+"""API settings chosen by the operator, the parameters of requests, and how requests reach settings and store."""
 
+import re
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from fastapi import Depends, Request
+from fastapi import Depends, Path, Query, Request
+from pydantic import BeforeValidator
+from pydantic_core import PydanticKnownError
 
+from ...objectives.kinds import System
 from ..store import NO_LIMITS, Limits, Store
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
@@ -49,3 +53,25 @@ StoreDep = Annotated[Store, state_dependency("store")]
 
 SettingsDep = Annotated[Settings, state_dependency("settings")]
 """API settings chosen by the operator."""
+
+LARGEST = 2**53 - 1
+_INTEGER = re.compile(r"-?(0|[1-9][0-9]*)")
+
+
+def _require_plain_integer(text: Any) -> Any:
+    if isinstance(text, str) and not _INTEGER.fullmatch(text):
+        raise PydanticKnownError("int_parsing")
+    return text
+
+
+PLAIN_DIGITS = BeforeValidator(_require_plain_integer)
+"""Validator for a whole number in an address: digits only, not "6.0", "1_0" or " 6", which Python accepts.
+
+It must follow the numeric limits; otherwise the schema lists them under names unknown to JSON Schema.
+"""
+JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
+"""A path parameter."""
+UnitsParameter = Annotated[
+    System, Query(description="system of units of the answer; in the inch system keys such as crank_mm become crank_in")
+]
+"""A query parameter."""

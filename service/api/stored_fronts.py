@@ -29,8 +29,7 @@ from ..runs.run_folder import slug
 from ..store import Job, Store
 from ..store.bookmark import Bookmark
 from ..store.bookmarks_and_wishes import bookmarks_of
-from .models import PLAIN_DIGITS, JobNumber
-from .settings import StoreDep, state_dependency
+from .settings import PLAIN_DIGITS, JobNumber, StoreDep, state_dependency
 
 if TYPE_CHECKING:
     from ...optimise.decisions.wish import Wishes

@@ -18,7 +18,7 @@ from ..jobs.submission import job_json
 from ..store import Job
 from ..store.bookmarks_and_wishes import bookmark_design
 from .active_limits import LIMIT_PATH, Side
-from .computing import QuickRoute
+from .computing import QuickRoute, limit_submissions
 from .job_requests import (
     Clone,
     IdempotencyKey,
@@ -28,11 +28,10 @@ from .job_requests import (
     problem_of_tables,
     requested_job,
 )
-from .models import JobNumber, JobStateModel
+from .models import JobStateModel
 from .problem_documents import problem_responses
-from .settings import SettingsDep, StoreDep
+from .settings import JobNumber, SettingsDep, StoreDep
 from .stored_fronts import LONGEST, FrontDep, Length
-from .throttle import limit_submissions
 
 
 class SubmissionRoute(QuickRoute):

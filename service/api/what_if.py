@@ -30,9 +30,8 @@ from ..store.bookmarks_and_wishes import bookmarks_of
 from .computing import QuickRoute
 from .cycle import CurvesModel, CycleModel, cycle_model
 from .fronts import Cells, ColumnModel, OfDesign, Violated, Violations, column_models
-from .models import PLAIN_DIGITS
 from .problem_documents import problem_responses
-from .settings import StoreDep
+from .settings import PLAIN_DIGITS, StoreDep
 from .stored_fronts import LONGEST, DesignNumber, FrontDep, Length, RequestedDesign, requested_design
 
 router = APIRouter(route_class=QuickRoute, tags=["designs"], responses=problem_responses(409))

@@ -13,9 +13,8 @@ from ..store.bookmarks_and_wishes import note_wish, wishes_of
 from .computing import LongRoute
 from .fronts import Cells, ColumnModel, column_models
 from .input_parameters import body_model_of
-from .models import UnitsParameter
 from .problem_documents import problem_responses
-from .settings import StoreDep
+from .settings import StoreDep, UnitsParameter
 from .stored_fronts import FrontDep
 
 router = APIRouter(route_class=LongRoute, tags=["fronts"], responses=problem_responses(409))

@@ -18,7 +18,7 @@ import pytest
 from starlette.types import Receive, Scope, Send
 
 from slidercrank.model.kernel.kernel import Kernel
-from slidercrank.service.api import throttle
+from slidercrank.service.api import computing
 from slidercrank.service.api.app import MODULES, THREADS, computing_app, create_app
 from slidercrank.service.api.computing import MOST as MOST_OF_AN_ANSWER
 from slidercrank.service.api.computing import Computing
@@ -92,7 +92,7 @@ def test_quick_requests_do_not_wait_for_long_ones(client: httpx.Client, monkeypa
         processes = {next(answer.iter_text()) for answer in (one, other)}
         assert len(processes) == 2
         assert client.get("/quick/process").text not in processes
-        monkeypatch.setattr(throttle, "_PATIENCE", 0.05)
+        monkeypatch.setattr(computing, "_PATIENCE", 0.05)
         answer = client.get("/long/process")
         assert "at most 2 long analyses can be made at a time; all were busy for 0.05 s; try again" in refusal_sentence(
             answer, 503

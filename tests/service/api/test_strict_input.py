@@ -9,9 +9,9 @@ import httpx
 import pytest
 
 from slidercrank.model.errors import InputError
+from slidercrank.service.api.computing import RateLimit
 from slidercrank.service.api.job_requests import EXAMPLE
 from slidercrank.service.api.strict_input import read_json
-from slidercrank.service.api.throttle import RateLimit
 from tests.service.api.serving import refusal_sentence
 
 JSON = {"Content-Type": "application/json"}
