@@ -8,6 +8,7 @@ from importlib import import_module
 import pytest
 from hypothesis import settings
 
+from tests.case_count import is_usual
 from tests.order import shared_out
 from tests.shared import shared_by_workers
 
@@ -41,7 +42,8 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put tests into the order that fills the workers of pytest-xdist."""
+    """Leave out random cases beyond the usual ones; put tests into the order that fills the workers of pytest-xdist."""
+    items[:] = [item for item in items if is_usual(getattr(item, "callspec", None))]
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
     if workers > 1:
         slow = {item: True for item in items if item.get_closest_marker("slow")}

@@ -11,20 +11,13 @@ from slidercrank.objectives.quantity import Quantity
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.problem.requirements import Sense
 from slidercrank.optimise.solve import solve
-from tests.case_count import ALL_CASES
+from tests.case_count import in_turn
 from tests.model.cases import fitted
 from tests.optimise.problems import MACHINE, problem, search_little
 
 RUBBING = dataclasses.replace(MACHINE, friction=Friction(guide=0.1))
 LEAN = np.radians(40.0)
 WISHES = ("minimise", "maximise", "target")
-CASES = [
-    (name, wish)
-    for row, name in enumerate(QUANTITIES)
-    for column, wish in enumerate(WISHES)
-    if ALL_CASES or (row + column) % 3 == 0
-]
-"""Every quantity with one wish, in turn; with all of them among all cases."""
 
 
 @cache
@@ -37,7 +30,7 @@ def random_values(quantity: Quantity, count: int = 2000) -> np.ndarray:
     return quantity.evaluate(fitted(quantity, RUBBING), designs[met]).values
 
 
-@pytest.mark.parametrize(("name", "wish"), CASES)
+@pytest.mark.parametrize(("name", "wish"), in_turn(3, QUANTITIES, WISHES))
 def test_no_random_design_is_better_than_the_best_of_the_search(
     name: str, wish: Sense, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -45,7 +45,7 @@ def mountable() -> None:
 
 @both
 def test_killed_workers_lose_and_double_nothing(kind: Kind) -> None:
-    verdict = kills(kind, 4, seed=3)
+    verdict = kills(kind, 2, seed=3)
     assert verdict.violations == []
     assert verdict.resumptions > 0
 

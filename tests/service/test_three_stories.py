@@ -20,6 +20,7 @@ import slidercrank as sc
 from slidercrank.service.jobs.job_toml import job_toml
 from slidercrank.service.store import Store
 from slidercrank.service.workers.worker import work
+from tests.case_count import in_turn
 from tests.service.api.fixed_front import API, client_of
 from tests.service.conftest import Command
 
@@ -204,8 +205,7 @@ def cheapest(story: Story, row: Row) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("door", DOORS)
-@pytest.mark.parametrize("machine", STORIES)
+@pytest.mark.parametrize(("machine", "door"), in_turn(3, STORIES, DOORS))
 def test_a_machine_comes_from_nothing_to_a_rounded_design(
     machine: str, door: str, tmp_path: Path, command: Command
 ) -> None:

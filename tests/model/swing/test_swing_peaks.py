@@ -11,6 +11,7 @@ from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.swing.peaks import SwingPeaks, negated_least_drive_peaks, swing_peaks
 from slidercrank.model.swing.swing import Swing
 from slidercrank.model.swing.swing_states import DRIVE, ERROR, POWER
+from tests.case_count import case_count
 from tests.model.cases import Array
 from tests.model.swing.swings import random_swings
 
@@ -30,7 +31,7 @@ SEARCHES: dict[str, Search] = {
 def test_a_design_alone_has_the_same_bits_as_among_others(name: str, friction: bool) -> None:
     """Searches cut batches by the time that they take: else a front would depend on the load of the machine."""
     random, search = np.random.default_rng(8), SEARCHES[name]
-    for machine, linkage, swing in random_swings(25, seed=9, friction=friction):
+    for machine, linkage, swing in random_swings(case_count(9, 25), seed=9, friction=friction):
         middle = np.array([float(linkage.crank), float(linkage.rod), float(linkage.offset)])
         designs = middle * random.uniform(0.98, 1.02, (6, 3))
         together = search(machine, swing, designs)

@@ -21,7 +21,7 @@ from slidercrank.objectives.tables.swing_columns import swing_quantities
 from slidercrank.optimise.certificate.box_conditions import unbounded_reason
 from slidercrank.optimise.problem.problem import Problem
 from slidercrank.optimise.problem.requirements import Objective, Sense
-from tests.case_count import ALL_CASES
+from tests.case_count import in_turn
 from tests.optimise import problems
 from tests.optimise.certificate.test_box_bounds import assert_close_to_designs, check
 from tests.optimise.problems import degrees, problem
@@ -69,19 +69,12 @@ DRIVEN = [
     (name, driver) for name in SWINGS for driver in ("crank", "slider") if (name, driver) != ("dead centre", "slider")
 ]
 """Every swing and its driver; a slider drives no crank over a dead point."""
-CASES = [
-    (name, driver, machine, width)
-    for row, (name, driver) in enumerate(DRIVEN)
-    for column, machine in enumerate(("loaded", "stepped"))
-    for rank, width in enumerate((0.1, 0.004))
-    if ALL_CASES or (row + column + rank) % 2 == 0
-]
-"""Every swing with both machines, one in wide boxes and the other in narrow ones; or with all of them."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("name", "driver", "machine", "width"), CASES)
-def test_no_sample_of_a_swing_is_better_than_its_box(name: str, driver: Any, machine: str, width: float) -> None:
+@pytest.mark.parametrize(("driven", "machine", "width"), in_turn(4, DRIVEN, ("loaded", "stepped"), (0.1, 0.004)))
+def test_no_sample_of_a_swing_is_better_than_its_box(driven: tuple[str, Any], machine: str, width: float) -> None:
+    name, driver = driven
     swing = replace(SWINGS[name], driver=driver, actuator_tolerance=1e-4 if driver == "slider" else 0.0)
     given = swinging({"loaded": LOADED, "stepped": STEPPED}[machine], swing)
     assert len(given.objectives) >= 6

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import httpx
 import pytest
 
 from slidercrank.optimise.job import job_schema
+from tests.case_count import case_count
 from tests.schema_words import KNOWN, OF_OPENAPI, schemas_within, unknown_words
 from tests.service.api import schema_cases
-
-CASES = "SLIDERCRANK_CASES"
-"""Variable with the number of cases of every operation; by hand, `python -m tests.service.api.schema_cases 10000 1`."""
 
 
 @pytest.mark.slow
 def test_every_answer_is_as_described(tmp_path: Path) -> None:
-    each = int(os.environ.get(CASES, "5"))
-    outcome = schema_cases.run(tmp_path, each, "examples,fuzzing,stateful")
+    outcome = schema_cases.run(tmp_path, case_count(5, 50), "examples,fuzzing,stateful")
     assert outcome.code == 0, outcome.text
     assert outcome.cases >= 200
     assert max(outcome.statuses) < 500
