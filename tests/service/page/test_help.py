@@ -14,11 +14,12 @@ from tests.service.page.conftest import Open
 
 def test_the_help_lists_every_quantity_and_finds_those_of_some_words(open_page: Open, store: Store) -> None:
     page = open_page(store, "#/help")
-    cards = page.locator(".quantities li")
+    cards = page.locator(".quantities .panel")
     every = len(FACTS) + 3  # robust ones
     expect(cards).to_have_count(every)
     assert page.locator(".picture").count() == every
     assert page.locator(".picture:not(:has(.mark))").count() == 0  # each points something out
+    assert page.locator(".quantities .group").all_inner_texts()[:3] == ["Dimensions", "Motion", "Drive"]
     glossary = (Path(__file__).parents[3] / "docs/glossary.md").read_text()
     terms, meanings = (page.locator(f".terms {part}").all_text_contents() for part in ("dt", "dd"))
     assert len(terms) == len(meanings) > 10

@@ -59,7 +59,7 @@ function progressOrResult(job) {
       h(
         "div",
         { class: "quiet" },
-        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")} · by ${job.worker}`,
+        `${stage}, ${part}${grouped(done)} of ${grouped(of)} · ${counted(feasible, "feasible design")}`,
       ),
     ];
   }

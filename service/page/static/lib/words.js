@@ -116,6 +116,7 @@ const SAID = [
   ],
   [/ \((?:opposes|helps)\)/g, ""],
   [/^cancelled: /, ""],
+  [/^claimed by \S+$/, "a worker took it"],
   [/\b(\w+_\w+) (?:max|min)\b/g, (_, name) => `the ${name.replaceAll("_", " ")} limit`],
   [/\bmin must not exceed max\b/g, "the least value must not exceed the greatest"],
 ];

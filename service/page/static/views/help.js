@@ -59,8 +59,16 @@ const TERMS = [
   ["trade-off rate", "the cost in other objectives of an improvement in one, to first order"],
   ["active constraint", "a bound that a design lies on"],
   [
-    "aspiration level",
-    "a value that you would like an objective to reach; it is not a bound. The command is `wish`",
+    "aspiration level, wish",
+    "a value that you would like an objective to reach; it is not a bound. The search finds the optimal design nearest to all of them",
+  ],
+  [
+    "rounding, allowed deviation",
+    "the best designs with round numbers near a design; the amount by which they may miss a requirement",
+  ],
+  [
+    "comparison of runs",
+    "which front is better, what a change of the job costs, and which designs the other run lacks",
   ],
   [
     "bookmark, decision",
@@ -73,6 +81,7 @@ const TERMS = [
   ["certificate", "a proven bound on what any other design could gain over the front"],
 ];
 const DOCUMENTS = [
+  ["docs/page.md", "this page: fronts, wishes, rounding, decisions, comparison"],
   [
     "docs/jobs.md",
     "job files beyond the basics: friction, motors, choices, desired motions, robust designs",
@@ -127,7 +136,13 @@ function overview(place, quantities, sought) {
     const matches = quantities.filter(({ title: heading, name, column, sentence, advice }) =>
       isMatch([heading, name, column, sentence, advice]),
     );
-    fill(list, matches.map(card));
+    fill(
+      list,
+      [...new Set(matches.map(({ group }) => group))].map((group) => [
+        h("li", { class: "group" }, h("h3", {}, group)),
+        matches.filter((one) => one.group === group).map(card),
+      ]),
+    );
     none.textContent =
       matches.length || matchingTerms.length
         ? `${matches.length} of ${quantities.length} quantities, ${matchingTerms.length} of ${TERMS.length} terms`
@@ -203,7 +218,7 @@ function card(quantity) {
     h(
       "div",
       {},
-      h("h3", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)),
+      h("h4", {}, h("a", { href: `#/help/${quantity.name}` }, quantity.title)),
       h("p", {}, quantity.sentence),
     ),
   );
