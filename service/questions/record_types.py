@@ -1,12 +1,11 @@
 """Types of the answers to questions, from which JSON Schemas follow: keys, their kinds, reasons for null.
 
-The function `numbers` of a question returns the answer as a dictionary with `Keys`, which declare each number once: its
-key, its type and, as a rule, how it is computed. The key of a number ends with its unit.
+The function `numbers` of a question returns the answer as a `Record`, a typed dictionary that mypy checks. If its keys
+follow from data, the answer is a dictionary with `Keys`. The key of a number ends with its unit.
 """
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Annotated, Any, NotRequired
 
 from typing_extensions import TypedDict
@@ -39,6 +38,21 @@ PeakAngle = Annotated[float | None, Note("null where the curve is constant or no
 NullIfLocked = Annotated[float | None, Note("null where friction locks or may jam the linkage")]
 
 
+class Record(TypedDict):
+    """JSON record that allows no other keys. A string below a key describes it."""
+
+
+class ShakingNumbers(Record):
+    """Shaking by inertia; root mean squares are over time."""
+
+    peak_shaking_force_N: float
+    peak_shaking_force_angle_deg: PeakAngle
+    rms_shaking_force_N: float
+    peak_shaking_moment_Nm: Annotated[float, Note("Moment about the crank pivot.")]
+    peak_shaking_moment_angle_deg: PeakAngle
+    rms_shaking_moment_Nm: float
+
+
 def _title_with_unit(key: str, _: object = None) -> str:
     """Return the title of a key: "peak torque, N m"."""
     numerator, per, denominator = key.partition("_per_")
@@ -49,15 +63,16 @@ def _title_with_unit(key: str, _: object = None) -> str:
     return " ".join(words)
 
 
-_CLOSED = {"extra": "forbid", "field_title_generator": _title_with_unit}
+_CLOSED = {"extra": "forbid", "use_attribute_docstrings": True, "field_title_generator": _title_with_unit}
+Record.__pydantic_config__ = _CLOSED  # type: ignore[attr-defined]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Keys:
-    """Record of numbers, each declared once by its key.
+    """Keys of a record that follow from data.
 
-    types: types by key, `NotRequired` for optional keys; a pair of a type and a function that computes the number from
-    the sources of `of`. text: description of the record. count: number of keys in a record, if known.
+    types: types by key, `NotRequired` for optional keys. text: description of the record. count: number of keys in a
+    record, if known.
     """
 
     name: str
@@ -65,33 +80,13 @@ class Keys:
     types: Mapping[str, Any]
     count: int | None = None
 
-    def of(self, *sources: Any, **named: Any) -> dict[str, Any]:
-        """Return the record of the sources."""
-        return {key: compute(*sources, **named) for key, (_, compute) in self.types.items()}
-
-    @cached_property
-    def _record(self) -> Any:
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         typed: Any = TypedDict
-        types = {key: kind[0] if isinstance(kind, tuple) else kind for key, kind in self.types.items()}
-        record = typed(self.name, types)
+        record = typed(self.name, dict(self.types))
         number = {} if self.count is None else {"minProperties": self.count, "maxProperties": self.count}
         record.__doc__ = self.text
-        record.__pydantic_config__ = {**_CLOSED, "json_schema_extra": number}
-        return record
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        return handler.generate_schema(self._record)
-
-
-SHAKING = {
-    "peak_shaking_force_N": float,
-    "peak_shaking_force_angle_deg": PeakAngle,
-    "rms_shaking_force_N": float,
-    "peak_shaking_moment_Nm": Annotated[float, Note("Moment about the crank pivot.")],
-    "peak_shaking_moment_angle_deg": PeakAngle,
-    "rms_shaking_moment_Nm": float,
-}
-"""Shaking by inertia; root mean squares are over time."""
+        record.__pydantic_config__ = {**_CLOSED, "use_attribute_docstrings": False, "json_schema_extra": number}
+        return handler.generate_schema(record)
 
 
 def keys_of_kinds(names: Iterable[str], kinds: Iterable[Kind]) -> dict[str, Any]:

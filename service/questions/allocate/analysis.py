@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -32,8 +31,9 @@ from ...render.blocks import (
     words,
 )
 from ..peaks import peak
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
+OfLength = Annotated[float | None, Note("null for the crank angle")]
 OfAngle = Annotated[float | None, Note("of the crank angle; null for lengths")]
 Before = Annotated[float | None, Note("null unless the job has all tolerances that have a cost")]
 
@@ -43,92 +43,50 @@ if TYPE_CHECKING:
     from ....objectives.kinds import System
 
 
-def _of_length(value: Callable[[Any], float], note: str = "null for the crank angle") -> tuple[Any, Any]:
-    return Annotated[float | None, Note(note)], lambda part, _: None if part.name == "crank_angle" else value(part)
+class Tolerance(Record):
+    """Tolerance of a length or of the crank angle."""
+
+    name: str
+    tolerance_mm: OfLength
+    tolerance_deg: OfAngle
+    cost: float
+    share_of_cost_percent: float
+    bound: Annotated[Literal["least", "greatest"] | None, Note("of what is possible, if it is at one; else null")]
+    bound_saving_per_um: OfLength
+    """Saving if the bound moves; null for the crank angle."""
+    bound_saving_per_mdeg: OfAngle
 
 
-def _of_angle(value: Callable[[Any], float]) -> tuple[Any, Any]:
-    return OfAngle, lambda part, _: value(part) if part.name == "crank_angle" else None
+class ActiveAngle(Record):
+    """Crank angle at which the error limit is active."""
+
+    crank_angle_deg: float
+    saving_per_um: float
 
 
-_TOLERANCE = Keys(
-    "Tolerance",
-    "Tolerance of a length or of the crank angle.",
-    {
-        "name": (str, lambda part, _: part.name),
-        "tolerance_mm": _of_length(lambda part: 1e3 * part.tolerance),
-        "tolerance_deg": _of_angle(lambda part: float(np.degrees(1.0)) * part.tolerance),
-        "cost": (float, lambda part, _: part.cost),
-        "share_of_cost_percent": (float, lambda part, allocation: 100.0 * part.cost / allocation.cost),
-        "bound": (
-            Annotated[Literal["least", "greatest"] | None, Note("of what is possible, if it is at one; else null")],
-            lambda part, _: part.bound,
-        ),
-        "bound_saving_per_um": _of_length(
-            lambda part: 1e-6 * part.saving, "Saving if the bound moves; null for the crank angle."
-        ),
-        "bound_saving_per_mdeg": _of_angle(lambda part: 1e-3 * part.saving / float(np.degrees(1.0))),
-    },
-)
-Tolerance = Annotated[dict[str, Any], _TOLERANCE]
-_ACTIVE_ANGLE = Keys(
-    "ActiveAngle",
-    "Crank angle at which the error limit is active.",
-    {
-        "crank_angle_deg": (float, lambda angle, _: float(np.degrees(angle))),
-        "saving_per_um": (float, lambda _, saving: 1e-6 * float(saving)),
-    },
-)
-ActiveAngle = Annotated[dict[str, Any], _ACTIVE_ANGLE]
-_TOLERANCES = Keys(
-    "Tolerances",
-    "Least-cost tolerances within a position error limit.",
-    {
-        "kind": (Annotated[Kind, Note("How errors combine.")], lambda allocation, *_: allocation.kind),
-        "limit_mm": (float, lambda allocation, *_: 1e3 * allocation.limit),
-        "cost": (float, lambda allocation, *_: allocation.cost),
-        "error_mm": (
-            Annotated[float, Note("Maximum over the counted part of the cycle.")],
-            lambda allocation, *_: 1e3 * allocation.error,
-        ),
-        "exact_worst_case_mm": (
-            Annotated[float | None, Note("null where a linkage within the tolerances does not turn")],
-            lambda allocation, _, linkage, __: _exact_worst_case(allocation.mechanism, linkage),
-        ),
-        "saving_per_um": (
-            Annotated[float, Note("Saving if the limit is raised.")],
-            lambda allocation, *_: 1e-6 * allocation.saving,
-        ),
-        "tolerances": (
-            list[Tolerance],
-            lambda allocation, *_: [_TOLERANCE.of(part, allocation) for part in allocation.parts],
-        ),
-        "active_angles": (
-            list[ActiveAngle],
-            lambda allocation, *_: [
-                _ACTIVE_ANGLE.of(*pair) for pair in zip(allocation.angles, allocation.savings, strict=True)
-            ],
-        ),
-        "cost_before": (Before, lambda _, __, ___, was: None if was is None else sum(was.values())),
-        "error_before_mm": (
-            Before,
-            lambda allocation, before, linkage, was: (
-                None if was is None else 1e3 * peak(before, _ERRORS[allocation.kind], linkage).value
-            ),
-        ),
-        "rounds": (int, lambda allocation, *_: allocation.rounds),
-        "residual": (
-            Annotated[float, Note("Residual of the optimality conditions.")],
-            lambda allocation, *_: allocation.residual,
-        ),
-        "converged": (
-            Annotated[bool, Note("Whether the cost is proven to be minimal.")],
-            lambda allocation, *_: allocation.converged,
-        ),
-    },
-)
-Tolerances = Annotated[dict[str, Any], _TOLERANCES]
-_ERRORS = {"worst case": Signal.POSITION_ERROR, "rss": Signal.POSITION_ERROR_RSS}
+class Tolerances(Record):
+    """Least-cost tolerances within a position error limit."""
+
+    kind: Kind
+    """How errors combine."""
+    limit_mm: float
+    cost: float
+    error_mm: float
+    """Maximum over the counted part of the cycle."""
+    exact_worst_case_mm: Annotated[float | None, Note("null where a linkage within the tolerances does not turn")]
+    saving_per_um: float
+    """Saving if the limit is raised."""
+    tolerances: list[Tolerance]
+    active_angles: list[ActiveAngle]
+    cost_before: Before
+    error_before_mm: Before
+    rounds: int
+    residual: float
+    """Residual of the optimality conditions."""
+    converged: bool
+    """Whether the cost is proven to be minimal."""
+
+
 _STEP = replace(
     LENGTH, metric=display_unit("1 µm", 1e6), inch=display_unit("0.0001 in", 1e4 * LENGTH.display_unit("inch").factor)
 )
@@ -160,14 +118,46 @@ def numbers(before: Mechanism, linkage: Linkage, *, allocation: Allocation, cost
     before: original mechanism; cost and error of its tolerances are None unless it has all tolerances and their costs.
     The exact worst case is None if a linkage within the tolerances does not rotate fully.
     """
-    return _TOLERANCES.of(allocation, before, linkage, costs_of_tolerances(costs, linkage, before))
-
-
-def _exact_worst_case(mechanism: Mechanism, linkage: Linkage) -> float | None:
     try:
-        return 1e3 * worst_position_error(mechanism, linkage).size
+        exact = 1e3 * worst_position_error(allocation.mechanism, linkage).size
     except AssemblyError:
-        return None
+        exact = None
+    tolerances: list[Tolerance] = []
+    for part in allocation.parts:
+        angle = part.name == "crank_angle"
+        unit = float(np.degrees(1.0)) if angle else 1e3
+        tolerances.append(
+            {
+                "name": part.name,
+                "tolerance_mm": None if angle else unit * part.tolerance,
+                "tolerance_deg": unit * part.tolerance if angle else None,
+                "cost": part.cost,
+                "share_of_cost_percent": 100.0 * part.cost / allocation.cost,
+                "bound": part.bound,
+                "bound_saving_per_um": None if angle else 1e-6 * part.saving,
+                "bound_saving_per_mdeg": 1e-3 * part.saving / unit if angle else None,
+            }
+        )
+    was = costs_of_tolerances(costs, linkage, before)
+    error = Signal.POSITION_ERROR if allocation.kind == "worst case" else Signal.POSITION_ERROR_RSS
+    return {
+        "kind": allocation.kind,
+        "limit_mm": 1e3 * allocation.limit,
+        "cost": allocation.cost,
+        "error_mm": 1e3 * allocation.error,
+        "exact_worst_case_mm": exact,
+        "saving_per_um": 1e-6 * allocation.saving,
+        "tolerances": tolerances,
+        "active_angles": [
+            {"crank_angle_deg": float(np.degrees(angle)), "saving_per_um": 1e-6 * float(saving)}
+            for angle, saving in zip(allocation.angles, allocation.savings, strict=True)
+        ],
+        "cost_before": None if was is None else sum(was.values()),
+        "error_before_mm": None if was is None else 1e3 * peak(before, error, linkage).value,
+        "rounds": allocation.rounds,
+        "residual": allocation.residual,
+        "converged": allocation.converged,
+    }
 
 
 def notes(numbers: Tolerances) -> list[str]:

@@ -1,7 +1,7 @@
 """Textbook approximations for one design, compared with the exact model: two-mass rod, series, k F tan(alpha)."""
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -31,58 +31,45 @@ from ...render.blocks import (
     values_from_record,
 )
 from ...render.numerals import format_number
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
 Share = Annotated[float | None, Note("null where the exact value is zero everywhere")]
 
 
-def _approximation(name: str, text: str, peak_key: str) -> Keys:
-    return Keys(
-        name,
-        text,
-        {
-            "name": (str, lambda name, *_: name),
-            peak_key: (float, lambda _, curve, *__: _greatest_magnitude(curve)),
-            "error_percent": (Share, lambda _, curve, exact, __: _percent(relative_error(curve, exact))),
-            "error_over_offset_percent": (
-                Annotated[list[Share], Note("Errors at each offset of the answer.")],
-                lambda *sources: list(map(_percent, sources[-1].tolist())),
-            ),
-        },
-    )
+class Approximation(Record):
+    """Approximation and its error: maximum difference over the cycle, relative to the exact peak."""
+
+    name: str
+    error_percent: Share
+    error_over_offset_percent: list[Share]
+    """Errors at each offset of the answer."""
 
 
-_ACCELERATION = _approximation("AccelerationOf", "Approximate slider acceleration.", "peak_acceleration_m_s2")
-_TORQUE = _approximation("TorqueOf", "Approximate inertia torque.", "peak_torque_Nm")
-Approximation = dict[str, Any]
-_APPROXIMATIONS = Keys(
-    "Approximations",
-    "Textbook models compared with the exact one: inertia only, at constant speed.",
-    {
-        "rotating_mass_kg": (float, lambda masses, *_: masses[0]),
-        "reciprocating_mass_kg": (float, lambda masses, *_: masses[1]),
-        "exact_peak_acceleration_m_s2": (float, lambda _, now, __: _greatest_magnitude(now.acceleration)),
-        "exact_peak_torque_Nm": (float, lambda _, now, __: _greatest_magnitude(now.torque)),
-        "offset_mm": (
-            Annotated[list[float], Note("Offsets for the errors, including that of the design.")],
-            lambda *sources: (1e3 * sources[-1].offset + 0.0).tolist(),  # for a negative offset the first one is -0.0
-        ),
-        "accelerations": (
-            list[Annotated[Approximation, _ACCELERATION]],
-            lambda _, now, over: [
-                _ACCELERATION.of(name, curve, now.acceleration, over.accelerations[name])
-                for name, curve in now.accelerations.items()
-            ],
-        ),
-        "torques": (
-            list[Annotated[Approximation, _TORQUE]],
-            lambda _, now, over: [
-                _TORQUE.of(name, curve, now.torque, over.torques[name]) for name, curve in now.torques.items()
-            ],
-        ),
-    },
-)
-Approximations = Annotated[dict[str, Any], _APPROXIMATIONS]
+class AccelerationOf(Approximation):
+    """Approximate slider acceleration."""
+
+    peak_acceleration_m_s2: float
+
+
+class TorqueOf(Approximation):
+    """Approximate inertia torque."""
+
+    peak_torque_Nm: float
+
+
+class Approximations(Record):
+    """Textbook models compared with the exact one: inertia only, at constant speed."""
+
+    rotating_mass_kg: float
+    reciprocating_mass_kg: float
+    exact_peak_acceleration_m_s2: float
+    exact_peak_torque_Nm: float
+    offset_mm: list[float]
+    """Offsets for the errors, including that of the design."""
+    accelerations: list[AccelerationOf]
+    torques: list[TorqueOf]
+
+
 _TABULATED, _DRAWN = 5, 25  # offsets
 _SHORT = {"two masses by mass centre": "two masses", "two masses, half and half": "half and half"}
 
@@ -103,8 +90,34 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Approximations:
     cover inertia only, at constant speed. Raises `InputError` if the crank has no speed.
     """
     comparison = compare_approximations(mechanism, linkage, np.linspace(0.0, 2.0 * math.pi, 1440, endpoint=False))
-    masses = rotating_and_reciprocating_masses(mechanism, linkage)
-    return _APPROXIMATIONS.of(masses, comparison, _errors_over_offset(mechanism, linkage, _TABULATED))
+    rotating, reciprocating = rotating_and_reciprocating_masses(mechanism, linkage)
+    offsets = _errors_over_offset(mechanism, linkage, _TABULATED)
+
+    return {
+        "rotating_mass_kg": rotating,
+        "reciprocating_mass_kg": reciprocating,
+        "exact_peak_acceleration_m_s2": _greatest_magnitude(comparison.acceleration),
+        "exact_peak_torque_Nm": _greatest_magnitude(comparison.torque),
+        "offset_mm": (1e3 * offsets.offset + 0.0).tolist(),  # for a negative offset the first one is -0.0
+        "accelerations": [
+            {
+                "name": name,
+                "peak_acceleration_m_s2": _greatest_magnitude(curve),
+                "error_percent": _percent(relative_error(curve, comparison.acceleration)),
+                "error_over_offset_percent": list(map(_percent, offsets.accelerations[name].tolist())),
+            }
+            for name, curve in comparison.accelerations.items()
+        ],
+        "torques": [
+            {
+                "name": name,
+                "peak_torque_Nm": _greatest_magnitude(curve),
+                "error_percent": _percent(relative_error(curve, comparison.torque)),
+                "error_over_offset_percent": list(map(_percent, offsets.torques[name].tolist())),
+            }
+            for name, curve in comparison.torques.items()
+        ],
+    }
 
 
 def _greatest_magnitude(curve: Array) -> float:

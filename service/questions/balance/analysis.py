@@ -1,7 +1,7 @@
 """Balance of one design: shaking force and moment on the frame, and the effect of the counterweight."""
 
 from dataclasses import replace
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -18,27 +18,22 @@ from ....objectives.machine_needs import MOTION
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, joined, named_number, number_list, remark_with_value
 from ..peaks import Peak, lengths_row, peak
-from ..record_types import SHAKING, Keys, Note
+from ..record_types import Note, ShakingNumbers
 
 Bare = Annotated[float | None, Note("null without a counterweight")]
 
 
-Shaking = Annotated[
-    dict[str, Any],
-    Keys(
-        "Shaking",
-        "Inertia force and moment on the frame, without gravity and loads; root mean squares are over time.",
-        {
-            **SHAKING,
-            "counterweight_kg": float,
-            "counterweight_radius_mm": float,
-            "peak_shaking_force_without_counterweight_N": Bare,
-            "rms_shaking_force_without_counterweight_N": Bare,
-            "peak_shaking_moment_without_counterweight_Nm": Bare,
-            "rms_shaking_moment_without_counterweight_Nm": Bare,
-        },
-    ),
-]
+class Shaking(ShakingNumbers):
+    """Inertia force and moment on the frame, without gravity and loads; root mean squares are over time."""
+
+    counterweight_kg: float
+    counterweight_radius_mm: float
+    peak_shaking_force_without_counterweight_N: Bare
+    rms_shaking_force_without_counterweight_N: Bare
+    peak_shaking_moment_without_counterweight_Nm: Bare
+    rms_shaking_moment_without_counterweight_Nm: Bare
+
+
 _CURVES = (("shaking_force", "N", Signal.SHAKING_FORCE), ("shaking_moment", "Nm", Signal.SHAKING_MOMENT))
 
 
@@ -58,18 +53,22 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Shaking:
     if not MOTION.is_met(mechanism):
         raise InputError(MOTION.missing)
     weight, bare = mechanism.counterweight, _without_counterweight(mechanism)
-    record: dict[str, Any] = {"counterweight_kg": weight.mass, "counterweight_radius_mm": 1e3 * weight.radius}
-    for name, unit, signal in _CURVES:
-        now = _shaking_of(mechanism, signal, linkage)
-        then = None if bare is None else _shaking_of(bare, signal, linkage)
-        record |= {
-            f"peak_{name}_{unit}": now.peak.value,
-            f"peak_{name}_angle_deg": now.peak.degrees,
-            f"rms_{name}_{unit}": now.rms,
-            f"peak_{name}_without_counterweight_{unit}": None if then is None else then.peak.value,
-            f"rms_{name}_without_counterweight_{unit}": None if then is None else then.rms,
-        }
-    return record
+    force, moment = (_shaking_of(mechanism, signal, linkage) for *_, signal in _CURVES)
+    force_bare, moment_bare = (None if bare is None else _shaking_of(bare, signal, linkage) for *_, signal in _CURVES)
+    return {
+        "counterweight_kg": weight.mass,
+        "counterweight_radius_mm": 1e3 * weight.radius,
+        "peak_shaking_force_N": force.peak.value,
+        "peak_shaking_force_angle_deg": force.peak.degrees,
+        "rms_shaking_force_N": force.rms,
+        "peak_shaking_force_without_counterweight_N": None if force_bare is None else force_bare.peak.value,
+        "rms_shaking_force_without_counterweight_N": None if force_bare is None else force_bare.rms,
+        "peak_shaking_moment_Nm": moment.peak.value,
+        "peak_shaking_moment_angle_deg": moment.peak.degrees,
+        "rms_shaking_moment_Nm": moment.rms,
+        "peak_shaking_moment_without_counterweight_Nm": None if moment_bare is None else moment_bare.peak.value,
+        "rms_shaking_moment_without_counterweight_Nm": None if moment_bare is None else moment_bare.rms,
+    }
 
 
 class _Shaking(NamedTuple):

@@ -11,7 +11,7 @@ from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....objectives.kinds import FORCE, LENGTH, MASS, TORQUE, display_unit
 from ....optimise.problem.problem import Problem
-from ....optimise.sizing.counterweight import Balance, RodSpace, best_balance
+from ....optimise.sizing.counterweight import Balance, RodSpace, Shaking, best_balance
 from ....optimise.sizing.input_words import Measure
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import (
@@ -28,8 +28,45 @@ from ...render.blocks import (
     words,
 )
 from ...render.numerals import format_number
-from ..record_types import SHAKING, Keys, Note, PeakAngle
+from ..record_types import Note, Record, ShakingNumbers
 from . import QUESTION
+
+
+class RodBalance(Record):
+    """Mass added to the rod; its centre is measured along and across the rod from the crank pin."""
+
+    mass_kg: float
+    moment_along_kg_m: float
+    moment_across_kg_m: float
+    inertia_kg_m2: float
+    """Moment of inertia about the crank pin."""
+    centre_along_mm: Annotated[float | None, Note("null where nothing is added")]
+    centre_across_mm: Annotated[float | None, Note("null where nothing is added")]
+
+
+class BalanceNumbers(Record):
+    """Counterweight for minimum shaking, and a balance mass on the rod."""
+
+    measure: Measure
+    """Quantity that is minimal over the cycle."""
+    counterweight_moment_kg_m: float
+    """Mass times radius."""
+    counterweight_angle_deg: float
+    """From the crank."""
+    counterweight_radius_mm: float
+    counterweight_kg: float
+    rod_balance: Annotated[RodBalance | None, Note("null where none is allowed")]
+    before: ShakingNumbers
+    after: ShakingNumbers
+    objective_N: float
+    least_possible_N: float
+    """Proven lower bound of the objective."""
+    saving_N_per_kg: float
+    """Saving in the objective if the counterweight is at its maximum mass; otherwise 0."""
+    rounds: int
+    converged: bool
+    """Whether the objective is proven to be minimal."""
+
 
 _SAMPLES = 1441
 
@@ -71,88 +108,53 @@ def _rod_balance_space(inputs: Mapping[str, Any], labels: Mapping[str, str]) -> 
     return RodSpace(radius=radius, mass=mass)
 
 
-_ROD_BALANCE = Keys(
-    "RodBalance",
-    "Mass added to the rod; its centre is measured along and across the rod from the crank pin.",
-    {
-        "mass_kg": (float, lambda rod: rod.mass),
-        "moment_along_kg_m": (float, lambda rod: rod.moment_along),
-        "moment_across_kg_m": (float, lambda rod: rod.moment_across),
-        "inertia_kg_m2": (Annotated[float, Note("Moment of inertia about the crank pin.")], lambda rod: rod.inertia),
-        **{
-            f"centre_{way}_mm": (
-                Annotated[float | None, Note("null where nothing is added")],
-                lambda rod, way=way: 1e3 * getattr(rod, f"moment_{way}") / rod.mass if rod.mass > 0.0 else None,
-            )
-            for way in ("along", "across")
-        },
-    },
-)
-RodBalance = Annotated[dict[str, Any], _ROD_BALANCE]
-_SHAKING = Keys(
-    "ShakingNumbers",
-    "Shaking by inertia; root mean squares are over time.",
-    {
-        "peak_shaking_force_N": (SHAKING["peak_shaking_force_N"], lambda at: at.peak_force),
-        "peak_shaking_force_angle_deg": (PeakAngle, lambda at: float(np.degrees(at.peak_force_angle))),
-        "rms_shaking_force_N": (float, lambda at: at.rms_force),
-        "peak_shaking_moment_Nm": (SHAKING["peak_shaking_moment_Nm"], lambda at: at.peak_moment),
-        "peak_shaking_moment_angle_deg": (PeakAngle, lambda at: float(np.degrees(at.peak_moment_angle))),
-        "rms_shaking_moment_Nm": (float, lambda at: at.rms_moment),
-    },
-)
-ShakingNumbers = Annotated[dict[str, Any], _SHAKING]
-_BALANCE = Keys(
-    "BalanceNumbers",
-    "Counterweight for minimum shaking, and a balance mass on the rod.",
-    {
-        "measure": (Annotated[Measure, Note("Quantity that is minimal over the cycle.")], lambda _, measure: measure),
-        "counterweight_moment_kg_m": (
-            Annotated[float, Note("Mass times radius.")],
-            lambda optimum, _: optimum.moment,
-        ),
-        "counterweight_angle_deg": (
-            Annotated[float, Note("From the crank.")],
-            lambda optimum, _: float(np.degrees(optimum.angle)),
-        ),
-        "counterweight_radius_mm": (float, lambda optimum, _: 1e3 * optimum.radius),
-        "counterweight_kg": (float, lambda optimum, _: optimum.mass),
-        "rod_balance": (
-            Annotated[RodBalance | None, Note("null where none is allowed")],
-            lambda optimum, _: None if optimum.rod is None else _ROD_BALANCE.of(optimum.rod),
-        ),
-        "before": (ShakingNumbers, lambda optimum, _: _SHAKING.of(optimum.shaking_before)),
-        "after": (ShakingNumbers, lambda optimum, _: _SHAKING.of(optimum.shaking_after)),
-        "objective_N": (float, lambda optimum, _: optimum.objective),
-        "least_possible_N": (
-            Annotated[float, Note("Proven lower bound of the objective.")],
-            lambda optimum, _: optimum.bound,
-        ),
-        "saving_N_per_kg": (
-            Annotated[float, Note("Saving in the objective if the counterweight is at its maximum mass; otherwise 0.")],
-            lambda optimum, _: optimum.saving * optimum.radius,
-        ),
-        "rounds": (int, lambda optimum, _: optimum.rounds),
-        "converged": (
-            Annotated[bool, Note("Whether the objective is proven to be minimal.")],
-            lambda optimum, _: optimum.converged,
-        ),
-    },
-)
-BalanceNumbers = Annotated[dict[str, Any], _BALANCE]
-
-
 def numbers(
     _: Mechanism, __: Linkage, *, optimum: Balance, measure: Measure = "peak", **options: Any
 ) -> BalanceNumbers:
-    """Return the counterweight, the balance mass on the rod, and the shaking before and after."""
-    return _BALANCE.of(optimum, measure)
+    """Return a balance ready for JSON; the angle of the counterweight is measured from the crank direction."""
+    rod = optimum.rod
+    weighs = rod is not None and rod.mass > 0.0
+    return {
+        "measure": measure,
+        "counterweight_moment_kg_m": optimum.moment,
+        "counterweight_angle_deg": float(np.degrees(optimum.angle)),
+        "counterweight_radius_mm": 1e3 * optimum.radius,
+        "counterweight_kg": optimum.mass,
+        "rod_balance": None
+        if rod is None
+        else {
+            "mass_kg": rod.mass,
+            "moment_along_kg_m": rod.moment_along,
+            "moment_across_kg_m": rod.moment_across,
+            "inertia_kg_m2": rod.inertia,
+            "centre_along_mm": 1e3 * rod.moment_along / rod.mass if weighs else None,
+            "centre_across_mm": 1e3 * rod.moment_across / rod.mass if weighs else None,
+        },
+        "before": _shaking_numbers(optimum.shaking_before),
+        "after": _shaking_numbers(optimum.shaking_after),
+        "objective_N": optimum.objective,
+        "least_possible_N": optimum.bound,
+        "saving_N_per_kg": optimum.saving * optimum.radius,
+        "rounds": optimum.rounds,
+        "converged": optimum.converged,
+    }
 
 
 def notes(numbers: BalanceNumbers) -> list[str]:
     """Return a note if the optimum is not proven."""
     proven = f"{numbers['objective_N']:.6g} N, and at least {numbers['least_possible_N']:.6g} N is unavoidable"
     return [] if numbers["converged"] else [f"not proven to be the best: {proven}"]
+
+
+def _shaking_numbers(shaking: Shaking) -> ShakingNumbers:
+    return {
+        "peak_shaking_force_N": shaking.peak_force,
+        "peak_shaking_force_angle_deg": float(np.degrees(shaking.peak_force_angle)),
+        "rms_shaking_force_N": shaking.rms_force,
+        "peak_shaking_moment_Nm": shaking.peak_moment,
+        "peak_shaking_moment_angle_deg": float(np.degrees(shaking.peak_moment_angle)),
+        "rms_shaking_moment_Nm": shaking.rms_moment,
+    }
 
 
 def blocks(numbers: BalanceNumbers) -> list[Block]:

@@ -1,99 +1,54 @@
 """Several cylinders on one crankshaft: total torque, shaking force, moment and rocking couple; peaks per cylinder."""
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.multi_cylinder import (
-    MultiCylinderCycle,
-    multi_cylinder_breakpoints,
-    multi_cylinder_curves,
-    multi_cylinder_cycle,
-)
+from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import member_machines, single_cylinder
+from ....model.machine.cylinder_machines import Member, member_machines, single_cylinder
 from ....model.machine.mechanism import Mechanism
 from ....model.machine.two_turn_machine import cycle_turns
+from ....model.signals.panel_polynomials import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, Table, Text, column, named_number, number_list, remark_with_value, value_from_record
 from ..peaks import peak
-from ..record_types import SHAKING, Keys, Note, NullIfLocked, PeakAngle
-
-_CYLINDER = Keys(
-    "Cylinder",
-    "Single cylinder.",
-    {
-        "phase_deg": (float, lambda member, _: math.degrees(member.lead + member.bank)),
-        "bank_deg": (float, lambda member, _: math.degrees(member.bank)),
-        "place_mm": (float, lambda member, _: 1e3 * member.place),
-        **{
-            key: (
-                NullIfLocked,
-                lambda member, linkage, signal=signal: peak(member.mechanism, signal, linkage).value,
-            )
-            for key, signal in (
-                ("peak_torque_Nm", Signal.TORQUE),
-                ("peak_crank_pin_force_N", Signal.CRANK_PIN_FORCE),
-                ("peak_slider_pin_force_N", Signal.SLIDER_PIN_FORCE),
-                ("peak_guide_force_N", Signal.GUIDE_FORCE),
-            )
-        },
-    },
-)
-Cylinder = Annotated[dict[str, Any], _CYLINDER]
+from ..record_types import Note, NullIfLocked, PeakAngle, Record, ShakingNumbers
 
 
-def _value_and_angle(key: str, unit: str, name: str, kind: Any = float) -> dict[str, Any]:
-    def degrees(shaft: MultiCylinderCycle, *_: object) -> float | None:
-        angle = getattr(shaft, name).angle
-        return None if math.isnan(angle) else math.degrees(angle)
+class Cylinder(Record):
+    """Single cylinder."""
 
-    return {
-        f"{key}_{unit}": (kind, lambda shaft, *_: getattr(shaft, name).value),
-        f"{key}_angle_deg": (PeakAngle, degrees),
-    }
+    phase_deg: float
+    bank_deg: float
+    place_mm: float
+    peak_torque_Nm: NullIfLocked
+    peak_crank_pin_force_N: NullIfLocked
+    peak_slider_pin_force_N: NullIfLocked
+    peak_guide_force_N: NullIfLocked
 
 
-_CYLINDERS = Keys(
-    "Cylinders",
-    "Total torque and shaking of all cylinders.",
-    {
-        "cylinders": (
-            list[Cylinder],
-            lambda _, mechanism, linkage: [_CYLINDER.of(member, linkage) for member in member_machines(mechanism)],
-        ),
-        **_value_and_angle("peak_torque", "Nm", "peak", NullIfLocked),
-        "peak_torque_Nm": (NullIfLocked, lambda shaft, *_: abs(shaft.peak.value)),
-        **_value_and_angle("least_torque", "Nm", "least", NullIfLocked),
-        **_value_and_angle("greatest_torque", "Nm", "greatest", NullIfLocked),
-        "mean_torque_Nm": (NullIfLocked, lambda shaft, *_: shaft.mean),
-        "rms_torque_Nm": (NullIfLocked, lambda shaft, *_: shaft.rms),
-        "torque_fluctuation_Nm": (
-            Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")],
-            lambda shaft, *_: shaft.fluctuation,
-        ),
-        "energy_change_J": (
-            Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")],
-            lambda shaft, *_: shaft.energy_change,
-        ),
-        **_value_and_angle("peak_shaking_force", "N", "shaking_force"),
-        "rms_shaking_force_N": (float, lambda shaft, *_: shaft.rms_shaking_force),
-        **_value_and_angle("peak_shaking_moment", "Nm", "shaking_moment", SHAKING["peak_shaking_moment_Nm"]),
-        "rms_shaking_moment_Nm": (float, lambda shaft, *_: shaft.rms_shaking_moment),
-        **_value_and_angle("peak_rocking_couple", "Nm", "couple"),
-        **{
-            f"peak_shaking_{name}_of_one_{unit}": (
-                float,
-                lambda _, mechanism, linkage, signal=signal: peak(single_cylinder(mechanism), signal, linkage).value,
-            )
-            for name, unit, signal in (("force", "N", Signal.SHAKING_FORCE), ("moment", "Nm", Signal.SHAKING_MOMENT))
-        },
-    },
-)
-Cylinders = Annotated[dict[str, Any], _CYLINDERS]
+class Cylinders(ShakingNumbers):
+    """Total torque and shaking of all cylinders."""
+
+    cylinders: list[Cylinder]
+    peak_torque_Nm: NullIfLocked
+    peak_torque_angle_deg: PeakAngle
+    least_torque_Nm: NullIfLocked
+    least_torque_angle_deg: PeakAngle
+    greatest_torque_Nm: NullIfLocked
+    greatest_torque_angle_deg: PeakAngle
+    mean_torque_Nm: NullIfLocked
+    rms_torque_Nm: NullIfLocked
+    torque_fluctuation_Nm: Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")]
+    energy_change_J: Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")]
+    peak_rocking_couple_Nm: float
+    peak_rocking_couple_angle_deg: PeakAngle
+    peak_shaking_force_of_one_N: float
+    peak_shaking_moment_of_one_Nm: float
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
@@ -101,7 +56,49 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Cylinders:
 
     Raises `InputError` for a machine without cylinders in its job.
     """
-    return _CYLINDERS.of(multi_cylinder_cycle(mechanism, linkage), mechanism, linkage)
+    shaft = multi_cylinder_cycle(mechanism, linkage)
+    return {
+        "cylinders": [_single_cylinder(member, linkage) for member in member_machines(mechanism)],
+        "peak_torque_Nm": abs(shaft.peak.value),
+        "peak_torque_angle_deg": _extreme_angle_deg(shaft.peak),
+        "least_torque_Nm": shaft.least.value,
+        "least_torque_angle_deg": _extreme_angle_deg(shaft.least),
+        "greatest_torque_Nm": shaft.greatest.value,
+        "greatest_torque_angle_deg": _extreme_angle_deg(shaft.greatest),
+        "mean_torque_Nm": shaft.mean,
+        "rms_torque_Nm": shaft.rms,
+        "torque_fluctuation_Nm": shaft.fluctuation,
+        "energy_change_J": shaft.energy_change,
+        "peak_shaking_force_N": shaft.shaking_force.value,
+        "peak_shaking_force_angle_deg": _extreme_angle_deg(shaft.shaking_force),
+        "rms_shaking_force_N": shaft.rms_shaking_force,
+        "peak_shaking_moment_Nm": shaft.shaking_moment.value,
+        "peak_shaking_moment_angle_deg": _extreme_angle_deg(shaft.shaking_moment),
+        "rms_shaking_moment_Nm": shaft.rms_shaking_moment,
+        "peak_rocking_couple_Nm": shaft.couple.value,
+        "peak_rocking_couple_angle_deg": _extreme_angle_deg(shaft.couple),
+        "peak_shaking_force_of_one_N": peak(single_cylinder(mechanism), Signal.SHAKING_FORCE, linkage).value,
+        "peak_shaking_moment_of_one_Nm": peak(single_cylinder(mechanism), Signal.SHAKING_MOMENT, linkage).value,
+    }
+
+
+def _single_cylinder(member: Member, linkage: Linkage) -> Cylinder:
+    def greatest(signal: Signal) -> float:
+        return peak(member.mechanism, signal, linkage).value
+
+    return {
+        "phase_deg": math.degrees(member.lead + member.bank),
+        "bank_deg": math.degrees(member.bank),
+        "place_mm": 1e3 * member.place,
+        "peak_torque_Nm": greatest(Signal.TORQUE),
+        "peak_crank_pin_force_N": greatest(Signal.CRANK_PIN_FORCE),
+        "peak_slider_pin_force_N": greatest(Signal.SLIDER_PIN_FORCE),
+        "peak_guide_force_N": greatest(Signal.GUIDE_FORCE),
+    }
+
+
+def _extreme_angle_deg(extreme: Extreme) -> float | None:
+    return None if math.isnan(extreme.angle) else math.degrees(extreme.angle)
 
 
 def blocks(numbers: Cylinders) -> list[Block]:

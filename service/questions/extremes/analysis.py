@@ -37,7 +37,7 @@ from ...render.blocks import (
 from ...render.extremes_table import extremes_table
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
-from ..record_types import Keys, Note, keys_of_kinds
+from ..record_types import Keys, Note, Record, keys_of_kinds
 
 _PANELS = ("slider_position", "slider_velocity", "slider_acceleration", "torque", "crank_pin", "load")
 _STROKES = ("outward", "inward")
@@ -67,20 +67,14 @@ _OF_STROKES = {
 _Curve = Annotated[dict[str, Any], Keys("CurveExtremes", "Minimum and maximum of a curve.", _CURVE, 7)]
 
 
-Extremes = Annotated[
-    dict[str, Any],
-    Keys(
-        "Extremes",
-        "Extremes of each curve over the revolution, and both strokes; ratios and differences: outward to inward.",
-        {
-            "curves": Annotated[dict[str, _Curve], Note("Curves by name, if the machine defines them.")],
-            "strokes": Annotated[dict[str, Any], Keys("Strokes", "Both strokes, compared.", _OF_STROKES)],
-            "undefined_because": NotRequired[
-                Annotated[str, Note("Why curves are undetermined; absent if all are determined.")]
-            ],
-        },
-    ),
-]
+class Extremes(Record):
+    """Extremes of each curve over the revolution, and both strokes; ratios and differences: outward to inward."""
+
+    curves: dict[str, _Curve]
+    """Curves by name, if the machine defines them."""
+    strokes: Annotated[dict[str, Any], Keys("Strokes", "Both strokes, compared.", _OF_STROKES)]
+    undefined_because: NotRequired[str]
+    """Why curves are undetermined; absent if all are determined."""
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Extremes:

@@ -1,7 +1,7 @@
 """Flywheel required for a speed fluctuation, exact and by the classical estimate."""
 
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -14,43 +14,32 @@ from ....objectives.kinds import ANGULAR_SPEED, INERTIA
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Text, Value, column, sentence, value_from_record, words
 from ...render.numerals import format_number
-from ..record_types import Keys, Note
-from ..start_up.analysis import RPM, STEADY_NUMBERS, SteadyNumbers, sort_by_crank_angle
+from ..record_types import Note, Record
+from ..start_up.analysis import RPM, SteadyNumbers, sort_by_crank_angle, steady_numbers
 from . import FLUCTUATION
 
 Bare = Annotated[float | None, Note("null where no steady running was found without a flywheel")]
 
 
-_FLYWHEEL = Keys(
-    "Flywheel",
-    "Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and for others.",
-    {
-        "motor": (
-            Annotated[str, Note('Type of drive, or "constant torque" for a job without a drive.')],
-            lambda drive, **_: "constant torque" if drive is None else type(drive.motor).__name__,
-        ),
-        "wanted_fluctuation": (float, lambda fluctuation, **_: fluctuation),
-        "flywheel_kgm2": (float, lambda chosen, **_: chosen.inertia),
-        "classical_estimate_kgm2": (float, lambda chosen, **_: chosen.estimate),
-        "fluctuation_without_flywheel": (Bare, lambda bare, **_: None if bare is None else bare[0]),
-        "least_speed_without_flywheel_rpm": (Bare, lambda bare, **_: None if bare is None else RPM * bare[1]),
-        "reason_without_flywheel": (
-            Annotated[str | None, Note("null where steady running was found without it")],
-            lambda reason, **_: reason,
-        ),
-        "steady": (
-            Annotated[SteadyNumbers, Note("With the flywheel.")],
-            lambda chosen, **_: STEADY_NUMBERS.of(chosen.running),
-        ),
-        "fluctuations": (list[float], lambda **_: list(_TRIED)),
-        "flywheels_kgm2": (
-            Annotated[list[float], Note("Values for each coefficient of fluctuation.")],
-            lambda tried, **_: [design.inertia for design in tried],
-        ),
-        "classical_estimates_kgm2": (list[float], lambda tried, **_: [design.estimate for design in tried]),
-    },
-)
-Flywheel = Annotated[dict[str, Any], _FLYWHEEL]
+class Flywheel(Record):
+    """Flywheel for a coefficient of speed fluctuation, exact and by the classical estimate, and for others."""
+
+    motor: str
+    """Type of drive, or "constant torque" for a job without a drive."""
+    wanted_fluctuation: float
+    flywheel_kgm2: float
+    classical_estimate_kgm2: float
+    fluctuation_without_flywheel: Bare
+    least_speed_without_flywheel_rpm: Bare
+    reason_without_flywheel: Annotated[str | None, Note("null where steady running was found without it")]
+    steady: SteadyNumbers
+    """With the flywheel."""
+    fluctuations: list[float]
+    flywheels_kgm2: list[float]
+    """Values for each coefficient of fluctuation."""
+    classical_estimates_kgm2: list[float]
+
+
 _TRIED = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005)
 _SIZES = np.geomspace(0.25, 4.0, 33)
 
@@ -60,9 +49,19 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUC
     chosen = design_flywheel(mechanism, linkage, fluctuation)
     tried = [chosen if limit == fluctuation else design_flywheel(mechanism, linkage, limit) for limit in _TRIED]
     bare, reason = _fluctuation_without_flywheel(mechanism, linkage)
-    return _FLYWHEEL.of(
-        drive=mechanism.drive, fluctuation=fluctuation, chosen=chosen, tried=tried, bare=bare, reason=reason
-    )
+    return {
+        "motor": "constant torque" if mechanism.drive is None else type(mechanism.drive.motor).__name__,
+        "wanted_fluctuation": fluctuation,
+        "flywheel_kgm2": chosen.inertia,
+        "classical_estimate_kgm2": chosen.estimate,
+        "fluctuation_without_flywheel": None if bare is None else bare[0],
+        "least_speed_without_flywheel_rpm": None if bare is None else RPM * bare[1],
+        "reason_without_flywheel": reason,
+        "steady": steady_numbers(chosen.running),
+        "fluctuations": list(_TRIED),
+        "flywheels_kgm2": [design.inertia for design in tried],
+        "classical_estimates_kgm2": [design.estimate for design in tried],
+    }
 
 
 def _fluctuation_without_flywheel(

@@ -1,9 +1,8 @@
 """Friction of one design: self-locking, effect on torque and forces, energy balance of a cycle."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -32,101 +31,43 @@ from ...render.blocks import (
 )
 from ...text.tables import finite_or_none
 from ..peaks import lengths_row, peak
-from ..record_types import Keys, Note, NullIfLocked
+from ..record_types import Note, NullIfLocked, Record
 
 Smooth = Annotated[float | None, Note("null where it is not determined")]
-_JOINTS = ("guide", "crank_pivot", "crank_pin", "slider_pin")
 Verdict = Literal["drives", "locks", "locks or may jam", "may jam"]
 
 
-def _with_and_without(
-    name: str, unit: str, value: Callable[[Mechanism, Linkage], float]
-) -> dict[str, tuple[Any, Callable[..., float | None]]]:
-    return {
-        f"{name}_{unit}": (
-            NullIfLocked,
-            lambda mechanism, linkage, **_: finite_or_none(value(mechanism, linkage)),
-        ),
-        f"{name}_without_friction_{unit}": (
-            Smooth,
-            lambda smooth, linkage, **_: finite_or_none(value(smooth, linkage)),
-        ),
-    }
+class FrictionNumbers(Record):
+    """Self-locking, torque and guide force with and without friction, and the energies of a cycle."""
+
+    one_cylinder_at_constant_speed: bool
+    """True for a machine with several cylinders or a speed profile: the numbers are for one cylinder at constant
+    speed."""
+    verdict: Verdict
+    self_locking_margin_deg: Annotated[
+        float | None, Note("least transmission angle minus the friction angles; null where there is none")
+    ]
+    least_transmission_angle_deg: float
+    guide_friction_angle_deg: float
+    pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for any")]
+    locked_angles_deg: list[list[float]]
+    """Start and end of each range of crank angles in which it locks."""
+    peak_torque_Nm: NullIfLocked
+    peak_torque_without_friction_Nm: Smooth
+    mean_torque_Nm: NullIfLocked
+    mean_torque_without_friction_Nm: Smooth
+    peak_guide_force_N: NullIfLocked
+    peak_guide_force_without_friction_N: Smooth
+    input_work_J: NullIfLocked
+    useful_work_J: Annotated[float | None, Note("negative where the load drives; null where friction locks")]
+    friction_heat_J: NullIfLocked
+    guide_heat_J: NullIfLocked
+    crank_pivot_heat_J: NullIfLocked
+    crank_pin_heat_J: NullIfLocked
+    slider_pin_heat_J: NullIfLocked
+    efficiency: Annotated[float | None, Note("null where friction locks, and where the load does no net work")]
 
 
-def _energy(name: str, kind: Any = NullIfLocked) -> tuple[Any, Callable[..., float | None]]:
-    return kind, lambda work, **_: None if work is None else getattr(work, name)
-
-
-def _pin_friction_angle_deg(mechanism: Mechanism, linkage: Linkage) -> float | None:
-    pins = mechanism.friction.crank_pin, mechanism.friction.slider_pin
-    sine = sum(pin.friction_circle_radius for pin in pins) / float(linkage.rod)
-    return math.degrees(math.asin(sine)) if sine < 1.0 else None
-
-
-_FRICTION = Keys(
-    "FrictionNumbers",
-    "Self-locking, torque and guide force with and without friction, and the energies of a cycle.",
-    {
-        "one_cylinder_at_constant_speed": (
-            Annotated[
-                bool,
-                Note(
-                    "True for a machine with several cylinders or a speed profile: the numbers are for one cylinder at "
-                    "constant\nspeed."
-                ),
-            ],
-            lambda has_several, **_: has_several,
-        ),
-        "verdict": (
-            Verdict,
-            lambda locking, **_: (
-                "drives" if locking.holds is None and not locking.locks else _locking_verdict(locking.holds)
-            ),
-        ),
-        "self_locking_margin_deg": (
-            Annotated[
-                float | None,
-                Note("least transmission angle minus the friction angles; null where there is none"),
-            ],
-            lambda locking, **_: finite_or_none(math.degrees(locking.margin)),
-        ),
-        "least_transmission_angle_deg": (
-            float,
-            lambda linkage, **_: math.degrees(float(linkage.least_transmission_angle)),
-        ),
-        "guide_friction_angle_deg": (
-            float,
-            lambda mechanism, **_: math.degrees(math.atan(mechanism.friction.guide)),
-        ),
-        "pin_friction_angle_deg": (
-            Annotated[float | None, Note("null where the pins are too thick for any")],
-            lambda mechanism, linkage, **_: _pin_friction_angle_deg(mechanism, linkage),
-        ),
-        "locked_angles_deg": (
-            Annotated[list[list[float]], Note("Start and end of each range of crank angles in which it locks.")],
-            lambda locking, **_: [[math.degrees(end) % 360.0 for end in span] for span in locking.locked],
-        ),
-        **_with_and_without("peak_torque", "Nm", lambda machine, linkage: peak(machine, Signal.TORQUE, linkage).value),
-        **_with_and_without(
-            "mean_torque", "Nm", lambda machine, linkage: torque_averages(machine, lengths_row(linkage)).mean[0]
-        ),
-        **_with_and_without(
-            "peak_guide_force", "N", lambda machine, linkage: peak(machine, Signal.GUIDE_FORCE, linkage).value
-        ),
-        "input_work_J": _energy("input"),
-        "useful_work_J": _energy(
-            "useful", Annotated[float | None, Note("negative where the load drives; null where friction locks")]
-        ),
-        "friction_heat_J": _energy("heat"),
-        **{f"{joint}_heat_J": _energy(f"{joint}_heat") for joint in _JOINTS},
-        "efficiency": _energy(
-            "efficiency",
-            Annotated[float | None, Note("null where friction locks, and where the load does no net work")],
-        ),
-    },
-)
-FrictionNumbers = Annotated[dict[str, Any], _FRICTION]
 _WORDS = {
     "drives": "drives at every crank angle, for any load",
     "locks": "LOCKS: no crank torque drives the slider",
@@ -143,15 +84,42 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> FrictionNumbers:
     work.
     """
     has_several, mechanism = is_treated_as_shaft(mechanism), single_cylinder(mechanism)
-    locking = locking_verdict(mechanism, linkage)
-    return _FRICTION.of(
-        has_several=has_several,
-        mechanism=mechanism,
-        smooth=replace(mechanism, friction=Friction()),
-        linkage=linkage,
-        locking=locking,
-        work=None if locking.locks else cycle_energies(mechanism, linkage),
+    friction, locking = mechanism.friction, locking_verdict(mechanism, linkage)
+    smooth = replace(mechanism, friction=Friction())
+    pins = (friction.crank_pin.friction_circle_radius + friction.slider_pin.friction_circle_radius) / float(linkage.rod)
+    torque, smooth_torque = (
+        finite_or_none(peak(machine, Signal.TORQUE, linkage).value) for machine in (mechanism, smooth)
     )
+    mean, smooth_mean = (
+        finite_or_none(torque_averages(machine, lengths_row(linkage)).mean[0]) for machine in (mechanism, smooth)
+    )
+    guide, smooth_guide = (
+        finite_or_none(peak(machine, Signal.GUIDE_FORCE, linkage).value) for machine in (mechanism, smooth)
+    )
+    work = None if locking.locks else cycle_energies(mechanism, linkage)
+    return {
+        "one_cylinder_at_constant_speed": has_several,
+        "verdict": "drives" if locking.holds is None and not locking.locks else _locking_verdict(locking.holds),
+        "self_locking_margin_deg": finite_or_none(math.degrees(locking.margin)),
+        "least_transmission_angle_deg": math.degrees(float(linkage.least_transmission_angle)),
+        "guide_friction_angle_deg": math.degrees(math.atan(friction.guide)),
+        "pin_friction_angle_deg": math.degrees(math.asin(pins)) if pins < 1.0 else None,
+        "locked_angles_deg": [[math.degrees(a) % 360.0, math.degrees(b) % 360.0] for a, b in locking.locked],
+        "peak_torque_Nm": torque,
+        "peak_torque_without_friction_Nm": smooth_torque,
+        "mean_torque_Nm": mean,
+        "mean_torque_without_friction_Nm": smooth_mean,
+        "peak_guide_force_N": guide,
+        "peak_guide_force_without_friction_N": smooth_guide,
+        "input_work_J": None if work is None else work.input,
+        "useful_work_J": None if work is None else work.useful,
+        "friction_heat_J": None if work is None else work.heat,
+        "guide_heat_J": None if work is None else work.guide_heat,
+        "crank_pivot_heat_J": None if work is None else work.crank_pivot_heat,
+        "crank_pin_heat_J": None if work is None else work.crank_pin_heat,
+        "slider_pin_heat_J": None if work is None else work.slider_pin_heat,
+        "efficiency": None if work is None else work.efficiency,
+    }
 
 
 def _locking_verdict(holds: float | None) -> Verdict:
@@ -163,7 +131,12 @@ def _locking_verdict(holds: float | None) -> Verdict:
 def blocks(numbers: FrictionNumbers) -> list[Block]:
     """Return the answer in human-readable form."""
     locked_ranges = ", ".join(f"{a:.2f} to {b:.2f} deg" for a, b in numbers["locked_angles_deg"])
-    heats = {joint.replace("_", " "): numbers[f"{joint}_heat_J"] for joint in _JOINTS}
+    heats = {
+        "guide": numbers["guide_heat_J"],
+        "crank pivot": numbers["crank_pivot_heat_J"],
+        "crank pin": numbers["crank_pin_heat_J"],
+        "slider pin": numbers["slider_pin_heat_J"],
+    }
     heat, drives = numbers["friction_heat_J"], (numbers["useful_work_J"] or 0.0) < 0.0
     shares = ", ".join(f"{name} {100.0 * part / heat:.3g} %" for name, part in heats.items() if heat and part)
     least = words(

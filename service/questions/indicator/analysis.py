@@ -1,9 +1,8 @@
 """Indicator diagram of one design: pressure against volume for each cylinder, valve events, work."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -17,38 +16,31 @@ from ....model.machine.two_turn_machine import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, number_list, value_from_record
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
 _GAS_PRESSURE = replace(PRESSURE, metric=display_unit("bar", 1e-5))
 Event = Annotated[float | None, Note("null without such an event")]
 _BAR, _CM3 = _GAS_PRESSURE.metric.factor, VOLUME.metric.factor
 
 
-def _event(place: int) -> tuple[Any, Callable[..., float | None]]:
-    return Event, lambda _, __, ___, ends: None if ends[place] is None else math.degrees(ends[place])
+class CylinderPressures(Record):
+    """Volumes, absolute pressures and event crank angles for one cylinder."""
+
+    load: int
+    """Number of the cylinder among the loads of the job."""
+    least_volume_cm3: float
+    greatest_volume_cm3: float
+    least_pressure_bar: float
+    greatest_pressure_bar: float
+    expansion_ends_deg: Event
+    compression_ends_deg: Event
+    burning_ends_deg: Event
 
 
-_PRESSURES = Keys(
-    "CylinderPressures",
-    "Volumes, absolute pressures and event crank angles for one cylinder.",
-    {
-        "load": (
-            Annotated[int, Note("Number of the cylinder among the loads of the job.")],
-            lambda place, *_: place + 1,
-        ),
-        "least_volume_cm3": (float, lambda _, __, curve, ___: _CM3 * float(curve.volume.min())),
-        "greatest_volume_cm3": (float, lambda _, __, curve, ___: _CM3 * float(curve.volume.max())),
-        "least_pressure_bar": (float, lambda _, load, *__: _BAR * load.low),
-        "greatest_pressure_bar": (float, lambda _, load, *__: _BAR * load.high),
-        "expansion_ends_deg": _event(0),
-        "compression_ends_deg": _event(1),
-        "burning_ends_deg": _event(2),
-    },
-)
-CylinderPressures = Annotated[dict[str, Any], _PRESSURES]
+class Indicator(Record):
+    """Indicator diagrams."""
 
-
-Indicator = Annotated[dict[str, Any], Keys("Indicator", "Indicator diagrams.", {"cylinders": list[CylinderPressures]})]
+    cylinders: list[CylinderPressures]
 
 
 def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]:
@@ -67,11 +59,24 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Indicator:
     The end of expansion, compression or combustion at peak pressure is None if there is no such event. Raises
     `InputError` for a machine without a cylinder.
     """
-    records = []
+    records: list[CylinderPressures] = []
     for place, load in _require_cylinders(mechanism):
         curve = indicator_diagram(mechanism, linkage, load, sampled_turn(np.array(linkage.dead_centre_angles)))
         ends = *valve_events(mechanism, linkage, load), burning_end_angle(mechanism, linkage, load)
-        records.append(_PRESSURES.of(place, load, curve, ends))
+        expansion, compression, burning = (None if angle is None else math.degrees(angle) for angle in ends)
+        least, greatest = float(curve.volume.min()), float(curve.volume.max())
+        records.append(
+            {
+                "load": place + 1,
+                "least_volume_cm3": _CM3 * least,
+                "greatest_volume_cm3": _CM3 * greatest,
+                "least_pressure_bar": _BAR * load.low,
+                "greatest_pressure_bar": _BAR * load.high,
+                "expansion_ends_deg": expansion,
+                "compression_ends_deg": compression,
+                "burning_ends_deg": burning,
+            }
+        )
     return {"cylinders": records}
 
 

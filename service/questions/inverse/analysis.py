@@ -5,11 +5,10 @@ For a swinging crank only angles within its swing count.
 
 import math
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 from ....model.errors import AssemblyError
 from ....model.linkage.crank_angles_from_slider import CrankSolution
-from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.inverse_kinematics import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
@@ -17,7 +16,7 @@ from ....model.swing.swing import Swing, dead_point_angles, require_swing, swing
 from ....objectives.column_keys import kind_of_key
 from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
 from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
 _NEAR = 1e-9  # rad beyond an end of a swing that count as rounding
 UNDEFINED = "at a dead centre the slider is at rest at any crank speed: crank speed and acceleration are undefined"
@@ -28,43 +27,30 @@ Given = Annotated[float | None, Note("as it was given; null if it was not")]
 Rate = Annotated[float | None, Note("null if the slider's rate is not given or a dead centre leaves it undefined")]
 
 
-_SOLUTION = Keys(
-    "Solution",
-    "Crank angle for the slider position, with the crank rates that produce the given slider rates.",
-    {
-        "crank_angle_deg": (float, lambda solution: ANGLE.metric.factor * solution.crank_angle),
-        "stroke": (
-            Annotated[Stroke | None, Note("for a crank that turns counter-clockwise; null at a dead centre")],
-            lambda solution: solution.stroke,
-        ),
-        "crank_speed_rpm": (
-            Rate,
-            lambda solution: None if solution.speed is None else ANGULAR_SPEED.metric.factor * solution.speed,
-        ),
-        "crank_acceleration_rad_s2": (Rate, lambda solution: solution.acceleration),
-    },
-)
-Solution = Annotated[dict[str, Any], _SOLUTION]
-_CRANK_ANGLES = Keys(
-    "CrankAngles",
-    "Every crank angle at which the slider of a linkage is at a given position.",
-    {
-        **{
-            f"{name}_mm": (float, lambda linkage, *_, name=name: 1e3 * float(getattr(linkage, name)))
-            for name in DIMENSIONS
-        },
-        "branch": (Branch, lambda linkage, *_: linkage.branch),
-        "slider_position_mm": (float, lambda _, given, *__: 1e3 * given[0]),
-        "slider_velocity_m_s": (Given, lambda _, given, *__: given[1]),
-        "slider_acceleration_m_s2": (Given, lambda _, given, *__: given[2]),
-        "solutions": (list[Solution], lambda _, __, solutions, ___: list(map(_SOLUTION.of, solutions))),
-        "note": (
-            Annotated[str, Note("Reasons for undefined or omitted values, or empty.")],
-            lambda *sources: "; ".join(sources[-1]),
-        ),
-    },
-)
-CrankAngles = Annotated[dict[str, Any], _CRANK_ANGLES]
+class Solution(Record):
+    """Crank angle for the slider position, with the crank rates that produce the given slider rates."""
+
+    crank_angle_deg: float
+    stroke: Annotated[Stroke | None, Note("for a crank that turns counter-clockwise; null at a dead centre")]
+    crank_speed_rpm: Rate
+    crank_acceleration_rad_s2: Rate
+
+
+class CrankAngles(Record):
+    """Every crank angle at which the slider of a linkage is at a given position."""
+
+    crank_mm: float
+    rod_mm: float
+    offset_mm: float
+    branch: Branch
+    slider_position_mm: float
+    slider_velocity_m_s: Given
+    slider_acceleration_m_s2: Given
+    solutions: list[Solution]
+    note: str
+    """Reasons for undefined or omitted values, or empty."""
+
+
 _GIVEN = ("slider_position_mm", "slider_velocity_m_s", "slider_acceleration_m_s2")
 
 
@@ -106,8 +92,25 @@ def numbers(
             notes.append(f"{omission} outside the swing {ends}")
     if slider_velocity is not None and any(solution.speed is None for solution in solutions):
         notes.append(UNDEFINED)
-    given = (slider_position, slider_velocity, slider_acceleration)
-    return _CRANK_ANGLES.of(linkage, given, solutions, notes)
+    return {
+        "crank_mm": 1e3 * float(linkage.crank),
+        "rod_mm": 1e3 * float(linkage.rod),
+        "offset_mm": 1e3 * float(linkage.offset),
+        "branch": linkage.branch,
+        "slider_position_mm": 1e3 * slider_position,
+        "slider_velocity_m_s": slider_velocity,
+        "slider_acceleration_m_s2": slider_acceleration,
+        "solutions": [
+            {
+                "crank_angle_deg": ANGLE.metric.factor * solution.crank_angle,
+                "stroke": solution.stroke,
+                "crank_speed_rpm": None if solution.speed is None else ANGULAR_SPEED.metric.factor * solution.speed,
+                "crank_acceleration_rad_s2": solution.acceleration,
+            }
+            for solution in solutions
+        ],
+        "note": "; ".join(notes),
+    }
 
 
 def _solutions_in_swing(solutions: tuple[CrankSolution, ...], swing: Swing) -> tuple[CrankSolution, ...]:

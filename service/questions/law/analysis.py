@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import numpy as np
 
@@ -21,52 +21,37 @@ from ...designs.display_units import convert_rows, row_without_noise
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, joined, named_number, note, number_list, remark_with_value, sentence
 from ...render.numerals import format_number
-from ..record_types import Keys, Note
+from ...runs.result import Row
+from ..record_types import Note, Record
 
 _RPM = ANGULAR_SPEED.metric.factor
 
 
-_LAW = Keys(
-    "LawNumbers",
-    "Motion law, and constant speed with the same cycle time. Torques are at the crank, rotor included.",
-    {
-        "objective": (LawObjective, lambda optimum, *_: optimum.limits.request.objective),
-        "timing": (Timing, lambda optimum, *_: optimum.limits.request.timing),
-        "cycle_time_s": (float, lambda _, law, __: law.period),
-        "peak_torque_Nm": (float, lambda _, law, __: law.peaks["torque"].value),
-        "peak_torque_angle_deg": (float, lambda _, law, __: math.degrees(law.peaks["torque"].angle)),
-        "rms_torque_Nm": (Annotated[float, Note("Over time.")], lambda _, law, __: law.rms_torque),
-        "least_speed_rpm": (
-            float,
-            lambda _, law, __: _RPM * min(abs(law.least_speed.value), abs(law.greatest_speed.value)),
-        ),
-        "greatest_speed_rpm": (
-            float,
-            lambda _, law, __: _RPM * max(abs(law.least_speed.value), abs(law.greatest_speed.value)),
-        ),
-        "peak_crank_acceleration_rad_s2": (float, lambda _, law, __: law.acceleration.value),
-        "peak_slider_speed_m_s": (float, lambda _, law, __: law.peaks["slider_speed"].value),
-        "peak_power_W": (float, lambda _, law, __: law.peaks["power"].value),
-        "work_J": (Annotated[float, Note("Work of the drive per revolution.")], lambda _, law, __: law.work),
-        "peak_torque_at_constant_speed_Nm": (float, lambda _, __, even: even.peaks["torque"].value),
-        "rms_torque_at_constant_speed_Nm": (float, lambda _, __, even: even.rms_torque),
-        "peak_power_at_constant_speed_W": (float, lambda _, __, even: even.peaks["power"].value),
-        "peak_slider_speed_at_constant_speed_m_s": (float, lambda _, __, even: even.peaks["slider_speed"].value),
-        "gap": (
-            Annotated[float, Note("fraction by which the law is at most worse than the best possible one")],
-            lambda optimum, *_: optimum.gap,
-        ),
-        "proven": (
-            Annotated[bool, Note("Whether the gap is at most a thousandth.")],
-            lambda optimum, *_: optimum.proven,
-        ),
-        "relaxed": (
-            Annotated[bool, Note("whether the bound comes from a relaxation, which even the best law may not reach")],
-            lambda optimum, *_: optimum.relaxed,
-        ),
-    },
-)
-LawNumbers = Annotated[dict[str, Any], _LAW]
+class LawNumbers(Record):
+    """Motion law, and constant speed with the same cycle time. Torques are at the crank, rotor included."""
+
+    objective: LawObjective
+    timing: Timing
+    cycle_time_s: float
+    peak_torque_Nm: float
+    peak_torque_angle_deg: float
+    rms_torque_Nm: float
+    """Over time."""
+    least_speed_rpm: float
+    greatest_speed_rpm: float
+    peak_crank_acceleration_rad_s2: float
+    peak_slider_speed_m_s: float
+    peak_power_W: float
+    work_J: float
+    """Work of the drive per revolution."""
+    peak_torque_at_constant_speed_Nm: float
+    rms_torque_at_constant_speed_Nm: float
+    peak_power_at_constant_speed_W: float
+    peak_slider_speed_at_constant_speed_m_s: float
+    gap: Annotated[float, Note("fraction by which the law is at most worse than the best possible one")]
+    proven: bool
+    """Whether the gap is at most a thousandth."""
+    relaxed: Annotated[bool, Note("whether the bound comes from a relaxation, which even the best law may not reach")]
 
 
 def compute_shared_options(
@@ -86,9 +71,31 @@ def compute_shared_options(
 
 def numbers(_: Mechanism, linkage: Linkage, *, optimum: OptimalLaw, **options: Any) -> LawNumbers:
     """Return a law ready for JSON, evaluated like any speed profile."""
-    judged = speed_profile_cycle(optimum.law.turn.machine, linkage, optimum.law.crank_motion)
+    law, request = optimum.law, optimum.limits.request
+    judged = speed_profile_cycle(law.turn.machine, linkage, law.crank_motion)
     even = speed_profile_cycle(_at_constant_speed(optimum), linkage)
-    return row_without_noise(_LAW.of(optimum, judged, even))
+    record: Row = {
+        "objective": request.objective,
+        "timing": request.timing,
+        "cycle_time_s": judged.period,
+        "peak_torque_Nm": judged.peaks["torque"].value,
+        "peak_torque_angle_deg": math.degrees(judged.peaks["torque"].angle),
+        "rms_torque_Nm": judged.rms_torque,
+        "least_speed_rpm": _RPM * min(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
+        "greatest_speed_rpm": _RPM * max(abs(judged.least_speed.value), abs(judged.greatest_speed.value)),
+        "peak_crank_acceleration_rad_s2": judged.acceleration.value,
+        "peak_slider_speed_m_s": judged.peaks["slider_speed"].value,
+        "peak_power_W": judged.peaks["power"].value,
+        "work_J": judged.work,
+        "peak_torque_at_constant_speed_Nm": even.peaks["torque"].value,
+        "rms_torque_at_constant_speed_Nm": even.rms_torque,
+        "peak_power_at_constant_speed_W": even.peaks["power"].value,
+        "peak_slider_speed_at_constant_speed_m_s": even.peaks["slider_speed"].value,
+        "gap": optimum.gap,
+        "proven": optimum.proven,
+        "relaxed": optimum.relaxed,
+    }
+    return cast(LawNumbers, row_without_noise(record))
 
 
 def _at_constant_speed(optimum: OptimalLaw) -> Mechanism:
@@ -142,8 +149,8 @@ def _gain_text(numbers: LawNumbers) -> str:
     """Return the gain over constant speed in a sentence."""
     changes = []
     for key, title in (("peak_torque", "peak torque"), ("rms_torque", "RMS torque")):
-        even = numbers[f"{key}_at_constant_speed_Nm"]
-        change = numbers[f"{key}_Nm"] / even - 1.0 if even else 0.0
+        even: float = numbers[f"{key}_at_constant_speed_Nm"]  # type: ignore[literal-required]
+        change = numbers[f"{key}_Nm"] / even - 1.0 if even else 0.0  # type: ignore[literal-required]
         changes.append(f"{title} {format_number(abs(100.0 * change), 3)} % {'higher' if change > 0.0 else 'lower'}")
     return f"Against constant speed at the same cycle time: {' and '.join(changes)}."
 

@@ -32,7 +32,7 @@ from ...render.blocks import (
 )
 from ...render.numerals import format_number
 from ...text.tables import finite_or_none
-from ..record_types import Keys, Note, keys_of_kinds
+from ..record_types import Keys, Note, Record, keys_of_kinds
 
 _Fit = Annotated[float | None, Note("null where the samples do not determine a shift")]
 _CURVE = {
@@ -45,26 +45,23 @@ _CURVE = {
 _Curve = Annotated[dict[str, Any], Keys("CurveDeviation", "Measured minus computed values of a curve.", _CURVE, 9)]
 
 
-_DEVIATIONS = Keys(
-    "Deviations",
-    "Deviation of measured curves from the computed ones.\n\n"
-    "Shifts give the best fit when added to the measured values.",
-    {
-        "rows": (int, lambda measured, _: len(measured.crank_angle)),
-        "understood": (Annotated[str, Note("Data read from the file.")], lambda measured, _: measured.understood),
-        "rows_without_crank_angle": (int, lambda measured, _: measured.without_angle),
-        "crank_angle_from_time": (bool, lambda measured, _: measured.by_time),
-        "left_out": (
-            Annotated[list[str], Note("Columns that are empty or do not name a curve.")],
-            lambda measured, _: list(measured.left_out),
-        ),
-        "curves": (
-            Annotated[dict[str, _Curve], Note("By name.")],
-            lambda _, found: {deviation.name: _deviation_entry(deviation) for deviation in found},
-        ),
-    },
-)
-Deviations = Annotated[dict[str, Any], _DEVIATIONS]
+class Deviations(Record):
+    """Deviation of measured curves from the computed ones.
+
+    Shifts give the best fit when added to the measured values.
+    """
+
+    rows: int
+    understood: str
+    """Data read from the file."""
+    rows_without_crank_angle: int
+    crank_angle_from_time: bool
+    left_out: list[str]
+    """Columns that are empty or do not name a curve."""
+    curves: dict[str, _Curve]
+    """By name."""
+
+
 _DRAWN = 3000  # number of samples in a panel, spread over the measured ones
 _NAMED = 12  # maximum number of omitted columns that are named
 _UNDETERMINED = "undefined where friction locks"
@@ -77,7 +74,15 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, measured: Measured) -> De
     root mean square, left_rms. None stands for values that friction leaves undetermined, and for shifts that the
     samples do not determine.
     """
-    return _DEVIATIONS.of(measured, deviations(mechanism, linkage, measured.crank_angle, measured.values))
+    found_deviations = deviations(mechanism, linkage, measured.crank_angle, measured.values)
+    return {
+        "rows": len(measured.crank_angle),
+        "understood": measured.understood,
+        "rows_without_crank_angle": measured.without_angle,
+        "crank_angle_from_time": measured.by_time,
+        "left_out": list(measured.left_out),
+        "curves": {deviation.name: _deviation_entry(deviation) for deviation in found_deviations},
+    }
 
 
 def _deviation_entry(deviation: Deviation) -> dict[str, Any]:

@@ -27,50 +27,30 @@ from ....objectives.machine_needs import SPEED
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ...text.tables import finite_or_none
-from ..peaks import Peak, lengths_row, peak
-from ..record_types import Keys, Note, NullIfLocked, PeakAngle
+from ..peaks import lengths_row, peak
+from ..record_types import Note, NullIfLocked, PeakAngle, Record
 
 Moving = Annotated[float | None, Note("null where friction locks or may jam the linkage, and without a crank speed")]
 
 
-def _peak_and_angle(name: str, unit: str, kind: Any) -> dict[str, Any]:
-    return {
-        f"{name}_{unit}": (kind, lambda peaks, *_: finite_or_none(peaks[name].value)),
-        f"{name}_angle_deg": (PeakAngle, lambda peaks, *_: finite_or_none(peaks[name].degrees)),
-    }
+class Motor(Record):
+    """Torque, power and inertia that a motor must drive; with several cylinders, totals."""
+
+    peak_torque_Nm: NullIfLocked
+    peak_torque_angle_deg: PeakAngle
+    rms_torque_Nm: Annotated[float | None, Note("over time; null where friction locks or may jam the linkage")]
+    mean_torque_Nm: Annotated[float | None, Note("over the crank angle; null where friction locks the linkage")]
+    peak_power_W: Moving
+    peak_power_angle_deg: PeakAngle
+    mean_power_W: Moving
+    greatest_reflected_inertia_kg_m2: float
+    greatest_reflected_inertia_angle_deg: PeakAngle
+    least_reflected_inertia_kg_m2: float
+    least_reflected_inertia_angle_deg: PeakAngle
+    mean_reflected_inertia_kg_m2: float
+    """Mean over the crank angle."""
 
 
-_MOTOR = Keys(
-    "Motor",
-    "Torque, power and inertia that a motor must drive; with several cylinders, totals.",
-    {
-        **_peak_and_angle("peak_torque", "Nm", NullIfLocked),
-        "rms_torque_Nm": (
-            Annotated[float | None, Note("over time; null where friction locks or may jam the linkage")],
-            lambda _, averages, __: finite_or_none(averages.rms[0]),
-        ),
-        "mean_torque_Nm": (
-            Annotated[float | None, Note("over the crank angle; null where friction locks the linkage")],
-            lambda _, averages, __: finite_or_none(averages.mean[0]),
-        ),
-        **_peak_and_angle("peak_power", "W", Moving),
-        "mean_power_W": (
-            Moving,
-            lambda _, averages, mechanism: (
-                finite_or_none(mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0])
-                if SPEED.is_met(mechanism)
-                else None
-            ),
-        ),
-        **_peak_and_angle("greatest_reflected_inertia", "kg_m2", float),
-        **_peak_and_angle("least_reflected_inertia", "kg_m2", float),
-        "mean_reflected_inertia_kg_m2": (
-            Annotated[float, Note("Mean over the crank angle.")],
-            lambda peaks, *_: peaks["mean_reflected_inertia"],
-        ),
-    },
-)
-Motor = Annotated[dict[str, Any], _MOTOR]
 _SAMPLES = 2048
 _MOST_DIPS = 64  # more minima than 24 cylinders have; with constant inertia every sample is one
 
@@ -83,15 +63,26 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Motor:
     totals.
     """
     design = lengths_row(linkage)
+    signals = (Signal.TORQUE, Signal.POWER, Signal.REFLECTED_INERTIA)
+    torque, power, greatest = (peak(mechanism, signal, linkage) for signal in signals)
+    averages, moves = torque_averages(mechanism, design), SPEED.is_met(mechanism)
+
     least, least_angle = _least_reflected_inertia(mechanism, linkage)
-    peaks = {
-        "peak_torque": peak(mechanism, Signal.TORQUE, linkage),
-        "peak_power": peak(mechanism, Signal.POWER, linkage) if SPEED.is_met(mechanism) else Peak(math.nan, math.nan),
-        "greatest_reflected_inertia": peak(mechanism, Signal.REFLECTED_INERTIA, linkage),
-        "least_reflected_inertia": Peak(least, math.degrees(least_angle)),
-        "mean_reflected_inertia": float(signal_averages(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
+    mean_power = mean_speed_ratio(mechanism) * mechanism.speed * averages.mean[0]
+    return {
+        "peak_torque_Nm": finite_or_none(torque.value),
+        "peak_torque_angle_deg": finite_or_none(torque.degrees),
+        "rms_torque_Nm": finite_or_none(averages.rms[0]),
+        "mean_torque_Nm": finite_or_none(averages.mean[0]),
+        "peak_power_W": finite_or_none(power.value) if moves else None,
+        "peak_power_angle_deg": finite_or_none(power.degrees) if moves else None,
+        "mean_power_W": finite_or_none(mean_power) if moves else None,
+        "greatest_reflected_inertia_kg_m2": greatest.value,
+        "greatest_reflected_inertia_angle_deg": greatest.degrees,
+        "least_reflected_inertia_kg_m2": least,
+        "least_reflected_inertia_angle_deg": math.degrees(least_angle),
+        "mean_reflected_inertia_kg_m2": float(signal_averages(mechanism, Signal.REFLECTED_INERTIA, design).mean[0]),
     }
-    return _MOTOR.of(peaks, torque_averages(mechanism, design), mechanism)
 
 
 def _least_reflected_inertia(mechanism: Mechanism, linkage: Linkage) -> tuple[float, float]:

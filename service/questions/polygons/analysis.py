@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,8 +24,30 @@ from ...render.blocks import (
     value_from_record,
 )
 from ...render.numerals import format_number
-from ..record_types import Keys, Note
+from ..record_types import Record
 from . import AT
+
+
+class BranchPolygons(Record):
+    """Vertices by name, each with x and y, and the rates of the rod."""
+
+    position_mm: dict[str, list[float]]
+    velocity_m_s: dict[str, list[float]]
+    acceleration_m_s2: dict[str, list[float]]
+    rod_velocity_rad_s: float
+    rod_acceleration_rad_s2: float
+
+
+class PolygonNumbers(Record):
+    """Kinematic polygons at one crank angle, on both branches."""
+
+    crank_angle_deg: float
+    speed_rad_s: float
+    """1 if the crank has no speed."""
+    acceleration_rad_s2: float
+    open: BranchPolygons
+    crossed: BranchPolygons
+
 
 _BRANCHES: tuple[Branch, ...] = ("open", "crossed")
 _POLYGONS = (
@@ -34,39 +56,6 @@ _POLYGONS = (
     ("acceleration", Polygons.ACCELERATION, ACCELERATION),
 )
 _COMMON = {"position": 1, "velocity": 1, "acceleration": 2}  # the last vertex of the crank, which both branches share
-
-
-_BRANCH = Keys(
-    "BranchPolygons",
-    "Vertices by name, each with x and y, and the rates of the rod.",
-    {
-        **{
-            f"{name}{kind.metric.suffix}": (
-                dict[str, list[float]],
-                lambda drawn, name=name, vertices=vertices, kind=kind: dict(
-                    zip(vertices, (kind.metric.factor * getattr(drawn, name)).tolist(), strict=True)
-                ),
-            )
-            for name, vertices, kind in _POLYGONS
-        },
-        "rod_velocity_rad_s": (float, lambda drawn: float(drawn.rod_velocity)),
-        "rod_acceleration_rad_s2": (float, lambda drawn: float(drawn.rod_acceleration)),
-    },
-)
-BranchPolygons = Annotated[dict[str, Any], _BRANCH]
-PolygonNumbers = Annotated[
-    dict[str, Any],
-    Keys(
-        "PolygonNumbers",
-        "Kinematic polygons at one crank angle, on both branches.",
-        {
-            "crank_angle_deg": float,
-            "speed_rad_s": Annotated[float, Note("1 if the crank has no speed.")],
-            "acceleration_rad_s2": float,
-            **dict.fromkeys(_BRANCHES, BranchPolygons),
-        },
-    ),
-]
 
 
 def polygons_by_branch(
@@ -88,7 +77,22 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, crank_angle: float = AT.d
         "crank_angle_deg": math.degrees(crank_angle),
         "speed_rad_s": speed,
         "acceleration_rad_s2": mechanism.acceleration,
-        **{branch: _BRANCH.of(drawn) for branch, drawn in by_branch.items()},
+        "open": _vertices(by_branch["open"]),
+        "crossed": _vertices(by_branch["crossed"]),
+    }
+
+
+def _vertices(drawn: Polygons) -> BranchPolygons:
+    position, velocity, acceleration = (
+        dict(zip(vertices, (kind.metric.factor * getattr(drawn, name)).tolist(), strict=True))
+        for name, vertices, kind in _POLYGONS
+    )
+    return {
+        "position_mm": position,
+        "velocity_m_s": velocity,
+        "acceleration_m_s2": acceleration,
+        "rod_velocity_rad_s": float(drawn.rod_velocity),
+        "rod_acceleration_rad_s2": float(drawn.rod_acceleration),
     }
 
 

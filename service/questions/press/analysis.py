@@ -5,7 +5,7 @@ The force is static and frictionless, by virtual work: F = T / |x'| with the sli
 
 import math
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ....objectives.peak_torque import PEAK_TORQUE
 from ...figures.panel_figure import Line, Panel, PanelFigure
 from ...render.blocks import Block, NamedNumber, Table, column, named_number, note, number_list, values_from_record
 from ..peaks import lengths_row
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
 _ROWS = 10
 _SAMPLES = 200
@@ -30,40 +30,26 @@ Timed = Annotated[float | None, Note("null without a constant crank speed")]
 Dwelling = Annotated[float | None, Note("null without a dwell distance")]
 
 
-_PRESS = Keys(
-    "Press",
-    "Force, speed, work and dwell of a press before a dead centre, with lists over the distance to it.",
-    {
-        "dead_centre": (Literal["inner", "outer"], lambda mechanism, **_: mechanism.slider.dead_centre),
-        "rated_torque_Nm": (float, lambda torque, **_: torque),
-        "torque_is_peak_of_design": (
-            Annotated[bool, Note("True if no rated torque was given.")],
-            lambda rated_torque, **_: rated_torque is None,
-        ),
-        "touch_distance_mm": (float, lambda touch, **_: LENGTH.metric.factor * touch),
-        "touch_angle_deg": (float, lambda angles, **_: math.degrees(angles[-1])),
-        "touch_speed_m_s": (Timed, lambda speed, travels, **_: speed * float(travels[-1]) if speed else None),
-        "touch_force_N": (float, lambda torque, travels, **_: torque / float(travels[-1])),
-        "work_J": (
-            Annotated[float, Note("Work of the rated torque from there to the dead centre.")],
-            lambda torque, angles, **_: torque * float(angles[-1]),
-        ),
-        "dwell_distance_mm": (Dwelling, lambda dwell, **_: None if dwell is None else LENGTH.metric.factor * dwell),
-        "dwell_angle_deg": (Dwelling, lambda dwelling, **_: None if dwelling is None else math.degrees(dwelling)),
-        "dwell_time_s": (
-            Annotated[float | None, Note("null without a dwell distance or a constant crank speed")],
-            lambda dwelling, speed, **_: None if dwelling is None or not speed else dwelling / speed,
-        ),
-        "distances_mm": (list[float], lambda distances, **_: (LENGTH.metric.factor * distances).tolist()),
-        "angles_deg": (list[float], lambda angles, **_: np.degrees(angles).tolist()),
-        "forces_N": (list[float], lambda torque, travels, **_: (torque / travels).tolist()),
-        "speeds_m_s": (
-            Annotated[list[float] | None, Note("null without a constant crank speed")],
-            lambda speed, travels, **_: (speed * travels).tolist() if speed else None,
-        ),
-    },
-)
-Press = Annotated[dict[str, Any], _PRESS]
+class Press(Record):
+    """Force, speed, work and dwell of a press before a dead centre, with lists over the distance to it."""
+
+    dead_centre: Literal["inner", "outer"]
+    rated_torque_Nm: float
+    torque_is_peak_of_design: bool
+    """True if no rated torque was given."""
+    touch_distance_mm: float
+    touch_angle_deg: float
+    touch_speed_m_s: Timed
+    touch_force_N: float
+    work_J: float
+    """Work of the rated torque from there to the dead centre."""
+    dwell_distance_mm: Dwelling
+    dwell_angle_deg: Dwelling
+    dwell_time_s: Annotated[float | None, Note("null without a dwell distance or a constant crank speed")]
+    distances_mm: list[float]
+    angles_deg: list[float]
+    forces_N: list[float]
+    speeds_m_s: Annotated[list[float] | None, Note("null without a constant crank speed")]
 
 
 def numbers(
@@ -84,19 +70,27 @@ def numbers(
     touch, torque = _touch_distance(mechanism, touch_distance), _rated_or_peak_torque(mechanism, linkage, rated_torque)
     distances = touch * np.arange(1, _ROWS + 1) / _ROWS
     angles, travels = _angles_before_dead_centre(mechanism, linkage, distances)
+    speed = _crank_speed(mechanism)
+    speeds = speed * travels if speed else None
     dwell = mechanism.slider.dwell if dwell_distance is None else dwell_distance
-    return _PRESS.of(
-        mechanism=mechanism,
-        touch=touch,
-        torque=torque,
-        rated_torque=rated_torque,
-        distances=distances,
-        angles=angles,
-        travels=travels,
-        speed=_crank_speed(mechanism),
-        dwell=dwell,
-        dwelling=None if dwell is None else _dwell_angle(mechanism, linkage, dwell),
-    )
+    dwelling = None if dwell is None else _dwell_angle(mechanism, linkage, dwell)
+    return {
+        "dead_centre": mechanism.slider.dead_centre,
+        "rated_torque_Nm": torque,
+        "torque_is_peak_of_design": rated_torque is None,
+        "touch_distance_mm": LENGTH.metric.factor * touch,
+        "touch_angle_deg": math.degrees(angles[-1]),
+        "touch_speed_m_s": None if speeds is None else float(speeds[-1]),
+        "touch_force_N": torque / float(travels[-1]),
+        "work_J": torque * float(angles[-1]),
+        "dwell_distance_mm": None if dwell is None else LENGTH.metric.factor * dwell,
+        "dwell_angle_deg": None if dwelling is None else math.degrees(dwelling),
+        "dwell_time_s": None if dwelling is None or not speed else dwelling / speed,
+        "distances_mm": (LENGTH.metric.factor * distances).tolist(),
+        "angles_deg": np.degrees(angles).tolist(),
+        "forces_N": (torque / travels).tolist(),
+        "speeds_m_s": None if speeds is None else speeds.tolist(),
+    }
 
 
 def _crank_speed(mechanism: Mechanism) -> float:

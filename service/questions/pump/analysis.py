@@ -1,7 +1,7 @@
 """Delivery of pumps and compressors: mean flow, ripple over the cycle, torque from pressure only."""
 
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -20,28 +20,18 @@ from ....objectives.quantity import Quantity
 from ...figures.panel_figure import FAINT, Line, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, named_number, number_list
 from ..peaks import lengths_row
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 from ..static_forces.analysis import massless_mechanism
 
-_DELIVERY = Keys(
-    "Delivery",
-    "Total delivery of all cylinders, and the torque from pressure only.",
-    {
-        "flow_L_min": (
-            Annotated[float, Note("Mean over a revolution; gas is measured at suction pressure.")],
-            lambda mechanism, _, linkage: VOLUME_FLOW.metric.factor * _evaluate_quantity(FLOW, mechanism, linkage),
-        ),
-        "flow_ripple": (
-            Annotated[float | None, Note("of a liquid, over the mean; null for gas and along a speed profile")],
-            lambda mechanism, _, linkage: (
-                _evaluate_quantity(FLOW_RIPPLE, mechanism, linkage) if _has_ripple(mechanism) else None
-            ),
-        ),
-        "mean_torque_Nm": (float, lambda _, alone, linkage: _evaluate_quantity(MEAN_TORQUE, alone, linkage)),
-        "peak_torque_Nm": (float, lambda _, alone, linkage: _evaluate_quantity(PEAK_TORQUE, alone, linkage)),
-    },
-)
-Delivery = Annotated[dict[str, Any], _DELIVERY]
+
+class Delivery(Record):
+    """Total delivery of all cylinders, and the torque from pressure only."""
+
+    flow_L_min: float
+    """Mean over a revolution; gas is measured at suction pressure."""
+    flow_ripple: Annotated[float | None, Note("of a liquid, over the mean; null for gas and along a speed profile")]
+    mean_torque_Nm: float
+    peak_torque_Nm: float
 
 
 def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
@@ -53,7 +43,13 @@ def numbers(mechanism: Mechanism, linkage: Linkage) -> Delivery:
     reason = FLOW.undefined_because([mechanism])
     if reason:
         raise InputError(reason)
-    return _DELIVERY.of(mechanism, _with_pressures_only(mechanism), linkage)
+    alone = _with_pressures_only(mechanism)
+    return {
+        "flow_L_min": VOLUME_FLOW.metric.factor * _evaluate_quantity(FLOW, mechanism, linkage),
+        "flow_ripple": _evaluate_quantity(FLOW_RIPPLE, mechanism, linkage) if _has_ripple(mechanism) else None,
+        "mean_torque_Nm": _evaluate_quantity(MEAN_TORQUE, alone, linkage),
+        "peak_torque_Nm": _evaluate_quantity(PEAK_TORQUE, alone, linkage),
+    }
 
 
 def _evaluate_quantity(quantity: Quantity, mechanism: Mechanism, linkage: Linkage) -> float:

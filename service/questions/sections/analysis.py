@@ -1,52 +1,40 @@
 """Widths and depths of the crank and the rod for minimum mass of one design: numbers and text."""
 
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Any
 
 from ....model.errors import InputError
-from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
 from ....optimise.problem.problem import Problem
 from ....optimise.sizing.sections import size_sections
 from ...render.blocks import Block, Sentence, Table, Value, column, sentence, value_from_record, words
-from ..record_types import Keys, Note
+from ..record_types import Record
 
-_SECTIONS = Keys(
-    "Sections",
-    "Rectangular bars of minimum mass.",
-    {
-        **{
-            f"{name}_mm": (float, lambda _, linkage, name=name: 1e3 * float(getattr(linkage, name)))
-            for name in DIMENSIONS
-        },
-        **{
-            f"{bar}_{side}_mm": (
-                float,
-                lambda sections, _, bar=bar, side=side: 1e3 * getattr(getattr(sections, bar), side),
-            )
-            for bar in ("crank", "rod")
-            for side in ("width", "depth")
-        },
-        "crank_mass_kg": (float, lambda sections, linkage: sections.crank.mass(float(linkage.crank))),
-        "rod_mass_kg": (float, lambda sections, linkage: sections.rod.mass(float(linkage.rod))),
-        "mass_kg": (Annotated[float, Note("Of both.")], lambda sections, _: sections.mass),
-        "settled": (
-            Annotated[bool, Note("Whether the iteration between sections and dynamics has converged.")],
-            lambda sections, _: sections.is_converged,
-        ),
-        "iterations": (int, lambda sections, _: sections.iterations),
-        "utilisation": (
-            Annotated[dict[str, float], Note("Utilisation of each limit: 1 if it is reached.")],
-            lambda sections, _: sections.utilisation,
-        ),
-        "mass_percent_per_percent": (
-            Annotated[dict[str, float], Note("Mass saved by raising each limit by 1 %.")],
-            lambda sections, _: sections.sensitivity,
-        ),
-    },
-)
-Sections = Annotated[dict[str, Any], _SECTIONS]
+
+class Sections(Record):
+    """Rectangular bars of minimum mass."""
+
+    crank_mm: float
+    rod_mm: float
+    offset_mm: float
+    crank_width_mm: float
+    crank_depth_mm: float
+    rod_width_mm: float
+    rod_depth_mm: float
+    crank_mass_kg: float
+    rod_mass_kg: float
+    mass_kg: float
+    """Of both."""
+    settled: bool
+    """Whether the iteration between sections and dynamics has converged."""
+    iterations: int
+    utilisation: dict[str, float]
+    """Utilisation of each limit: 1 if it is reached."""
+    mass_percent_per_percent: dict[str, float]
+    """Mass saved by raising each limit by 1 %."""
+
+
 _ACTIVE = 1e-3  # percent of mass per percent of a limit, from which a remark is worthwhile
 
 
@@ -61,7 +49,23 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, problem: Problem | None, 
         )
     pins = {pin: getattr(mechanism.strength, pin) for pin in ("crank_pivot", "crank_pin", "slider_pin")}
     sections = size_sections(mechanism, linkage, mechanism.strength.material, replace(problem.sections, **pins))
-    return _SECTIONS.of(sections, linkage)
+    crank, rod = float(linkage.crank), float(linkage.rod)
+    return {
+        "crank_mm": 1e3 * crank,
+        "rod_mm": 1e3 * rod,
+        "offset_mm": 1e3 * float(linkage.offset),
+        "crank_width_mm": 1e3 * sections.crank.width,
+        "crank_depth_mm": 1e3 * sections.crank.depth,
+        "rod_width_mm": 1e3 * sections.rod.width,
+        "rod_depth_mm": 1e3 * sections.rod.depth,
+        "crank_mass_kg": sections.crank.mass(crank),
+        "rod_mass_kg": sections.rod.mass(rod),
+        "mass_kg": sections.mass,
+        "settled": sections.is_converged,
+        "iterations": sections.iterations,
+        "utilisation": sections.utilisation,
+        "mass_percent_per_percent": sections.sensitivity,
+    }
 
 
 def blocks(numbers: Sections) -> list[Block]:

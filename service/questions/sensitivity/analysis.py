@@ -16,7 +16,7 @@ from ....objectives.tables.sensitivity import sensitivity
 from ...render.blocks import Block, Table, Text, Unit, Value, column, heading, note, words
 from ...runs.result import json_ready, rows_of_columns
 from ..peaks import lengths_row
-from ..record_types import Keys, Note
+from ..record_types import Keys, Note, Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,10 +40,12 @@ _Change = Annotated[
 ]
 
 
-Sensitivity = Annotated[
-    dict[str, Any],
-    Keys("Sensitivity", "Change of every quantity with each dimension.", {"quantities": list[_Change]}),
-]
+class Sensitivity(Record):
+    """Change of every quantity with each dimension."""
+
+    quantities: list[_Change]
+
+
 _SAME = 1e-9  # relative difference below which derivatives are equal
 _LEFT_OUT = ("inner_dead_centre_position", "outer_dead_centre_position")
 """Rows omitted from the text, besides plain quantities: they follow directly from the dimensions."""

@@ -15,7 +15,50 @@ from ....objectives.kinds import ANGULAR_SPEED, TIME, TORQUE
 from ...figures.panel_figure import FAINT, Line, Panel, PanelFigure, crank_angle_panel
 from ...render.blocks import Block, Table, Unit, column, sentence, value_from_record
 from ...render.numerals import format_number
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
+
+
+class SteadyNumbers(Record):
+    """Steady running, with identical cycles; means are over time."""
+
+    mean_speed_rpm: float
+    least_speed_rpm: float
+    greatest_speed_rpm: float
+    fluctuation: float
+    """Maximum minus minimum speed, relative to the mean."""
+    period_s: float
+    peak_motor_torque_Nm: float
+    """On the crank."""
+    peak_torque_Nm: float
+    """Into the mechanism."""
+    mean_power_W: float
+
+
+class Start(Record):
+    """Start from rest at the inner dead centre, and the steady running that it reaches."""
+
+    verdict: Verdict
+    message: str
+    time_s: float
+    turns: float
+    final_speed_rpm: float
+    peak_motor_torque_Nm: float
+    """On the crank."""
+    peak_torque_Nm: float
+    """Into the mechanism."""
+    peak_power_W: float
+    turned_back_s: list[float]
+    """Times at which the crank reversed."""
+    motor_work_J: float
+    load_work_J: float
+    friction_work_J: float
+    kinetic_energy_gained_J: float
+    potential_energy_gained_J: float
+    energy_imbalance: float
+    """Relative error of the energy balance."""
+    steady: Annotated[SteadyNumbers | None, Note("null where there is no steady running")]
+    why_not_steady: Annotated[str | None, Note("null where there is steady running")]
+
 
 LONGEST = 60.0
 """s; a longer start is simulated to its end only on request"""
@@ -48,67 +91,42 @@ def compute_shared_options(
     return {"cancelled": cancelled}
 
 
-_ON_CRANK = Annotated[float, Note("On the crank.")]
-_INTO_MECHANISM = Annotated[float, Note("Into the mechanism.")]
-STEADY_NUMBERS = Keys(
-    "SteadyNumbers",
-    "Steady running, with identical cycles; means are over time.",
-    {
-        "mean_speed_rpm": (float, lambda running: RPM * running.mean_speed),
-        "least_speed_rpm": (float, lambda running: RPM * float(abs(running.speed).min())),
-        "greatest_speed_rpm": (float, lambda running: RPM * float(abs(running.speed).max())),
-        "fluctuation": (
-            Annotated[float, Note("Maximum minus minimum speed, relative to the mean.")],
-            lambda running: running.fluctuation,
-        ),
-        "period_s": (float, lambda running: running.period),
-        "peak_motor_torque_Nm": (_ON_CRANK, lambda running: float(abs(running.motor_torque).max())),
-        "peak_torque_Nm": (_INTO_MECHANISM, lambda running: float(abs(running.torque).max())),
-        "mean_power_W": (float, lambda running: running.work / running.period),
-    },
-)
-SteadyNumbers = Annotated[dict[str, Any], STEADY_NUMBERS]
-_START = Keys(
-    "Start",
-    "Start from rest at the inner dead centre, and the steady running that it reaches.",
-    {
-        "verdict": (Verdict, lambda run, *_: run.verdict),
-        "message": (str, lambda run, *_: run.message),
-        "time_s": (float, lambda run, *_: float(run.time[-1])),
-        "turns": (float, lambda run, *_: run.turns),
-        "final_speed_rpm": (float, lambda run, *_: RPM * float(run.speed[-1])),
-        "peak_motor_torque_Nm": (_ON_CRANK, lambda run, *_: float(abs(run.motor_torque).max())),
-        "peak_torque_Nm": (_INTO_MECHANISM, lambda run, *_: float(abs(run.torque).max())),
-        "peak_power_W": (float, lambda run, *_: float(abs(run.power).max())),
-        "turned_back_s": (
-            Annotated[list[float], Note("Times at which the crank reversed.")],
-            lambda run, *_: list(run.turned_back),
-        ),
-        "motor_work_J": (float, lambda run, *_: float(run.motor_work[-1])),
-        "load_work_J": (float, lambda run, *_: float(run.load_work[-1])),
-        "friction_work_J": (float, lambda run, *_: float(run.friction_work[-1])),
-        "kinetic_energy_gained_J": (float, lambda run, *_: float(run.kinetic[-1] - run.kinetic[0])),
-        "potential_energy_gained_J": (float, lambda run, *_: float(run.potential[-1] - run.potential[0])),
-        "energy_imbalance": (
-            Annotated[float, Note("Relative error of the energy balance.")],
-            lambda run, *_: run.energy_balance_error,
-        ),
-        "steady": (
-            Annotated[SteadyNumbers | None, Note("null where there is no steady running")],
-            lambda _, running, __: None if running is None else STEADY_NUMBERS.of(running),
-        ),
-        "why_not_steady": (
-            Annotated[str | None, Note("null where there is steady running")],
-            lambda _, __, reason: reason or None,
-        ),
-    },
-)
-Start = Annotated[dict[str, Any], _START]
-
-
 def numbers(mechanism: Mechanism, linkage: Linkage, **options: Any) -> Start:
-    """Return the record of the start, and of the steady running."""
-    return _START.of(*simulate_start(mechanism, linkage, **options))
+    """Return the start from rest and the steady running, ready for JSON. options: options of `simulate`."""
+    run, running, reason = simulate_start(mechanism, linkage, **options)
+    return {
+        "verdict": run.verdict,
+        "message": run.message,
+        "time_s": float(run.time[-1]),
+        "turns": run.turns,
+        "final_speed_rpm": RPM * float(run.speed[-1]),
+        "peak_motor_torque_Nm": float(abs(run.motor_torque).max()),
+        "peak_torque_Nm": float(abs(run.torque).max()),
+        "peak_power_W": float(abs(run.power).max()),
+        "turned_back_s": list(run.turned_back),
+        "motor_work_J": float(run.motor_work[-1]),
+        "load_work_J": float(run.load_work[-1]),
+        "friction_work_J": float(run.friction_work[-1]),
+        "kinetic_energy_gained_J": float(run.kinetic[-1] - run.kinetic[0]),
+        "potential_energy_gained_J": float(run.potential[-1] - run.potential[0]),
+        "energy_imbalance": run.energy_balance_error,
+        "steady": None if running is None else steady_numbers(running),
+        "why_not_steady": reason or None,
+    }
+
+
+def steady_numbers(running: SteadyRunning) -> SteadyNumbers:
+    """Return the numbers of steady running: speeds, fluctuation, period, torques and mean power."""
+    return {
+        "mean_speed_rpm": RPM * running.mean_speed,
+        "least_speed_rpm": RPM * float(abs(running.speed).min()),
+        "greatest_speed_rpm": RPM * float(abs(running.speed).max()),
+        "fluctuation": running.fluctuation,
+        "period_s": running.period,
+        "peak_motor_torque_Nm": float(abs(running.motor_torque).max()),
+        "peak_torque_Nm": float(abs(running.torque).max()),
+        "mean_power_W": running.work / running.period,
+    }
 
 
 def blocks(numbers: Start) -> list[Block]:

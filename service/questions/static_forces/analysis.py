@@ -1,9 +1,8 @@
 """Static forces of one design over the cycle: loads only, without masses, gravity and friction."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 
@@ -32,48 +31,32 @@ from ...render.blocks import (
     values_from_record,
     words,
 )
-from ...text.tables import finite_or_none
 from ..peaks import peak
-from ..record_types import Keys, Note, PeakAngle
+from ..record_types import Note, PeakAngle, Record
 
 
-def _peak_and_angle(name: str, unit: str) -> dict[str, tuple[Any, Callable[..., float]]]:
-    return {
-        f"peak_{name}_{unit}": (float, lambda peaks, **_: peaks[name].value),
-        f"peak_{name}_angle_deg": (PeakAngle, lambda peaks, **_: peaks[name].degrees),
-    }
+class StaticForces(Record):
+    """Forces of the loads only: peaks over the cycle, and lists at crank angles every 30 deg."""
+
+    load: str
+    """Loads on the slider."""
+    peak_rod_force_N: float
+    peak_rod_force_angle_deg: PeakAngle
+    peak_guide_reaction_N: float
+    peak_guide_reaction_angle_deg: PeakAngle
+    peak_crank_torque_Nm: float
+    peak_crank_torque_angle_deg: PeakAngle
+    least_mechanical_advantage: float
+    """Ratio of slider load to tangential crank pin force."""
+    least_mechanical_advantage_angle_deg: PeakAngle
+    crank_angle_deg: list[float]
+    load_N: list[float]
+    rod_force_N: list[float]
+    guide_reaction_N: list[float]
+    crank_torque_Nm: list[float]
+    mechanical_advantage: list[Annotated[float | None, Note("null at a dead centre, where it is unbounded")]]
 
 
-def _list_of(name: str) -> tuple[Any, Callable[..., list[float]]]:
-    # Adding zero turns a negative zero into a positive one.
-    return list[float], lambda forces, **_: (getattr(forces, name) + 0.0).tolist()
-
-
-_FORCES = Keys(
-    "StaticForces",
-    "Forces of the loads only: peaks over the cycle, and lists at crank angles every 30 deg.",
-    {
-        "load": (Annotated[str, Note("Loads on the slider.")], lambda load, **_: load),
-        **_peak_and_angle("rod_force", "N"),
-        **_peak_and_angle("guide_reaction", "N"),
-        **_peak_and_angle("crank_torque", "Nm"),
-        "least_mechanical_advantage": (
-            Annotated[float, Note("Ratio of slider load to tangential crank pin force.")],
-            lambda rate, linkage, **_: float(linkage.crank) / rate.value,
-        ),
-        "least_mechanical_advantage_angle_deg": (PeakAngle, lambda rate, **_: rate.degrees),
-        "crank_angle_deg": (list[float], lambda degrees, **_: [float(angle) for angle in degrees]),
-        "load_N": (list[float], lambda loads, **_: loads.tolist()),
-        "rod_force_N": _list_of("rod_force"),
-        "guide_reaction_N": _list_of("guide_reaction"),
-        "crank_torque_Nm": _list_of("crank_torque"),
-        "mechanical_advantage": (
-            list[Annotated[float | None, Note("null at a dead centre, where it is unbounded")]],
-            lambda forces, **_: list(map(finite_or_none, forces.mechanical_advantage)),
-        ),
-    },
-)
-StaticForces = Annotated[dict[str, Any], _FORCES]
 _JOB_LOADS = "loads of the job"
 _STEP = 30
 _MOST_ADVANTAGE = 10.0  # larger values show only that a dead centre is near
@@ -111,23 +94,32 @@ def numbers(mechanism: Mechanism, linkage: Linkage, *, load: float | None = None
     """
     machine = massless_mechanism(mechanism, load)
     linkage = Linkage(linkage.crank, linkage.rod, linkage.offset, mechanism.branch)
-    signals = {
-        "rod_force": Signal.SLIDER_PIN_FORCE,
-        "guide_reaction": Signal.GUIDE_FORCE,
-        "crank_torque": Signal.TORQUE,
-    }
+    torque, guide = peak(machine, Signal.TORQUE, linkage), peak(machine, Signal.GUIDE_FORCE, linkage)
+    rod = peak(machine, Signal.SLIDER_PIN_FORCE, linkage)
+    rate = peak(replace(machine, speed=1.0), Signal.SLIDER_SPEED, linkage)
     degrees = np.arange(0, 360 * cycle_turns(machine), _STEP)
     loads = cycle(machine, linkage, np.radians(degrees)).load
+    at = static_forces(linkage, np.radians(degrees), load=loads)
+    advantage = [value if math.isfinite(value) else None for value in at.mechanical_advantage.tolist()]
     uses_job_loads = load is None and bool(_slider_loads(mechanism))
-    return _FORCES.of(
-        load=_JOB_LOADS if uses_job_loads else f"{-1.0 if load is None else load:g} N, constant, positive outward",
-        peaks={name: peak(machine, signal, linkage) for name, signal in signals.items()},
-        rate=peak(replace(machine, speed=1.0), Signal.SLIDER_SPEED, linkage),
-        linkage=linkage,
-        degrees=degrees,
-        loads=loads,
-        forces=static_forces(linkage, np.radians(degrees), load=loads),
-    )
+    return {
+        "load": _JOB_LOADS if uses_job_loads else f"{-1.0 if load is None else load:g} N, constant, positive outward",
+        "peak_rod_force_N": rod.value,
+        "peak_rod_force_angle_deg": rod.degrees,
+        "peak_guide_reaction_N": guide.value,
+        "peak_guide_reaction_angle_deg": guide.degrees,
+        "peak_crank_torque_Nm": torque.value,
+        "peak_crank_torque_angle_deg": torque.degrees,
+        "least_mechanical_advantage": float(linkage.crank) / rate.value,
+        "least_mechanical_advantage_angle_deg": rate.degrees,
+        "crank_angle_deg": [float(angle) for angle in degrees],
+        "load_N": loads.tolist(),
+        # Adding zero turns a negative zero into a positive one.
+        "rod_force_N": (at.rod_force + 0.0).tolist(),
+        "guide_reaction_N": (at.guide_reaction + 0.0).tolist(),
+        "crank_torque_Nm": (at.crank_torque + 0.0).tolist(),
+        "mechanical_advantage": advantage,
+    }
 
 
 def blocks(numbers: StaticForces) -> list[Block]:

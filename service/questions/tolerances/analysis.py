@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from ....model.arrays import Array
 from ....model.errors import AssemblyError, InputError
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Mechanism
@@ -19,7 +20,7 @@ from ....model.tolerance.monte_carlo import simulate, summarise_sample, variance
 from ....objectives.kinds import LENGTH, System
 from ...render.blocks import Block, Table, Text, Value, column, heading, joined, note, value_from_record, words
 from ..peaks import lengths_row
-from ..record_types import Keys, Note
+from ..record_types import Note, Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,101 +32,64 @@ _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
 BINS = 40  # of the histogram
 
 
-_CONTRIBUTION = Keys(
-    "Contribution",
-    "Contribution of one tolerance to the position error at the crank angle of the worst case.",
-    {
-        "source": (str, lambda name, *_: name),
-        "limit_mm": (
-            Annotated[float | None, Note("null for the crank angle")],
-            lambda name, limit, *_: None if name == "crank angle" else 1e3 * float(limit),
-        ),
-        "limit_deg": (
-            Annotated[float | None, Note("of the crank angle; null for lengths")],
-            lambda name, limit, *_: float(np.degrees(limit)) if name == "crank angle" else None,
-        ),
-        "contribution_mm": (float, lambda _, __, part, *___: 1e3 * float(part)),
-        "share_of_worst_case_percent": (float, lambda _, __, ___, of_worst, ____: float(of_worst)),
-        "share_of_variance_percent": (float, lambda _, __, ___, ____, of_variance: float(of_variance)),
-    },
-)
-Contribution = Annotated[dict[str, Any], _CONTRIBUTION]
-Histogram = Annotated[
-    dict[str, Any],
-    Keys(
-        "Histogram",
-        "Machines by maximum error, in equal bins from 0.",
-        {"edges_mm": list[float], "counts": list[int]},
-    ),
-]
-_MONTE_CARLO = Keys(
-    "MonteCarlo",
-    "Maximum errors of random machines within the tolerances.",
-    {
-        "samples": (int, lambda simulation, *_: len(simulation.greatest)),
-        "seed": (int, lambda _, seed, __: seed),
-        "stuck": (
-            Annotated[int, Note("Machines that do not rotate fully.")],
-            lambda simulation, *_: simulation.stuck,
-        ),
-        "mean_greatest_mm": (Turning, lambda _, __, spread: None if spread is None else 1e3 * spread.mean),
-        "standard_deviation_greatest_mm": (
-            Turning,
-            lambda _, __, spread: None if spread is None else 1e3 * spread.deviation,
-        ),
-        "percentiles_greatest_mm": (
-            Annotated[
-                dict[str, float],
-                Note("By percentage of machines; empty if at most one machine rotates fully."),
-            ],
-            lambda _, __, spread: {
-                f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
-            },
-        ),
-        "histogram": (
-            Annotated[Histogram | None, Note("null if no machine rotates, or none has an error")],
-            lambda simulation, *_: _error_histogram(simulation.greatest),
-        ),
-    },
-)
-MonteCarlo = Annotated[dict[str, Any], _MONTE_CARLO]
-_YIELD = Keys(
-    "Yield",
-    "Fraction of random machines within a limit, with its confidence interval.",
-    {
-        "limit": (
-            Annotated[str, Note("Origin of the limit: root-sum-square, worst case, or given.")],
-            lambda name, *_: name,
-        ),
-        "limit_mm": (float, lambda _, limit, __: 1e3 * limit),
-        "yield_percent": (float, lambda _, __, share: 100.0 * share.share),
-        "yield_low_percent": (float, lambda _, __, share: 100.0 * share.low),
-        "yield_high_percent": (float, lambda _, __, share: 100.0 * share.high),
-        "confidence_percent": (float, lambda _, __, share: 100.0 * share.confidence),
-    },
-)
-Yield = Annotated[dict[str, Any], _YIELD]
-PositionError = Annotated[
-    dict[str, Any],
-    Keys(
-        "PositionError",
-        "Maximum position error over the counted part of the cycle, and its sources.",
-        {
-            "worst_case_mm": Annotated[float, Note("To first order.")],
-            "worst_case_angle_deg": float,
-            "exact_worst_case_mm": Exact,
-            "exact_worst_case_angle_deg": Exact,
-            "root_sum_square_mm": float,
-            "root_sum_square_angle_deg": float,
-            "contributions": list[Contribution],
-            "monte_carlo": MonteCarlo,
-            "yields": Annotated[
-                list[Yield],
-                Note("At the given limit, or else at the root-sum-square and at the worst case."),
-            ],
-        },
-    ),
-]
+class Contribution(Record):
+    """Contribution of one tolerance to the position error at the crank angle of the worst case."""
+
+    source: str
+    limit_mm: Annotated[float | None, Note("null for the crank angle")]
+    limit_deg: Annotated[float | None, Note("of the crank angle; null for lengths")]
+    contribution_mm: float
+    share_of_worst_case_percent: float
+    share_of_variance_percent: float
+
+
+class Histogram(Record):
+    """Machines by maximum error, in equal bins from 0."""
+
+    edges_mm: list[float]
+    counts: list[int]
+
+
+class MonteCarlo(Record):
+    """Maximum errors of random machines within the tolerances."""
+
+    samples: int
+    seed: int
+    stuck: int
+    """Machines that do not rotate fully."""
+    mean_greatest_mm: Turning
+    standard_deviation_greatest_mm: Turning
+    percentiles_greatest_mm: dict[str, float]
+    """By percentage of machines; empty if at most one machine rotates fully."""
+    histogram: Annotated[Histogram | None, Note("null if no machine rotates, or none has an error")]
+
+
+class Yield(Record):
+    """Fraction of random machines within a limit, with its confidence interval."""
+
+    limit: str
+    """Origin of the limit: root-sum-square, worst case, or given."""
+    limit_mm: float
+    yield_percent: float
+    yield_low_percent: float
+    yield_high_percent: float
+    confidence_percent: float
+
+
+class PositionError(Record):
+    """Maximum position error over the counted part of the cycle, and its sources."""
+
+    worst_case_mm: float
+    """To first order."""
+    worst_case_angle_deg: float
+    exact_worst_case_mm: Exact
+    exact_worst_case_angle_deg: Exact
+    root_sum_square_mm: float
+    root_sum_square_angle_deg: float
+    contributions: list[Contribution]
+    monte_carlo: MonteCarlo
+    yields: list[Yield]
+    """At the given limit, or else at the root-sum-square and at the worst case."""
 
 
 def numbers(
@@ -165,14 +129,42 @@ def numbers(
         "root_sum_square_mm": 1e3 * rss,
         "root_sum_square_angle_deg": float(np.degrees(at_square[0])),
         "contributions": [
-            _CONTRIBUTION.of(*source)
-            for source in zip(SOURCES, source_limits, parts[:, 0], of_worst, of_variance, strict=True)
-            if source[1] > 0.0
+            {
+                "source": name,
+                "limit_mm": None if name == "crank angle" else 1e3 * float(source_limits[n]),
+                "limit_deg": float(np.degrees(source_limits[n])) if name == "crank angle" else None,
+                "contribution_mm": 1e3 * float(parts[n, 0]),
+                "share_of_worst_case_percent": float(of_worst[n]),
+                "share_of_variance_percent": float(of_variance[n]),
+            }
+            for n, name in enumerate(SOURCES)
+            if source_limits[n] > 0.0
         ],
-        "monte_carlo": _MONTE_CARLO.of(simulation, seed, spread),
-        "yields": [
-            _YIELD.of(name, value, yield_within(simulation.greatest, value)) for name, value in deviation_limits.items()
-        ],
+        "monte_carlo": {
+            "samples": len(simulation.greatest),
+            "seed": seed,
+            "stuck": simulation.stuck,
+            "mean_greatest_mm": None if spread is None else 1e3 * spread.mean,
+            "standard_deviation_greatest_mm": None if spread is None else 1e3 * spread.deviation,
+            "percentiles_greatest_mm": {
+                f"{percent:g}": 1e3 * value for percent, value in (() if spread is None else spread.percentiles)
+            },
+            "histogram": _error_histogram(simulation.greatest),
+        },
+        "yields": [_yield_record(simulation.greatest, name, value) for name, value in deviation_limits.items()],
+    }
+
+
+def _yield_record(greatest: Array, name: str, value: float) -> Yield:
+    """Return the fraction of machines with errors within a limit, m, and its confidence interval."""
+    share = yield_within(greatest, value)
+    return {
+        "limit": name,
+        "limit_mm": 1e3 * value,
+        "yield_percent": 100.0 * share.share,
+        "yield_low_percent": 100.0 * share.low,
+        "yield_high_percent": 100.0 * share.high,
+        "confidence_percent": 100.0 * share.confidence,
     }
 
 
