@@ -108,7 +108,7 @@ def _dwell_angle(machine: Mechanism, number: Number) -> Any:
 def _need_distance(name: str) -> Need:
     return Need(
         lambda machine: getattr(machine.slider, name) is not None,
-        f"it needs a {name} distance of the slider; got none; add for example "
+        f"it needs a {name} distance of the slider; got none; for example, add "
         f'[mechanism] slider = {{ mass = "0.8 kg", {name}_distance = "5 mm" }}',
         consequence="undefined",
     )
@@ -121,7 +121,8 @@ TOUCH_SPEED = NearDeadCentre(
     place=235,
     group=Group.MOTION,
     sentence="The slider speed on contact with the workpiece, a given distance before a dead centre.",
-    advice="A press should touch its workpiece gently: 0.1 to 0.5 m/s are usual. A longer rod and an offset change it.",
+    advice="A press should touch its workpiece gently: 0.1 to 0.5 m/s are usual. The length of the rod and the "
+    "offset affect it.",
     formula="|x'| |omega| at x_out - d, or at x_in + d, in the stroke towards the dead centre",
     section="2. Closed forms",
     picture="speed",

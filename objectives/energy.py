@@ -151,7 +151,7 @@ EFFICIENCY = Efficiency(
         "or the work at the crank if the loads drive it, as in an engine. The rest is friction heat in guide and pins."
     ),
     advice=(
-        "It is 0 if friction takes all the work of the loads, and undefined for a design whose loads do no net work, "
+        "It is 0 if friction absorbs all the work of the loads, and undefined for a design whose loads do no net work, "
         "such as masses alone."
     ),
     formula=(

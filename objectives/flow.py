@@ -274,7 +274,7 @@ FLOW_RIPPLE = FlowRipple(
     needs=(
         Need(
             lambda machine: bool(liquid_pumps(machine.with_largest_variables)),
-            'it needs pumps for a liquid; got none; add for example [[load]] bore = "70 mm", suction = "1 bar", '
+            'it needs pumps for a liquid; got none; for example, add [[load]] bore = "70 mm", suction = "1 bar", '
             'discharge = "8 bar", medium = "liquid"',
             consequence="undefined",
         ),

@@ -38,9 +38,9 @@ TRANSMISSION_ANGLE = ClosedFormQuantity(
     group=Group.PROPORTIONS,
     sentence=(
         "The transmission angle is the angle between the rod and the normal of the slider line; its least value "
-        "over the turn says how well the rod pushes the slider along instead of against its guide."
+        "over the turn shows how well the rod pushes the slider along its guide rather than against it."
     ),
-    advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it, offset lowers it.",
+    advice="90 deg is ideal; least values of 30 to 50 deg are usual. A longer rod raises it; an offset lowers it.",
     formula="cos(mu_min) = (r + |e|) / l",
     picture="transmission angle",
     example="40 deg",
@@ -119,7 +119,7 @@ FORCE_TRANSMISSION = ForceTransmission(
     needs=(
         Need(
             _slider_needs_force,
-            "it needs forces along the slider line; got none; add for example "
+            "it needs forces along the slider line; got none; for example, add "
             '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
             consequence="undefined",
         ),

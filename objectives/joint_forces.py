@@ -74,7 +74,7 @@ GUIDE_MOMENT = CyclePeak(
         LOADED,
         Need(
             lambda machine: machine.slider.guide is not None,
-            "it needs the position of the guide; got none; add for example "
+            "it needs the position of the guide; got none; for example, add "
             '[mechanism] slider = { mass = "0.8 kg", guide_distance = "150 mm" }',
             consequence="undefined",
         ),
@@ -139,7 +139,7 @@ PEAK_ROCKING_COUPLE = _peak(
         "The greatest couple about an axis across the shaft with which several cylinders rock the frame within a turn."
     ),
     advice="It depends on the positions of the cylinders along the shaft, measured from the shaft's zero.",
-    formula="max |sum over the cylinders of (-z F_y, z F_x)|, z the place of a cylinder",
+    formula="max |sum over the cylinders of (-z F_y, z F_x)|, z the position of a cylinder",
     picture="shaking force",
     needs=(MOTION, MASSES, COUPLES),
 )

@@ -77,7 +77,7 @@ class LeverQuantity(SwingQuantity):
                     return f"it needs the {words} of the {part}; got none; give [{part}] {name}"
             if self.tolerated:
                 stated = mechanism.with_largest_variables.tolerances.are_stated or lever.cylinder.length_tolerance > 0.0
-                return None if stated else 'it needs tolerances; got none; add for example [tolerances] crank = "1 mm"'
+                return None if stated else 'it needs tolerances; got none; for example, add [tolerances] crank = "1 mm"'
         return Quantity.unmet_need(self, mechanism, consequence)
 
     def _passing(self, mechanism: Mechanism, dimensions: Array) -> tuple[Array, Any]:

@@ -27,7 +27,8 @@ ARM_TIME_RATIO = _form(
     forms=(lambda c, _: arm_time_ratio_at_constant_crank_speed(c),),
     place=360,
     sentence="The time of the arm's slow stroke over that of its fast one, with the crank at constant speed.",
-    advice="A rotating arm has a stroke from one normal of the line between both pivots to the other.",
+    advice="If the arm rotates, a stroke lasts from one crossing of the normal to the line between both pivots to "
+    "the other.",
     formula="(180 deg + a) / (180 deg - a), a = asin((m - e) / M) + asin((m + e) / M), m < M of crank and frame",
     example=1.6,
     better="high",

@@ -55,7 +55,8 @@ CRANK_MASS = _mass(
     closed_form=_crank_mass,
     place=430,
     sentence=(
-        "The mass of the crank without its counterweight. For a crank given by its section, it follows from the size."
+        "The mass of the crank without its counterweight. If the crank is given by its section, it follows from the "
+        "dimensions."
     ),
     formula="rho d (w r + pi w^2 / 4) for a bar",
     picture="crank",
@@ -65,7 +66,7 @@ ROD_MASS = _mass(
     name="rod_mass",
     closed_form=_rod_mass,
     place=432,
-    sentence="The mass of the connecting rod. For a rod given by its section, it follows from the size.",
+    sentence="The mass of the connecting rod. If the rod is given by its section, it follows from the dimensions.",
     formula="rho d (w l + pi w^2 / 4) for a bar",
     picture="rod",
     needs=(ROD_WEIGHS,),

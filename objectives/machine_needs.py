@@ -55,21 +55,21 @@ def _has_mass(machine: Mechanism) -> bool:
 
 
 _defining = partial(Need, consequence="undefined")
-_MASSES = 'it needs masses; got none; add for example [mechanism] slider = { mass = "0.8 kg" }'
+_MASSES = 'it needs masses; got none; for example, add [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
-    "it needs masses that move or weigh, or loads; got none that is not zero; add for example "
+    "it needs masses that move or have weight, or loads; got only zeros; for example, add "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
 _SLIDER_LOADS = _LOADS.replace("or loads;", "or loads on the slider;") + " on the slider"
-_SPEED = 'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"'
+_SPEED = 'it needs a crank speed; got none; for example, add [mechanism] speed = "300 rpm"'
 
 TOLERANCES = _defining(
     lambda machine: machine.with_largest_variables.tolerances.are_stated,
-    'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"',
+    'a position error needs tolerances; got none; for example, add [tolerances] crank = "0.05 mm"',
 )
 FRICTION = Need(
     _has_friction,
-    "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use {instead}",
+    "a self-locking margin needs friction; got none; for example, add [friction] guide = 0.1, or use {instead}",
     consequence="equal",
 )
 SPEED = _defining(lambda machine: machine.with_largest_variables.speed != 0.0, _SPEED)
@@ -98,16 +98,16 @@ WORK = Need(
     may_do_work_over_a_turn,
     "it needs work over a turn, which is zero here for all dimensions; got no friction in joints that carry a "
     "force, no load that always resists (viscous, drag) and none that differs between the strokes; use {instead}, "
-    "or add what the machine works against",
+    "or add the load that the machine works against",
 )
 LOAD_WORK = _defining(
     loads_may_do_work_over_a_turn,
-    "an efficiency needs a load that takes or supplies net work over a cycle; got none; "
-    'add for example [[load]] force = "200 N", opposes = "motion"',
+    "an efficiency needs a load that absorbs or supplies net work over a cycle; got none; "
+    'for example, add [[load]] force = "200 N", opposes = "motion"',
 )
-_RUBS = "got none; add for example [friction] guide = 0.1"
+_RUBS = "got none; for example, add [friction] guide = 0.1"
 _UNLOADED = (
-    "got no inertia force or weight of rod or slider, nor a load on the slider; add for example "
+    "got no inertia force or weight of rod or slider, nor a load on the slider; for example, add "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]] on the slider'
 )
 _HEAT = "it needs friction in loaded joints"
@@ -128,12 +128,12 @@ LOSSES = (
 """Friction, and joints that carry a force; otherwise the efficiency is 1."""
 CYLINDER = _defining(
     lambda machine: bool(cylinder_loads(machine)),
-    "it needs a cylinder; got none; add for example "
+    "it needs a cylinder; got none; for example, add "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )
 COMPRESSOR = _defining(
     lambda machine: bool(compressors(machine)),
-    "it needs a compressor or pump; got none; add for example "
+    "it needs a compressor or pump; got none; for example, add "
     '[[load]] bore = "70 mm", suction = "1 bar", discharge = "8 bar", clearance = 0.05',
 )
 
@@ -149,13 +149,13 @@ def need_of_motor_limit(key: str, example: str) -> Need:
     """Return the need for a limit on the motor. key: key in [drive]. example: its value as in a job."""
     return _defining(
         lambda machine: machine.drive is not None and getattr(machine.drive, key) is not None,
-        f'it needs the {key.replace("_", " ")} of the motor; got none; add for example [drive] {key} = "{example}"',
+        f'it needs the {key.replace("_", " ")} of the motor; got none; for example, add [drive] {key} = "{example}"',
     )
 
 
 DRIVE_TRAIN = _defining(
     lambda machine: machine.drive is not None,
-    "it needs [drive]; got none; add for example [drive] gear_ratio = 5",
+    "it needs [drive]; got none; for example, add [drive] gear_ratio = 5",
 )
 MOTOR_LOADED = Need(
     lambda machine: needs_drive_torque(machine.with_largest_variables) or _rotates_unevenly(machine), _LOADS
@@ -163,7 +163,7 @@ MOTOR_LOADED = Need(
 """Loads on the motor: anything that requires drive torque, or the inertia of a flywheel or a rotor."""
 ROTOR = _defining(
     lambda machine: machine.drive is not None and machine.drive.motor_inertia > 0.0,
-    'an inertia ratio needs the inertia of the rotor; got none; add for example [drive] motor_inertia = "5 kg cm^2"',
+    'an inertia ratio needs the inertia of the rotor; got none; for example, add [drive] motor_inertia = "5 kg cm^2"',
 )
 SHAKES = Need(
     has_shaking_force,
@@ -174,17 +174,19 @@ SHAKES = Need(
 COUPLES = _defining(
     has_rocking_couple,
     "a rocking couple needs cylinders at different places along the shaft whose forces do not cancel; got no "
-    'places, or all forces at one place; add for example [mechanism] cylinders = { phases = ["0 deg", "180 deg"], '
+    'places, or all forces at one place; for example, add [mechanism] cylinders = { phases = ["0 deg", "180 deg"], '
     'places = ["-50 mm", "50 mm"] }',
 )
 ONE_CYLINDER = _defining(
     lambda machine: cylinder_count(machine) == 1,
-    "it needs one cylinder, as a stroke belongs to one; got several on one crankshaft, whose torques add up; "
+    "it needs a single cylinder, because a stroke belongs to one cylinder; got several on one crankshaft, whose "
+    "torques add up; "
     "use {instead}",
 )
 ONE_TIMING = _defining(
     lambda machine: machine.speed_profile is None or cylinder_count(machine) == 1,
-    "along a speed profile it needs one cylinder, as each has its own stroke times; got several cylinders on one "
+    "with a speed profile it needs a single cylinder, because each has its own stroke times; got several cylinders "
+    "on one "
     "crankshaft; use crank_angle_ratio, which is the same for all, or the least value over the cylinders: "
     "outward_to_inward_time_ratio or inward_to_outward_time_ratio",
 )
@@ -194,15 +196,15 @@ EVEN_SPEED = _defining(
 )
 STRENGTH = _defining(
     lambda machine: machine.strength is not None,
-    "it needs a material and pins; got none; add for example [sections] with pins and [sections.material], as in "
+    "it needs a material and pins; got none; for example, add [sections] with pins and [sections.material], as in "
     "docs/sizing.md",
 )
 WEARS = _defining(
     lambda machine: machine.strength is not None and machine.strength.wear_coefficient is not None,
-    "it needs pins and a wear coefficient; got none; add for example "
+    "it needs pins and a wear coefficient; got none; for example, add "
     '[sections] wear_coefficient = "1e-9 mm^2/N", with pins and [sections.material] as in docs/sizing.md',
 )
-_BAR = '{}; got none; add for example [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'
+_BAR = '{}; got none; for example, add [mechanism] {} = { width = "30 mm", depth = "20 mm", density = "7850 kg/m^3" }'
 ROD_BAR = _defining(
     lambda machine: isinstance(machine.rod, Bar),
     _BAR.replace("{}", "it needs a rod given by its section", 1).replace("{}", "rod", 1),
@@ -224,7 +226,7 @@ def _needs_mass_of(part: str) -> Need:
 
     return Need(
         weighs,
-        f'it needs the mass of the {part}; got none; add for example [mechanism] {part} = {{ mass = "0.5 kg" }}',
+        f'it needs the mass of the {part}; got none; for example, add [mechanism] {part} = {{ mass = "0.5 kg" }}',
     )
 
 

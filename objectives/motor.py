@@ -30,7 +30,8 @@ MEAN_POWER = CycleAverage(
     times_speed=True,
     place=220,
     group=Group.DRIVE,
-    sentence="The mean drive power over time: the energy that the machine takes per cycle, divided by the cycle time.",
+    sentence="The mean drive power over time: the energy that the machine consumes per cycle, divided by the cycle "
+    "time.",
     formula="mean of T omega over time: integral of T d theta over a cycle / cycle time",
     picture="power",
     signed=True,

@@ -151,7 +151,7 @@ PIN_PRESSURE_CRANK_PIVOT = _pressure(
     name="pin_pressure_crank_pivot",
     title="pressure at the crank pivot",
     place=460,
-    sentence="The greatest pressure of the crank's pivot in a bearing as long as the crank is deep.",
+    sentence="The greatest pressure of the crank's pivot in a bearing whose length is the depth of the crank.",
     **facts_of_pin("crank_pivot", (STRENGTH,)),
 )
 PIN_PRESSURE_CRANK_PIN = _pressure(
@@ -165,7 +165,7 @@ PIN_PRESSURE_SLIDER_PIN = _pressure(
     name="pin_pressure_slider_pin",
     title="pressure at the slider pin",
     place=462,
-    sentence="The greatest pressure of the slider pin in a bearing as long as the rod is deep.",
+    sentence="The greatest pressure of the slider pin in a bearing whose length is the depth of the rod.",
     **facts_of_pin("slider_pin", (STRENGTH,)),
 )
 PIN_SHEAR_CRANK_PIVOT = _shear(
@@ -210,8 +210,8 @@ PV_PIVOT = _pv(
     title="mean pv of the crank pivot over time",
     short="pv of the crank pivot",
     place=470,
-    sentence="The mean over time of pressure times rubbing speed at the crank's pivot, in a bearing "
-    "as long as the crank is deep.",
+    sentence="The mean over time of pressure times rubbing speed at the crank's pivot, in a bearing whose length is "
+    "the depth of the crank.",
     formula="mean of |P| |omega| / (2 b) over time, b depth of the bar",
     **facts_of_pin("crank_pivot", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
@@ -229,8 +229,8 @@ PV_SLIDER_PIN = _pv(
     title="mean pv of the slider pin over time",
     short="pv of the slider pin",
     place=472,
-    sentence="The mean over time of pressure times rubbing speed at the slider pin, in a bearing "
-    "as long as the rod is deep.",
+    sentence="The mean over time of pressure times rubbing speed at the slider pin, in a bearing whose length is "
+    "the depth of the rod.",
     formula="mean of |B| |phi'| |omega| / (2 b) over time, b depth of the bar",
     **facts_of_pin("slider_pin", (STRENGTH, EVEN_SPEED), (SPEED,)),
 )
@@ -238,7 +238,8 @@ WEAR_PIVOT = _wear(
     name="wear_pivot",
     title="wear of the crank pivot",
     place=474,
-    sentence="The wear depth at the crank's pivot after a million cycles, in a bearing as long as the crank is deep.",
+    sentence="The wear depth at the crank's pivot after a million cycles, in a bearing whose length is the depth of "
+    "the crank.",
     formula="10^6 K / (2 b) times the integral of |P| over the crank angle of a cycle",
     **facts_of_pin("crank_pivot", (WEARS, EVEN_SPEED)),
 )
@@ -254,7 +255,8 @@ WEAR_SLIDER_PIN = _wear(
     name="wear_slider_pin",
     title="wear of the slider pin",
     place=476,
-    sentence="The wear depth at the slider pin after a million cycles, in a bearing as long as the rod is deep.",
+    sentence="The wear depth at the slider pin after a million cycles, in a bearing whose length is the depth of "
+    "the rod.",
     formula="10^6 K / (2 b) times the integral of |B| |phi'| over the crank angle of a cycle",
     **facts_of_pin("slider_pin", (WEARS, EVEN_SPEED)),
 )

@@ -53,7 +53,7 @@ STROKE = ClosedFormQuantity(
     place=100,
     group=Group.MOTION,
     sentence="The stroke is the distance between the slider's two dead centres.",
-    advice="It equals twice the crank only without offset.",
+    advice="It equals twice the crank only without an offset.",
     formula="S = sqrt((l+r)^2 - e^2) - sqrt((l-r)^2 - e^2)",
     picture="stroke",
     better="",

@@ -70,10 +70,11 @@ class SwingQuantity(Quantity):
             if self.tolerated and not (
                 mechanism.with_largest_variables.tolerances.are_stated or self.swing.actuator_tolerance
             ):
-                return 'a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"'
+                return 'a position error needs tolerances; got none; for example, add [tolerances] crank = "0.05 mm"'
         if consequence == "equal" and self.rubbing and not mechanism.with_largest_variables.friction.acts:
             return (
-                f"it is {self.rubbing} without friction; got none; add for example [friction] guide = 0.1, or leave it "
+                f"it is {self.rubbing} without friction; got none; for example, add [friction] guide = 0.1, or "
+                "leave it "
                 "out"
             )
         return super().unmet_need(mechanism, consequence)

@@ -102,7 +102,7 @@ def _require_simulable(mechanism: Mechanism, linkage: Linkage, clearance: Cleara
     for load in mechanism.loads:
         if load.is_moving_mass:
             raise InputError(
-                f"a simulation of clearance only takes forces on the slider; got {load.magnitude_text}; "
+                f"a simulation of clearance accepts only forces on the slider; got {load.magnitude_text}; "
                 "add that mass to the slider's, or leave that load out"
             )
     rod_margin = float(linkage.rod - linkage.crank - abs(linkage.offset))

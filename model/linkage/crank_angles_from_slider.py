@@ -183,7 +183,7 @@ def _require_real_lengths(linkage: Dimensions) -> tuple[float, float, float]:
     shape = np.broadcast_shapes(*(np.shape(size) for size in sizes))
     if shape:
         raise InputError(
-            f"the inverse problem only takes one linkage at a time; got an array of shape {shape}; loop over it"
+            f"the inverse problem accepts only one linkage at a time; got an array of shape {shape}; loop over it"
         )
     if any(np.iscomplexobj(size) for size in sizes):
         raise InputError("the inverse problem needs real dimensions; got complex ones; leave out the imaginary part")

@@ -93,6 +93,6 @@ def require_one_cylinder(arrangement: Arrangement | None, subject: str) -> None:
     """Raise `InputError` for several cylinders. subject: the analysis, as the subject of the message."""
     if arrangement is not None and len(arrangement.phases) > 1:
         raise InputError(
-            f"{subject} only takes a machine with one cylinder; got {arrangement.text}; leave out cylinders to "
+            f"{subject} accepts only a machine with one cylinder; got {arrangement.text}; leave out cylinders to "
             "study a single one, or see analyse --show cylinders"
         )

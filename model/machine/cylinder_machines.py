@@ -53,7 +53,7 @@ def member_machines(mechanism: Mechanism) -> tuple[Member, ...]:
     arrangement = mechanism.arrangement
     if arrangement is None:
         raise InputError(
-            "this needs a machine with several cylinders; got none; add for example [mechanism] cylinders = { "
+            "this needs a machine with several cylinders; got none; for example, add [mechanism] cylinders = { "
             'phases = ["0 deg", "180 deg"] }'
         )
     cylinders = []

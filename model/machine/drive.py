@@ -180,7 +180,7 @@ class Drive:
         """The motor's torque against its speed. Raises `InputError` if there is no motor, or if the gear has losses."""
         if self.motor is None:
             raise InputError(
-                "a machine driven by its motor needs a motor torque; got a drive without one; add for example "
+                "a machine driven by its motor needs a motor torque; got a drive without one; for example, add "
                 '[drive] motor = { stall_torque = "60 N m", no_load_speed = "400 rpm" }'
             )
         if self.is_lossy:

@@ -15,7 +15,7 @@ class LeverSpring:
 
     frame, frame_angle: distance, m, and direction, rad from +x, of the frame's pin from the lever's pivot. lever,
     pin_angle: distance of the lever's pin from there, and its angle from the lever's own line. force: push at a length
-    between both pins, N and m, below 0 for a pull. stiffness: what the push loses per extension, N/m.
+    between both pins, N and m, below 0 for a pull. stiffness: loss of push per unit of extension, N/m.
     """
 
     frame: float

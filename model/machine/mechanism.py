@@ -39,7 +39,7 @@ DeadCentre = Literal["outer", "inner"]
 class SliderDistances:
     """Distances of the slider from a dead centre, m.
 
-    touch: distance at which it meets its work. dwell: distance within which it counts as at rest. guide: outward
+    touch: distance at which it meets the workpiece. dwell: distance within which it counts as at rest. guide: outward
     distance from the slider pin at its outer dead centre to the centre of the guide, which is fixed to the frame.
     """
 
@@ -57,7 +57,7 @@ class SliderDistances:
     def text(self) -> str:
         """The stated distances, as text after the slider's mass; empty if there are none."""
         distances = {
-            f"meets its work {{}} before the {self.dead_centre} dead centre": self.touch,
+            f"meets the workpiece {{}} before the {self.dead_centre} dead centre": self.touch,
             f"dwells within {{}} of the {self.dead_centre} dead centre": self.dwell,
             "guide centre {} outward from the outer dead centre": self.guide,
         }
@@ -201,7 +201,8 @@ class Mechanism:
         gravity: object = self.gravity
         if not isinstance(gravity, tuple) or len(gravity) != 2:
             raise InputError(
-                f"gravity must have components along x and y, in m/s^2; got {gravity!r}; write for example (0.0, -9.81)"
+                f"gravity must have components along x and y, in m/s^2; got {gravity!r}; for example, write (0.0, "
+                "-9.81)"
             )
         require_all_finite("gravity", gravity)
         require_word("branch", self.branch, Branch)

@@ -37,7 +37,7 @@ class Material:
             raise InputError(
                 "a material must have endurance strength <= yield strength <= ultimate strength; got "
                 f"{1e-6 * self.endurance:g}, {1e-6 * self.yield_strength:g} and {1e-6 * self.ultimate_strength:g} "
-                "MPa; swap them if they are exchanged, or use the lower value for both"
+                "MPa; swap them if they were interchanged, or use the lower value for both"
             )
 
 

@@ -70,7 +70,7 @@ class LawTurn:
         self._copy_cells(PeriodicTurn(equation, dimensions))
         if self._turn.terms.depends_on_speed:
             raise InputError(
-                "a motion law only takes loads that do not depend on the speed; got one that does; leave out "
+                "a motion law accepts only loads that do not depend on the speed; got one that does; leave out "
                 "viscous loads and drag"
             )
 

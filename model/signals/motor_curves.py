@@ -170,7 +170,7 @@ class MotorShaft(Shaft):
 
 def _required_drive(mechanism: Mechanism) -> Drive:
     if mechanism.drive is None:
-        raise InputError("motor curves need a drive; got none; add for example [drive] gear_ratio = 5")
+        raise InputError("motor curves need a drive; got none; for example, add [drive] gear_ratio = 5")
     return mechanism.drive
 
 

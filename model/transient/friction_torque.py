@@ -258,7 +258,8 @@ def jamming_error(angle: Array, inertia: Array) -> InputError:
     """
     worst = int(np.argmin(np.where(np.isnan(inertia), -np.inf, inertia)))
     return InputError(
-        "the inertia must exceed what friction cancels at every crank angle, so that the torque determines the "
+        "the inertia must exceed the part that friction cancels at every crank angle, so that the torque determines "
+        "the "
         f"acceleration; got {inertia[worst]:.3g} kg m^2 left at {math.degrees(angle[worst]) % 360.0:.4g} deg; give "
         "the drive a flywheel, the crank a mass, or reduce the friction"
     )

@@ -111,7 +111,7 @@ class Runner:
         else:
             raise InputError(
                 f"no constant torque was found that turns the crank at a mean speed of {self.speed:.6g} rad/s with "
-                f"{inertia:.6g} kg m^2 besides the mechanism; add a flywheel or raise the speed"
+                f"{inertia:.6g} kg m^2 in addition to the mechanism; add a flywheel or raise the speed"
             )
         turn, profile = solved
         if not self.works:  # cancelling terms leave rounding errors

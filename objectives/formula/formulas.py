@@ -206,7 +206,7 @@ class Formulas:
             return self.formula_quantities[name]
         if name in self._open:
             through = " by ".join((*self._open[self._open.index(name) :], name))
-            raise InputError(f"formulas must not refer to themselves; got {through}; write out one of them")
+            raise InputError(f"formulas must not refer to themselves; got {through}; write one of them out in full")
         self._open.append(name)
         stated = self._stated[name]
         try:

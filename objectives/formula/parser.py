@@ -84,7 +84,7 @@ class _Reader:
         if match is not None:
             self.next = _Token(str(match.lastgroup), match[str(match.lastgroup)], match.end())
         elif self.text[place:].strip():
-            self.raise_error(f"{self.text[place:].strip()[0]!r} has no meaning in it")
+            self.raise_error(f"{self.text[place:].strip()[0]!r} has no meaning in a formula")
         else:
             self.next = _Token("end", "", len(self.text))
 
@@ -171,7 +171,7 @@ class _Reader:
 
     def function(self, name: str) -> Node:
         if name not in ARGUMENTS:
-            self.raise_error(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is none of these")
+            self.raise_error(f"a function is one of {', '.join(ARGUMENTS)}", f"{name} is not one of them")
         self.step()
         arguments = [self.sum()]
         while self.take(","):

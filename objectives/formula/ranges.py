@@ -206,7 +206,7 @@ def _interval_of_call(node: Call, arguments: list[Interval]) -> Interval:
         if first.upper < least or first.lower > greatest:
             raise InputError(
                 f"the argument of {function} must be from {least:g} to {greatest:g}; got "
-                f"{formula_text(node.arguments[0])}, which never is within the ranges; correct the formula"
+                f"{formula_text(node.arguments[0])}, which is always outside it within the ranges; correct the formula"
             )
         ends = sorted(image(min(max(end, least), greatest)) for end in (first.lower, first.upper))
         return Interval(ends[0], ends[1], first.excludes_zero and function == "sqrt")

@@ -85,7 +85,9 @@ class OwnQuantity(Quantity):
         super().__post_init__()
         require_column_name(self.name)
         if isinstance(self.function, str) and not FUNCTION.fullmatch(self.function):
-            raise InputError(f'a function must be named like "module:function"; got {self.function!r}; write it so')
+            raise InputError(
+                f'a function must be named like "module:function"; got {self.function!r}; write it in this form'
+            )
         if self.gradient not in get_args(Gradient):
             raise InputError(f"gradient must be {' or '.join(map(repr, get_args(Gradient)))}; got {self.gradient!r}")
         if not 0.0 < self.limit < float("inf"):

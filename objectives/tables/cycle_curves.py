@@ -147,8 +147,8 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, angles: int | ArrayLike 
         theta = real_or_complex_array(angles, "a crank angle")
     if theta.ndim != 1 or np.iscomplexobj(theta):
         raise InputError(
-            f"crank angles must be a list of real numbers in rad, or a number of angles; got {angles!r:.60}; write for "
-            "example [1.0]"
+            f"crank angles must be a list of real numbers in rad, or a number of angles; got {angles!r:.60}; for "
+            "example, write [1.0]"
         )
     import pandas as pd
 

@@ -113,7 +113,7 @@ def _excessive_friction_text(stuck: list[tuple[Mechanism, Array]], motion: Swing
             for machine, able in stuck
         )
         low, high = (share, high) if runs else (low, share)
-    return f"the first ones run with {low:.2g} of its coefficients; "
+    return f"the first designs can move with {low:.2g} of its coefficients; "
 
 
 def _with_friction_share(machine: Mechanism, share: float) -> Mechanism:

@@ -465,7 +465,7 @@ def bounds_of_name(name: str, ends: object) -> tuple[float | None, float | None]
     bounds = tuple(ends) if isinstance(ends, tuple | list) else ()
     if len(bounds) != 2 or not all(end is None or (isinstance(end, Real) and not math.isnan(end)) for end in bounds):
         raise InputError(
-            f"bounds of {name} must be (least, greatest), numbers or None; got {ends!r}; write for example (1.0, None)"
+            f"bounds of {name} must be (least, greatest), numbers or None; got {ends!r}; for example, write (1.0, None)"
         )
     return bounds
 

@@ -49,8 +49,8 @@ class Rounded:
     """Designs with round numbers near a front's design, best first.
 
     Non-dominated designs that meet every requirement within the allowed deviations come first, least loss first; then
-    designs that miss little but lose clearly less. If `is_met` is False, these are the nearest designs. The first has
-    the least relative violation beyond the allowed deviations; those that follow miss more but lose clearly less. See
+    designs that miss little but lose much less. If `is_met` is False, these are the nearest designs. The first has
+    the least relative violation beyond the allowed deviations; those that follow miss more but lose much less. See
     `rounding.rounded`.
 
     problem: the problem that they solve, with its choices made. design: (3 + v,), the design to round. steps: steps of
@@ -105,7 +105,7 @@ class Rounded:
             keep = "keeps" if self.feasible_count == 1 else "keep"
             tolerance = f" within {self._allowed_in_words(system)}" if self.allowed else ""
             missing = sum(bool(self._excessive_misses(row)) for row in range(len(self)))
-            lose = "others lose clearly less but miss" if missing > 1 else "another one loses clearly less but misses"
+            lose = "others lose much less but miss" if missing > 1 else "another one loses much less but misses"
             supplement = f"; {lose} little" if missing else ""
             return f"{self.feasible_count} of {near} {keep} every requirement{tolerance}{supplement}"
         subject = f"none of {near}"

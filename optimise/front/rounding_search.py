@@ -255,7 +255,7 @@ class RoundingSearch:
         return losses
 
     def _rows_with_falling_loss(self, designs: Array, rows: IntArray, misses: Array, losses: Array) -> IntArray:
-        """Return the row with the least miss, then rows that miss more but lose clearly less."""
+        """Return the row with the least miss, then rows that miss more but lose much less."""
         order = np.lexsort((self._steps_away(designs[rows]), np.round(losses, _TIE), np.round(misses, _TIE)))
         ranked: list[int] = []
         least = np.inf

@@ -163,7 +163,7 @@ def _require_reachable_formulas(problem: Problem) -> None:
     try:
         require_reachable(replace(problem, constraints=merge_constraints(restated.values())))
     except InputError as error:
-        raise InfeasibleError(f"{error}; this is what {words}") from None
+        raise InfeasibleError(f"{error}; this is equivalent to what {words}") from None
 
 
 def _bounds_and_targets(problem: Problem) -> Iterator[tuple[str, str, str, float]]:

@@ -94,7 +94,7 @@ class SpringPart(Checked[LeverSpring]):
     pin_angle: Angle = optional_entry("angle to that pin from the lever's own line", "10 deg", default=0.0)
     force: Force = required_entry("push at its length; below 0 for a pull", "600 N")
     length: PositiveLength = required_entry("length between its pins at which it has the force", "450 mm")
-    stiffness: Stiffness = optional_entry("what the push loses per extension", "1.2 N/mm", default=0.0)
+    stiffness: Stiffness = optional_entry("loss of push per unit of extension", "1.2 N/mm", default=0.0)
 
 
 def lever_of(
@@ -119,7 +119,7 @@ def lever_of(
     if mechanism.frame_angle is None:
         raise JobError(
             f'mechanism.frame_angle: is missing, but inversion = "{TURNING_CYLINDER}" needs the direction from the '
-            "lever's pivot to the cylinder's; add for example frame_angle = \"-60 deg\""
+            "lever's pivot to the cylinder's; for example, add frame_angle = \"-60 deg\""
         )
     known = Cylinder() if cylinder is None else cylinder.build()
     driven = Arm() if arm is None else arm.build()

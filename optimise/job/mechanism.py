@@ -198,8 +198,8 @@ class MechanismPart(CrankSpeedPart):
     )
 
     inversion: Literal["turning cylinder"] | None = optional_entry(
-        "turning cylinder: the rod is fixed as the frame, and a cylinder that turns about its end moves the crank, a "
-        "lever, or a crank that rotates fully moves the cylinder or an arm; default: a slider-crank",
+        "turning cylinder: the rod is fixed as the frame; either a cylinder that turns about its end moves the "
+        "crank, which is a lever, or a crank that rotates fully moves the cylinder or an arm; default: a slider-crank",
         "turning cylinder",
     )
     frame_angle: Angle | None = optional_entry(

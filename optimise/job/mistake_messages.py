@@ -215,7 +215,7 @@ def mistake_sentence(details: ErrorDetails, schema: Schema) -> str:
     """Return rule, value and remedy for one mistake."""
     kind, value, context, path = details["type"], details["input"], details.get("ctx", {}), details["loc"]
     example = example_of_key(schema, path)
-    write = f"; write for example {example}" if example else ""
+    write = f"; for example, write {example}" if example else ""
     value_text = f"got {quote(value)}"
     if kind == "value_error":
         return str(context["error"])

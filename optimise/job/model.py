@@ -83,7 +83,7 @@ def _require_printable(text: str) -> str:
 def _require_objective(objectives: ObjectivesPart) -> ObjectivesPart:
     if not objectives.model_fields_set:
         raise InputError(
-            'must name at least one quantity; got an empty table; add for example peak_torque = "minimise"'
+            'must name at least one quantity; got an empty table; for example, add peak_torque = "minimise"'
         )
     return objectives
 

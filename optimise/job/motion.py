@@ -82,8 +82,8 @@ def _law_points(law: Law, times: tuple[float, ...], shares: tuple[float, ...]) -
     """Return the points of a law that is stated as a table. Raises `InputError` for lists of different lengths."""
     if law == "table" and not times:
         raise InputError(
-            "a tabulated motion law needs fractions of the time and of the travel; got no law_times; add for "
-            "example law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
+            "a tabulated motion law needs fractions of the time and of the travel; got no law_times; for example, "
+            "add law_times = [0, 0.3, 0.7, 1], law_shares = [0, 0.2, 0.8, 1]"
         )
     if len(times) != len(shares):
         raise InputError(
@@ -114,8 +114,8 @@ def _swing_end_kind(keys: set[str]) -> Stated:
         missing = [name for name in (_STARTS[end_kind], _ENDS[end_kind]) if name not in keys]
         missing = missing if _SPANS[end_kind] not in keys else [_STARTS[end_kind]]
         raise InputError(
-            f"a swing needs two {_PLACES[end_kind]}s, a start and an end; {' and '.join(missing)} is missing; add for "
-            f"example {_EXAMPLES[end_kind]}"
+            f"a swing needs two {_PLACES[end_kind]}s, a start and an end; {' and '.join(missing)} is missing; for "
+            f"example, add {_EXAMPLES[end_kind]}"
         )
     if len(keys) > 2:
         raise InputError(
@@ -258,7 +258,7 @@ def require_crank_speed(
         raise JobError(
             "mechanism.speed: is missing, but required unless cycle_time or strokes_per_minute is given; "
             f"{dependents[0]} "
-            'depends on it; add for example speed = "300 rpm"'
+            'depends on it; for example, add speed = "300 rpm"'
         )
 
 

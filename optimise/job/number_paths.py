@@ -47,7 +47,9 @@ def unknown_path_message(path: str, tables: Mapping[str, Any]) -> str:
     known_paths = [known_path for known_path, value in _walk_values(tables, "") if _is_settable_value(value)]
     near = None if is_known else closest_word(path, known_paths)
     hint = (
-        f"did you mean {near}?" if near else f"give it in [{path.partition('.')[0]}] first, as single designs have it"
+        f"did you mean {near}?"
+        if near
+        else f"give it in [{path.partition('.')[0]}] first, because single designs need it"
     )
     return f"must name a number that the job gives; got {path}; {hint}"
 

@@ -210,7 +210,7 @@ class CostsPart(Built[Costs]):
         if not self.model_fields_set:
             raise InputError(
                 "must name at least one of crank, rod, offset and crank_angle; got an empty table; "
-                'add for example crank = { cost = 8.0, at = "0.05 mm" }'
+                'for example, add crank = { cost = 8.0, at = "0.05 mm" }'
             )
         return self
 
@@ -256,7 +256,7 @@ def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
     if not toleranced_columns(problem.part(0).mechanism):
         raise JobError(
             "robust: needs tolerances of crank, rod or offset; got none (that of the crank angle affects no quantity "
-            'of a whole cycle); add for example [tolerances] crank = "0.05 mm"'
+            'of a whole cycle); for example, add [tolerances] crank = "0.05 mm"'
         )
     try:
         return robust_problem(problem, part.build())

@@ -57,7 +57,7 @@ Source = Annotated[str, Field(max_length=2000)] | None
 
 def summary_entry() -> Any:
     """Return the entry for the summary of a file whose content a table holds; the problem ignores it."""
-    return optional_entry("what was read from the file that the values come from", "motion.csv: 360 rows")
+    return optional_entry("data read from the file that contains the values", "motion.csv: 360 rows")
 
 
 Made = TypeVar("Made")
@@ -299,7 +299,7 @@ class RangeOf(_ValueMarker):
         text = value[0] if isinstance(value, list | tuple) and len(value) == 1 else value
         if isinstance(text, str) and (two := _ENDS.fullmatch(text)):
             write = f'["{two[1]} {two[2] or two[4]}", "{two[3]} {two[4]}"]'
-            raise InputError(f"each end of a range must be a text of its own; got {quote(value)}; write {write}")
+            raise InputError(f"each end of a range must be a separate string; got {quote(value)}; write {write}")
         if len(ends) != 2:
             write = 'write it like ["20 mm", "200 mm"]'
             if len(ends) == 3:

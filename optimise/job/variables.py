@@ -99,7 +99,7 @@ class OptionPart(Part):
         default={},
     )
     notes: dict[str, Annotated[str, Field(max_length=200)]] = optional_entry(
-        "texts to store with designs, such as a manufacturer", {"maker": "Example Motors"}, default={}
+        "text to store with designs, such as the manufacturer", {"maker": "Example Motors"}, default={}
     )
     searched: bool = optional_entry(
         "whether the search uses it; otherwise it is only named where it is the smallest sufficient option",

@@ -185,7 +185,8 @@ _global = partial(Method, family="global", objectives="one", budget=50_000, uses
 DIFFERENTIAL_EVOLUTION = _global(
     name="differential_evolution",
     title="Differential evolution",
-    help="SciPy's population search, which moves members by their differences; SLSQP improves the best one.",
+    help="SciPy's population search, which moves each member along differences between members; SLSQP improves the "
+    "best one.",
     search=differential_evolution,
 )
 SHGO = _global(

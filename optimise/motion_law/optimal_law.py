@@ -68,7 +68,7 @@ def unreachable_limits_error(turn: LawTurn, limits: LawLimits) -> InputError:
         mean_torque, name = abs(turn.load_work) / TURN, limits.name("torque_limit")
         if mean_torque > request.torque_limit:
             return InputError(
-                f"the loads take {abs(turn.load_work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
+                f"the loads absorb {abs(turn.load_work):.6g} J in a turn, a mean torque of {mean_torque:.6g} N m; "
                 f"{name} is "
                 f"{request.torque_limit:.6g} N m; raise it"
             )

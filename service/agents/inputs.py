@@ -71,7 +71,7 @@ Topics = Annotated[
 TopicInputs = Annotated[
     dict[str, Any],
     Field(
-        description="Inputs of the topics, each a text with its unit.",
+        description="Inputs of the topics, each as text with its unit.",
         json_schema_extra={"properties": dict(_INPUTS), "additionalProperties": False},
     ),
 ]
@@ -208,7 +208,7 @@ class TopicRequest:
             if name not in accepted:
                 raise InputError(f"an input must be one of {', '.join(_INPUTS)}; got {name[:60]!r}; leave it out")
             if _INPUTS[name]["type"] == "string" and not isinstance(self.inputs[name], str):
-                raise InputError(f"inputs.{name} must be a text; got {quote(self.inputs[name])}; correct it")
+                raise InputError(f"inputs.{name} must be text; got {quote(self.inputs[name])}; correct it")
 
     @property
     def separate_command(self) -> str | None:

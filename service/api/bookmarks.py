@@ -188,7 +188,7 @@ def export_bookmarks(stored_front: FrontDep, store: StoreDep, units: UnitsParame
 def _requested_design(stored_front: StoredFront, request: NewBookmark) -> StoredDesign:
     """Return the design to bookmark. Raises `InputError` for dimensions that the job does not define."""
     if request.design is None and not request.dimensions:
-        raise InputError("a bookmark needs a design of the front or dimensions; got neither; give a design, or lengths")
+        raise InputError("a bookmark needs a design on the front, or dimensions; got neither; give one of them")
     row = {} if request.design is None else stored_front.row(request.design)
     if request.design is not None and not request.dimensions:
         return stored_design(stored_front.problem, stored_front.result, request.design)

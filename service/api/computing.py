@@ -142,7 +142,7 @@ class Computing:
             text = f"an answer may use at most {limits}; this one needs more {lacking}; {_REMEDY}"
             return HTTPException(HTTPStatus.UNPROCESSABLE_ENTITY, text)
         text = (
-            f"the process that computes an answer, with at most {limits}, must not end early; it did "
+            f"the process that computes an answer, with at most {limits}, must not end early; it ended "
             f"({exit_reason(code)}); try again"
         )
         return HTTPException(HTTPStatus.SERVICE_UNAVAILABLE, text, {"Retry-After": "5"})

@@ -180,7 +180,7 @@ class Connection(H11Protocol):
             self.transport.close()
         else:
             rule = f"the {self._part} must arrive within {seconds:g} s"
-            text = f"{rule}; it is incomplete; send less, or over a faster connection"
+            text = f"{rule}; it is incomplete; send less, or use a faster connection"
             self._refuse(HTTPStatus.REQUEST_TIMEOUT, text)
 
     def send_400_response(self, msg: str) -> None:

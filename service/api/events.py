@@ -38,10 +38,10 @@ _EXAMPLE = (
 )
 _STREAMED: dict[int | str, dict[str, Any]] = {
     200: {
-        "description": "Events, to the end of the job where they are streamed",
+        "description": "Events; as a stream, up to the end of the job",
         "content": {STREAM: {"schema": {"type": "string"}, "example": _EXAMPLE}},
     },
-    204: {"description": "The job has ended, and nothing came after the event of Last-Event-ID: do not reconnect"},
+    204: {"description": "The job has ended, and no event follows Last-Event-ID: do not reconnect"},
 }
 _log = logging.getLogger(__name__)
 POLL = 0.1

@@ -40,7 +40,7 @@ IdempotencyKey = Annotated[
         min_length=1,
         max_length=255,
         pattern="^[!-~]+$",
-        description="key of this submission: sent again with the same key, it adds no job and returns the earlier one",
+        description="key of this submission: a repetition with the same key adds no job and returns the earlier one",
         examples=["4c7a1f0e-feeder"],
     ),
 ]
@@ -64,7 +64,7 @@ class Submission(BaseModel, extra="forbid", strict=True):
     files: dict[str, str] = Field(
         default={},
         max_length=100,
-        description="contents of the files that the job names, by name: texts, or bytes as data:text/csv;base64,...",
+        description="contents of the files that the job names, by name: text, or bytes as data:text/csv;base64,...",
         examples=[{"trace.csv": "crank angle (deg),force (N)\n0,-200\n180,0\n"}],
     )
     priority: Priority = 0
@@ -157,7 +157,7 @@ def insert_files(stated: Submission) -> dict[str, Any]:
         try:
             contents[name] = b64decode(encoded, validate=True) if mark.startswith("data:") and encoded else content
         except ValueError:
-            raise JobError(f"files.{name[:60]}: must be a text or base64; got a broken one; send it again") from None
+            raise JobError(f"files.{name[:60]}: must be text or base64; got neither; send it again") from None
     return with_file_contents(stated.job, contents)
 
 

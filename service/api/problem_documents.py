@@ -47,7 +47,7 @@ class Problem(BaseModel):
 
     type: Literal["about:blank", "infeasible"] = Field(
         "about:blank",
-        description="infeasible for a valid request that no design can meet; about:blank where the status says all",
+        description="infeasible for a valid request that no design can meet; about:blank if the status says everything",
     )
     title: str = Field(description="the status in words", examples=["Not Found"])
     status: int = Field(description="the HTTP status", examples=[404])
@@ -75,7 +75,7 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 def json_with_etag_options(model: type[BaseModel], description: str) -> dict[str, Any]:
     """Return the options of an endpoint for JSON with an ETag, or 304 if the client is up to date."""
-    same = {"description": "They are those of the ETag in If-None-Match"}
+    same = {"description": "Not modified: the ETag in If-None-Match is still current"}
     return {"response_class": Response, "responses": {200: {"model": model, "description": description}, 304: same}}
 
 

@@ -133,9 +133,7 @@ def require_shallow_and_portable(value: Any, most_depth: int) -> None:
 def _require_portable(item: object) -> None:
     if isinstance(item, str):
         if "\0" in item or (not item.isascii() and any("\ud800" <= letter <= "\udfff" for letter in item)):
-            raise InputError(
-                "a text must have complete characters and no NUL; got another one; leave that character out"
-            )
+            raise InputError("text must have complete characters and no NUL; got an invalid character; leave it out")
     elif isinstance(item, float):
         if not math.isfinite(item):
             raise InputError(f"a number must be finite; got {item}; leave it out if there is no bound")
@@ -143,7 +141,7 @@ def _require_portable(item: object) -> None:
         if abs(item) > _LARGEST:
             raise _body_too_large_error()
     elif item is not None:
-        raise InputError(f"a body may only contain numbers and texts; got the date {item}; write it in quotes")
+        raise InputError(f"a body may only contain numbers and text; got the date {item}; write it in quotes")
 
 
 def _body_too_large_error() -> InputError:

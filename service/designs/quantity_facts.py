@@ -70,7 +70,7 @@ _DIMENSIONS = {
         "offset",
         "1. Notation and signs",
         "The offset e is the distance of the slider line from the crank pivot, positive to the left of the outward "
-        "direction, on the crossed branch to its right; with it, the crank covers a larger angle in one stroke "
+        "direction (on the crossed branch, to its right); with it, the crank covers a larger angle in one stroke "
         "than in the other.",
         "The greater the offset, the higher the time ratio at constant speed and the smaller the transmission angle.",
         "e; the slider line is y = e",

@@ -88,7 +88,7 @@ def datasheet_of(
         numbers: Mapping[str, Any] = {name: values[row] for name, values in front.columns.items()}
         subtitle = f"design {row + 1} of {len(front)}"
     else:
-        design, numbers, subtitle = changed.design, changed.row, "other lengths than those found"
+        design, numbers, subtitle = changed.design, changed.row, "lengths other than those found"
     title, linkage, swing = f"{front.problem.name}: {label}", design.linkage, front.problem.motion
     if swing is not None and swing.of_lever:
         return lever_datasheet(design.mechanism, linkage, swing, system, title=title, subtitle=subtitle)

@@ -63,7 +63,7 @@ def _value_toml(value: Any) -> str:
         # Only a list may span several lines.
         return line if len(line) <= _WIDEST else "[\n" + "".join(f"    {item},\n" for item in items) + "]"
     word = "null" if value is None else str(value)[:60]
-    raise JobError(f"a job may only contain texts, finite numbers, lists and tables; got {word}; leave the key out")
+    raise JobError(f"a job may only contain text, finite numbers, lists and tables; got {word}; leave the key out")
 
 
 def _text_toml(text: str) -> str:

@@ -213,7 +213,7 @@ def joined_modules(sources: Mapping[str, str], first: str) -> str:
 def _as_function(name: str, sources: Mapping[str, str]) -> tuple[str, list[str], list[str]]:
     """Return a module as an entry of `make`, and the modules that it imports immediately and later."""
     if name not in sources:
-        raise ValueError(f"a module imports {name}, which is not there")
+        raise ValueError(f"a module imports {name}, which does not exist")
     now: list[str] = []
     later: list[str] = []
 

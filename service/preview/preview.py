@@ -196,7 +196,7 @@ def _none_meets_all_sentence(problem: Problem, possible_values: Possible, fixed_
         for word, bound in constraint.sides:
             item = None if nearest is None else relaxation_of_missed_bound(problem, constraint, word, bound, nearest)
             if item is not None:
-                hardest += f", and one in ten that meet all others has {item.relation} {item.with_unit}"
+                hardest += f", and of those that meet all others, one in ten has {item.relation} {item.with_unit}"
                 change = _change_to_reachable_value(problem, constraint, word, item)
     values = f" with the job's values of {', '.join(fixed_names)}" if fixed_names else ""
     return Remark(

@@ -65,7 +65,7 @@ def _summary_section(subject: Subject) -> Section:
             f"{item.title} {format_cell_with_unit(row[item.column], item.unit)}" for item in subject.result.objectives
         ],
         "Choices": [_format_choice(subject, key) for key in choice_column_keys(row)] if subject.problem.choices else [],
-        "Beyond what is allowed": [unit_text(line) for line in subject.violation_sentences],
+        "Beyond the allowable values": [unit_text(line) for line in subject.violation_sentences],
         "Machine": _machine_lines(subject),
         "What it is": _best_objectives(subject)
         if subject.changed is None

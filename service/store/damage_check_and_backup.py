@@ -77,7 +77,7 @@ def _postgresql_damage(connection: Connection) -> list[str]:
     if failures:
         damage.append(f"{failures} pages failed their checksum; restore a backup")
     off = [name for name in _SETTINGS if connection.scalar(text(f"SHOW {name}")) != "on"]
-    return [*damage, *(f"{name} is off: a crash can lose what was committed; switch it on" for name in off)]
+    return [*damage, *(f"{name} is off: a crash can lose committed data; switch it on" for name in off)]
 
 
 def _jobs_with_miscounts(connection: Connection) -> list[str]:
@@ -152,7 +152,9 @@ def back_up(database: Database, target: Path) -> None:
             copy.execute("PRAGMA journal_mode=DELETE")  # so that the copy is one file
             verdict = copy.execute("PRAGMA integrity_check").fetchone()[0]
         if verdict != "ok":
-            raise StoreError(f"a backup must be whole; that of {database.name} gave: {verdict}; run slidercrank doctor")
+            raise StoreError(
+                f"a backup must be intact; that of {database.name} gave: {verdict}; run slidercrank doctor"
+            )
         flush_to_disk(draft)
         draft.rename(target)
         flush_to_disk(target.parent)

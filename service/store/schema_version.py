@@ -44,7 +44,7 @@ def create_or_upgrade_tables(database: Database) -> None:
         if not _knows_version(scripts, version):
             raise StoreError(
                 f"the tables of a store must be of this release or an earlier one; {database.name} has version "
-                f"{version}, this software knows {LATEST}; install the release that made it"
+                f"{version}, this release supports {LATEST}; install the release that created it"
             )
         config.attributes["connection"] = connection
         command.upgrade(config, "head")

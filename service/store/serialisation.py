@@ -53,7 +53,7 @@ def unpacked_record(content: bytes) -> Record:
             return Record(identity, number, rounds, float(file["seconds"]), words)
     except (OSError, ValueError, TypeError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise RunError(
-            f"a stored record must be whole; got {type(error).__name__}: {error}; submit its job again"
+            f"a stored record must be intact; got {type(error).__name__}: {error}; submit its job again"
         ) from error
 
 

@@ -163,8 +163,9 @@ def _mechanism_lines(mechanism: Mechanism) -> list[str]:
     if mechanism.arrangement is not None:
         lines.append(f"on one crankshaft: {mechanism.arrangement.text}")
         lines.append(
-            "for all cylinders together: torque, power, work, energy, volumes and shaking; for the cylinder with the "
-            "greatest: joint forces and slider motion; for a cylinder whose line is not rotated: stresses and wear"
+            "for all cylinders together: torque, power, work, energy, volumes and shaking; for the cylinder with "
+            "the greatest value: joint forces and slider motion; for a cylinder whose line is not rotated: stresses "
+            "and wear"
         )
     if any(mechanism.gravity):
         x, y = mechanism.gravity

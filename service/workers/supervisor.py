@@ -24,7 +24,7 @@ _REASONS = {
     EXHAUSTED: "its job used more memory than allowed",
     DEAF: "its job did not stop when asked to",
     STALE: "earlier jobs left it too little memory",
-    REFUSED: "it could not start working, see above",
+    REFUSED: "it could not start; see above",
 }
 """Why a process ended, by exit code."""
 _SOON = 60.0  # s; after a longer run, a process is restarted without delay
@@ -122,7 +122,7 @@ class Supervisor:
     def _plan_next(self, place: _Place, code: int) -> None:
         if code == 0 and self.settings.drain:
             place.is_drained = True
-            _log.info("worker %d ended: no job waits", place.number)
+            _log.info("worker %d ended: no job is waiting", place.number)
             return
         soon = code not in (EXHAUSTED, DEAF, STALE) and time.monotonic() - place.started < _SOON
         self._plan(place, f"ended: {exit_reason(code)}", soon=soon)

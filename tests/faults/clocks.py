@@ -47,6 +47,8 @@ def clocks(kind: Kind, count: int, seed: int) -> Verdict:
                         verdict.violate("late", "a worker that drains has not ended")
                 waiting = store.count_by_state().get("queued", 0)
                 if waiting:
-                    verdict.violate("lost", f"{waiting} of {_JOBS} jobs wait though all workers ended: no job waits")
+                    verdict.violate(
+                        "lost", f"{waiting} of {_JOBS} jobs wait though all workers ended: no job is waiting"
+                    )
             verdict.add(judge(where.address, numbers, expected, journal))
     return verdict

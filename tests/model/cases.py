@@ -172,7 +172,7 @@ def fitted(quantity: Quantity, machine: Mechanism) -> Mechanism:
 
 def with_example(job: dict[str, Any], need: Need) -> dict[str, Any]:
     """Return a job with the example tables from the message of a need, if it has any."""
-    found = re.search(r"add for example (\[+)(\w+)\]+ (\w+ = .*?)(?:, or .*| on the slider)?$", need.missing)
+    found = re.search(r"for example, add (\[+)(\w+)\]+ (\w+ = .*?)(?:, or .*| on the slider)?$", need.missing)
     if found is None:
         return job
     table: dict[str, Any] = tomllib.loads(f"table = {{ {found[3]} }}")["table"]

@@ -153,7 +153,7 @@ def test_water_in_a_suction_pipe_needs_the_torque_of_its_kinetic_energy() -> Non
 def test_a_simulation_of_clearance_refuses_an_added_mass() -> None:
     added, _ = pairs(1, friction=False)[0]
     with pytest.raises(
-        InputError, match=r"takes forces on the slider; got added mass, .* add that mass to the slider's"
+        InputError, match=r"accepts only forces on the slider; got added mass, .* add that mass to the slider's"
     ):
         simulate(Mechanism(speed=5.0, loads=added.loads[-1:]), linkage_of(random_designs(1, seed=1)[0]), CLEARANCE)
 

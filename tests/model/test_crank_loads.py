@@ -201,7 +201,7 @@ def test_analyses_of_a_turn_and_of_clearance_refuse_what_they_cannot_take() -> N
             call()
     machine = replace(loaded(SMOOTH, CrankTorque(torque=5.0)), acceleration=0.0)
     clearance = Clearance(joint="crank pin", radius=1e-4, journal_radius=0.01)
-    with pytest.raises(InputError, match="takes loads on the slider"):
+    with pytest.raises(InputError, match="accepts only loads on the slider"):
         simulate_clearance(machine, Linkage(*DESIGNS[0]), clearance)
     for bad in (math.nan, math.inf, -1.0):
         with pytest.raises(InputError, match="resistance"):

@@ -101,7 +101,7 @@ def test_lists_and_arrays_serve_as_tuples() -> None:
         ({"speed": None}, "speed must be a number in SI units; got None; leave it out for 0"),
         (
             {"gravity": 9.81},
-            "gravity must have components along x and y, in m/s^2; got 9.81; write for example (0.0, -9.81)",
+            "gravity must have components along x and y, in m/s^2; got 9.81; for example, write (0.0, -9.81)",
         ),
         ({"gravity": (0.0, 0.0, -9.81)}, "gravity must have components along x and y, in m/s^2; got (0.0, 0.0, -9.81)"),
     ],

@@ -275,7 +275,7 @@ SMALL: dict[str, Any] = {
 @pytest.mark.parametrize(
     ("drive", "words"),
     [
-        (None, ["motor_peak_torque", "it needs [drive]; got none; add for example [drive] gear_ratio = 5"]),
+        (None, ["motor_peak_torque", "it needs [drive]; got none; for example, add [drive] gear_ratio = 5"]),
         ({"gear_ratio": 0}, ["drive.gear_ratio", "positive"]),
         ({"gear_efficiency": 1.1}, ["drive.gear_efficiency", "at most 1; got 1.1"]),
         ({"gear_efficiency": 0}, ["drive.gear_efficiency", "positive"]),

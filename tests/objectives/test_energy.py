@@ -151,7 +151,7 @@ def test_friction_that_locks_makes_every_design_the_worst() -> None:
 def test_what_is_undefined_or_always_the_same_is_told() -> None:
     inert = Mechanism(speed=9.0, slider_mass=2.0, friction=Friction(guide=0.1))
     for machine in (inert, replace(inert, loads=(Spring(stiffness=500.0),))):
-        assert "needs a load that takes or supplies net work" in str(EFFICIENCY.undefined_because([machine]))
+        assert "needs a load that absorbs or supplies net work" in str(EFFICIENCY.undefined_because([machine]))
         assert np.isnan(EFFICIENCY.evaluate(machine, DESIGNS, gradients=True).values).all()
         assert np.all(LOSS.evaluate(machine, DESIGNS).values > 0.0)
     resists = (StrokeForce(outward=-50.0, inward=50.0),)

@@ -71,4 +71,4 @@ def test_a_rod_without_mass_under_a_constant_force_transmits_as_its_transmission
 
 @pytest.mark.parametrize("machine", [Mechanism(), Mechanism(slider_mass=2.0, gravity=(0.0, -9.81))])
 def test_a_machine_without_forces_along_the_line_has_none(machine: Mechanism) -> None:
-    assert "got none; add for example" in (SHARE.unmet_need(machine, "undefined") or "")
+    assert "got none; for example, add" in (SHARE.unmet_need(machine, "undefined") or "")

@@ -245,7 +245,7 @@ def _evaluated(machine: Mechanism, name: str, swing: Swing | None) -> Callable[[
             "it needs a swing with a duration; got a slow one; give .motion. a law",
         ),
         (_evaluated(TIPPER, "pressure_margin", SLOW), "it needs the supply pressure of the cylinder; got none"),
-        (_evaluated(TIPPER, "lever_angle_error", SLOW), "it needs tolerances; got none; add for example"),
+        (_evaluated(TIPPER, "lever_angle_error", SLOW), "it needs tolerances; got none; for example, add"),
         (
             _evaluated(Mechanism(), "lever_work", Swing(**ANGLES, driver="slider")),
             "lever_work: it needs a lever moved by a cylinder that turns; got a slider-crank; set",

@@ -124,7 +124,7 @@ NAMES = ("rod_stress", "crank_stress", "pin_pressure_slider_pin", "pin_shear_sli
 def test_what_lacks_material_or_section_is_refused_with_the_remedy(name: str) -> None:
     bar = Bar(width=0.03, depth=0.012, density=7850.0)
     quantity = QUANTITIES[name]
-    assert "add for example [sections]" in str(quantity.undefined_because([Mechanism(rod=bar, crank=bar)]))
+    assert "for example, add [sections]" in str(quantity.undefined_because([Mechanism(rod=bar, crank=bar)]))
     loose = Mechanism(rod=RigidLink(mass=1.0), crank=RigidLink(mass=1.0), strength=STRENGTH)
     assert "width" in str(quantity.undefined_because([loose]))
     assert np.isnan(quantity.evaluate(loose, np.array([[0.05, 0.2, 0.0]])).values).all()

@@ -207,7 +207,7 @@ def test_cylinders_along_a_profile_have_times_of_their_own() -> None:
     for name in ("time_ratio", *TIMES):
         said = QUANTITIES[name].undefined_because([both])
         assert said is not None
-        assert "as each has its own stroke times" in said
+        assert "because each has its own stroke times" in said
     assert QUANTITIES["time_ratio"].undefined_because([replace(both, speed_profile=None)]) is None
     assert np.isnan(analyse(both, FEEDER).iloc[0]["time_ratio"])
 
@@ -257,7 +257,8 @@ def test_derivatives_of_a_function_of_ones_own_follow_the_times() -> None:
             assert own == pytest.approx(gradients[0, column], rel=1e-13)
     both = replace(machine, arrangement=Arrangement(phases=(0.0, 2.0)))
     with pytest.raises(
-        InputError, match="time_ratio: along a speed profile it needs one cylinder, as each has its own stroke times"
+        InputError,
+        match="time_ratio: with a speed profile it needs a single cylinder, because each has its own stroke times",
     ):
         _ = Designs(both, design).time_ratio
 

@@ -103,7 +103,7 @@ def test_a_word_in_a_wrong_place_or_missing_is_told_with_the_header_that_helps(n
         ("crank + rod max (N)", 'must have a unit of a length; got "N"; write it like (mm)'),
         ("crank + rod max", 'the heading has no unit; write, for example, "crank + rod max (mm)"'),
         ("rod / crank max (mm)", 'must have a unit of a ratio; got "mm"; leave it out'),
-        ("crank == rod max (mm)", "'=' has no meaning in it"),
+        ("crank == rod max (mm)", "'=' has no meaning in a formula"),
         ("min(crank max (mm)", "got the formula"),
         ("1. price (EUR)", "got neither; rename it, or let it begin with # to skip it"),
         ("peak torqe (N m)", "did you mean peak_torque? rename it"),

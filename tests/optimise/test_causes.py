@@ -78,7 +78,7 @@ def test_every_quantity_without_some_cause_is_refused_with_its_remedy_or_finite_
             if said:
                 assert said.startswith(f"objectives.{name}: ")
                 assert "; got " in said
-                assert "add for example" in said or "or add what" in said
+                assert "for example, add" in said or "or add the load" in said
                 refused[name] += 1
                 continue
             found = quantity.evaluate(given, DESIGNS, gradients=True)
@@ -98,10 +98,10 @@ def test_every_quantity_without_some_cause_is_refused_with_its_remedy_or_finite_
 @pytest.mark.parametrize("name", ["position_error", "position_error_rss", "self_locking_margin"])
 def test_an_undefined_quantity_is_refused_where_the_problem_is_made(name: str) -> None:
     bare, whole = machine("speed", "masses"), machine(*CAUSES)
-    with pytest.raises(InputError, match=f"objectives.{name}: .* got none; add for example"):
+    with pytest.raises(InputError, match=f"objectives.{name}: .* got none; for example, add"):
         problem(bare, name)
     limit = Constraint(quantity=name, upper=0.001)
-    with pytest.raises(InputError, match=f"constraints.{name}: .* got none; add for example"):
+    with pytest.raises(InputError, match=f"constraints.{name}: .* got none; for example, add"):
         problem(bare, "stroke", limit)
     own = (RobustQuantity(inner=QUANTITIES[name], side="high"),)
     with pytest.raises(InputError, match=f"objectives.{name}_robust: "):

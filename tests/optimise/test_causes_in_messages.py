@@ -35,10 +35,10 @@ def test_friction_in_joints_without_forces_asks_for_a_force_and_not_for_friction
     assert "without friction" not in said
     assert "[friction]" not in said
     assert "got no inertia force or weight of rod or slider, nor a load on the slider" in said
-    assert 'add for example [mechanism] slider = { mass = "0.8 kg" }' in said
+    assert 'for example, add [mechanism] slider = { mass = "0.8 kg" }' in said
     parse_job(job([TORQUE], name, friction=RUBS, mechanism={"speed": "60 rpm", "slider": {"mass": "0.8 kg"}}))
     parse_job(job([TORQUE, {"force": "200 N", "opposes": "motion"}], name, friction=RUBS))
-    assert "got none; add for example [friction] guide = 0.1" in refusal(job([TORQUE], name))
+    assert "got none; for example, add [friction] guide = 0.1" in refusal(job([TORQUE], name))
 
 
 def test_friction_under_the_weight_of_a_crank_alone_is_not_called_no_friction() -> None:
@@ -123,8 +123,8 @@ def test_what_cannot_vary_is_refused_for_what_it_is(path: str, said: str) -> Non
 )
 def test_a_load_of_zero_throughout_loads_nothing(load: dict[str, Any], name: str) -> None:
     said = refusal(job([load], name))
-    assert said.startswith(f"objectives.{name}: it needs masses that move or weigh, or loads; got none")
-    assert "got none that is not zero; add for example [mechanism] slider = " in said
+    assert said.startswith(f"objectives.{name}: it needs masses that move or have weight, or loads; got only zeros")
+    assert "got only zeros; for example, add [mechanism] slider = " in said
     parse_job(job([load, {"viscous": "15 N s/m"}], name))
 
 

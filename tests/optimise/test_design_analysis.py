@@ -179,7 +179,7 @@ def test_a_quantity_without_value_for_a_design_is_undefined_with_a_reason() -> N
     assert 0.0 < sc.problem(tables).analyse([0.04, 0.1, 0.01])["efficiency"] < 1.0
     analysis = sc.problem({**tables, "load": loads[:1]}).analyse([0.04, 0.1, 0.01])
     assert "efficiency" not in analysis
-    assert analysis.undefined["efficiency"].startswith("an efficiency needs a load that takes or supplies net work")
+    assert analysis.undefined["efficiency"].startswith("an efficiency needs a load that absorbs or supplies net work")
     assert not any(np.isnan(value) for value in analysis.values())
 
 

@@ -79,5 +79,5 @@ def test_a_bad_clearance_is_refused_with_key_rule_value_and_remedy(change: dict[
 
 @pytest.mark.parametrize("key", ["joint", "radial_clearance", "journal_radius"])
 def test_what_a_clearance_needs_is_asked_for(key: str) -> None:
-    with pytest.raises(JobError, match=rf"clearance\.{key}: is missing, but required; add for example {key} ="):
+    with pytest.raises(JobError, match=rf"clearance\.{key}: is missing, but required; for example, add {key} ="):
         parse_job(SMALL | {"clearance": {name: value for name, value in LOOSE.items() if name != key}})

@@ -38,8 +38,8 @@ def test_costs_are_read_in_si() -> None:
 @pytest.mark.parametrize(
     ("costs", "words"),
     [
-        ({}, ["costs: must name at least one of crank, rod", "add for example crank ="]),
-        ({"crank": {"at": "1 mm"}}, ["costs.crank.cost: is missing", "add for example cost = 8.0"]),
+        ({}, ["costs: must name at least one of crank, rod", "for example, add crank ="]),
+        ({"crank": {"at": "1 mm"}}, ["costs.crank.cost: is missing", "for example, add cost = 8.0"]),
         ({"crank": {"cost": 8.0}}, ["costs.crank.at: is missing", '"0.05 mm"']),
         ({"crank": GOOD | {"at": "0.1 deg"}}, ["costs.crank.at", "is an angle"]),
         ({"crank_angle": GOOD}, ["costs.crank_angle.at", "is a length"]),

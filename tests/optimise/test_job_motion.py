@@ -127,7 +127,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"motion": {"swing": "90 deg"}}, "to is where swing leads from from; got all three"),
         ({"motion": {"slider_from": "3 m"}}, "by two crank angles or by two slider positions; got from"),
         ({"motion": {"crank_side": "right"}}, "may only be given with slider positions; got right"),
-        ({"motion": {"law": "table", "duration": "3 s"}}, "got no law_times; add for example law_times"),
+        ({"motion": {"law": "table", "duration": "3 s"}}, "got no law_times; for example, add law_times"),
         (
             {"motion": {"law": "table", "duration": "3 s", "law_times": [0, 0.5, 1], "law_shares": [0, 1]}},
             "must have the same number of values; got 3 and 2",

@@ -36,7 +36,7 @@ BAD: list[tuple[str, str, list[str]]] = [
     (SPEED, SPEED + "\nxyz = 3", ["mechanism.xyz", "unknown key", "possible here: speed,"]),
     ("[objectives]", "[objective]", ["objective: unknown heading [objective]; did you mean [objectives]?"]),
     ("[variables]", "[[variables]]", ["variables: there must be only one [variables]", "write [variables]"]),
-    ('name = "Vibrating sieve"', "", ["name: is missing", "add for example name ="]),
+    ('name = "Vibrating sieve"', "", ["name: is missing", "for example, add name ="]),
     ('name = "Vibrating sieve"', "name = 3", ["name: must be text in quotes", "got 3"]),
     ('name = "Vibrating sieve"', 'name = " "', ["name: must be one line of text, not empty"]),
     ('name = "Vibrating sieve"', 'name = "a\\nb"', ["name: must be one line", '"a\\nb"']),

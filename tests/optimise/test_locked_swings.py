@@ -95,7 +95,11 @@ def test_a_job_that_friction_locks_altogether_is_refused_with_how_much(driver: s
         job["variables"] |= {"rod": ["1.55 m", "1.7 m"], "offset": ["-50 mm", "50 mm"]}
     with pytest.raises(InputError, match="friction may lock every design within the ranges that can make the") as told:
         parse_job(job)
-    said = re.search(r"the first ones run with (0\.\d+) of its coefficients; reduce the friction", str(told.value))
+    said = re.search(
+        r"the first designs can move with (0\.\d+) of its coefficients; reduce the "
+        r"friction",
+        str(told.value),
+    )
     assert said is not None
     share = float(said[1])
     runs = []

@@ -164,7 +164,7 @@ def test_near_designs_follow_the_one_whose_round_numbers_keep_an_exact_stroke_at
     assert all(
         miss.quantity == "stroke" and 0.0 < miss.amount < 0.1 for row in range(1, 5) for miss in found.misses(row)
     )
-    assert found.message.endswith("keeps every requirement; others lose clearly less but miss little")
+    assert found.message.endswith("keeps every requirement; others lose much less but miss little")
     assert "within 4 steps (not 16, because 3 numbers are rounded together)" in replace(found, steps_tried=4).message
 
 

@@ -51,7 +51,7 @@ def test_dimensions_are_sized_without_a_speed_and_the_check_says_so() -> None:
 def test_the_first_of_what_follows_the_speed_is_named_where_it_is_missing(changes: dict[str, Any], name: str) -> None:
     with pytest.raises(JobError, match=r"mechanism\.speed: is missing, but required unless") as told:
         parse_job(TABLES | changes)
-    assert f"; {name} depends on it; add for example speed = " in str(told.value)
+    assert f"; {name} depends on it; for example, add speed = " in str(told.value)
 
 
 def test_a_quantity_follows_the_speed_where_its_values_at_random_speeds_differ() -> None:

@@ -192,7 +192,7 @@ def test_every_one_of_several_cylinders_has_the_slow_stroke_that_is_asked(wanted
 
 def test_several_cylinders_along_a_profile_have_no_one_time_ratio() -> None:
     several = {"cylinders": {"phases": ["0 deg", "120 deg"]}}
-    with pytest.raises(JobError, match="it needs one cylinder, as each has its own stroke times"):
+    with pytest.raises(JobError, match="it needs a single cylinder, because each has its own stroke times"):
         parse_job(job(mechanism=several))
 
 

@@ -218,7 +218,7 @@ REFUSED = {
         '["20 mm", "60 mm"]'
     ),
     "[variables]\ncrank = [20 .. 60 mm]\n": (
-        'line 2, variables.crank: each end of a range must be a text of its own; got ["20 .. 60 mm"]; '
+        'line 2, variables.crank: each end of a range must be a separate string; got ["20 .. 60 mm"]; '
         'write ["20 mm", "60 mm"]'
     ),
     "[variables]\ncrank = [0,02; 0,06]\n": (
@@ -264,7 +264,7 @@ REFUSED = {
         '"a"'
     ),
     "[optimiser]\nseed = 1%\n": (
-        'line 2, optimiser.seed: must be a whole number; got "1%"; write for example seed = 1'
+        'line 2, optimiser.seed: must be a whole number; got "1%"; for example, write seed = 1'
     ),
     "[tolerances]\nrod = 1/10 mm\n": (
         'line 2, tolerances.rod: write a decimal number, not a fraction; got "1/10 mm"; write "0.1 mm"'

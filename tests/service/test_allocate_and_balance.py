@@ -187,7 +187,7 @@ def test_a_job_without_costs_has_no_allocation(job: Path, command: Command) -> N
     job.write_text(text[: text.index("[costs]")] + text[text.index("[variables]") :])
     done = command("allocate", job, *ALLOCATE)
     assert (done.exit_code, done.stdout) == (2, "")
-    assert "this job has no [costs]; add for example" in done.stderr
+    assert "this job has no [costs]; for example, add" in done.stderr
 
 
 def test_check_says_what_the_tolerances_cost(job: Path, command: Command) -> None:

@@ -62,7 +62,7 @@ def test_what_needs_a_speed_says_that_a_job_has_none(tmp_path: Path, command: Co
     assert "it needs a crank speed" in text
     assert "peak slider speed 0" not in text
     assert re.search("peak power undefined .*it needs a crank speed", text)
-    assert "balance: it needs a crank speed; got none; add for example [mechanism] speed =" in done.stderr
+    assert "balance: it needs a crank speed; got none; for example, add [mechanism] speed =" in done.stderr
     assert "speed 0" not in done.stdout + done.stderr
     row = json.loads(command("analyse", job, *FEEDER, "--json").stdout)
     assert row["peak_slider_speed_m_s"] is None

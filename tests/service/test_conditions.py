@@ -92,7 +92,7 @@ def test_no_condition_selects_all_and_no_designs_none() -> None:
         ("transmission_angle >= nan", "finite"),
         ("least_transmission_angle_deg >= inf", "finite"),
         ("transmission_angle >= 40 deg; import os", "angle"),
-        ("__import__('os') >= 1", "a function is one of sqrt, .* __import__ is none of these"),
+        ("__import__('os') >= 1", "a function is one of sqrt, .* __import__ is not one of them"),
         ("crank + >= 100 mm", "missing at its end; .* write it like"),
         ("crank_mm >= 30 and rod_mm >= 3", "may only have one comparison; got .*; give two conditions"),
         ("slow_stroke >= inward", "words"),

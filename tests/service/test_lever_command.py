@@ -68,7 +68,7 @@ def test_a_lever_of_a_job_is_the_same_in_python_on_the_command_line_and_for_agen
     agent = Tool("ask", ask).execute(call, asked).record
     assert json_ready(agent) == record
     assert record["notes"] == [
-        "pull pressure and retracting flow take the full bore: no piston rod was given",
+        "pull pressure and retracting flow are based on the full bore, because no piston rod was given",
         "left out of the job, as a lever has neither rod nor slider: masses of rod and slider",
     ]
     weight, psi = 1200.0 * 9.81, math.radians(11.16 + 35.0)
@@ -147,7 +147,9 @@ def test_a_bore_without_a_piston_rod_pulls_with_the_full_area_as_noted(command: 
     pulling = (*LOADED, "--seal-friction", "2 kN", "--bore", "40 mm")
     record = answered(command, *pulling)
     assert record["push_pressure_MPa"] > record["pull_pressure_MPa"] > 0.0
-    assert record["notes"] == ["pull pressure and retracting flow take the full bore: no piston rod was given"]
+    assert record["notes"] == [
+        "pull pressure and retracting flow are based on the full bore, because no piston rod was given"
+    ]
     assert not any("full bore" in note for note in answered(command, *pulling, "--piston-rod", "22 mm")["notes"])
     assert answered(command, *LOADED, "--bore", "40 mm")["notes"] == []
 
@@ -166,7 +168,7 @@ def test_ends_and_the_place_of_a_mass_are_asked_for(command: Command) -> None:
         "slidercrank: a lever swings from one angle to another; got no --to; give both, or use a job with [motion]\n",
     )
     done = command("lever", *TIPPER, "--mass", "80 kg")
-    assert "a carried mass needs its place on the lever; got 80 kg and no --centre" in done.stderr
+    assert "a carried mass needs a position on the lever; got 80 kg and no --centre" in done.stderr
     assert "the cylinder never has to push or pull" in command("lever", *TIPPER).stderr
 
 

@@ -75,7 +75,7 @@ def test_what_is_no_store_is_refused(name: str, command: Command, tmp_path: Path
     connection.close()
     message = refusal_sentence(command, name, *port, "--store", tmp_path / "later.db")
     assert "has version 9999" in message
-    assert "install the release that made it" in message
+    assert "install the release that created it" in message
 
 
 @pytest.mark.parametrize("name", ["serve", "worker"])

@@ -254,7 +254,7 @@ def test_a_worker_waits_for_a_store_that_is_away_until_it_is_told_to_stop(tmp_pa
     [
         (0, "it left"),
         (1, "exit code 1"),
-        (REFUSED, "it could not start working, see above"),
+        (REFUSED, "it could not start; see above"),
         (EXHAUSTED, "its job used more memory than allowed"),
         (-11, "killed by SIGSEGV"),
         (-200, "killed by signal 200"),

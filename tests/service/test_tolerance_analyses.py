@@ -120,7 +120,7 @@ def test_where_a_linkage_within_the_tolerances_does_not_turn_the_exact_worst_cas
 
 
 def test_without_tolerances_there_is_nothing_to_analyse() -> None:
-    with pytest.raises(InputError, match="needs tolerances; got none; add for example"):
+    with pytest.raises(InputError, match="needs tolerances; got none; for example, add"):
         tolerance_analysis.numbers(Mechanism(speed=1.0), SUPPORT)
 
 

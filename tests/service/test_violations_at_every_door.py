@@ -151,7 +151,7 @@ def test_a_safety_below_zero_comes_with_its_cause() -> None:
 def test_a_report_says_it_in_its_summary_beside_the_requirements_and_of_the_front() -> None:
     report = design_report(Subject(parse_job(TABLES), result(), 2, run="weak", versions={}), created=0.0)
     summary = repr(report.sections[0])
-    assert "Beyond what is allowed" in summary
+    assert "Beyond the allowable values" in summary
     assert "shear of the crank pin is" in summary
     said = [block.text for part in report.sections for block in part.blocks if isinstance(block, Paragraph)]
     assert sum(text.startswith("Beyond the allowable value: ") for text in said) == 4

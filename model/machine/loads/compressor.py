@@ -45,7 +45,7 @@ class Compressor(Cylinder):
     @property
     def effect_text(self) -> str:
         """It takes work."""
-        return "takes net work over a cycle"
+        return "absorbs net work over a cycle"
 
     @property
     def magnitude_text(self) -> str:

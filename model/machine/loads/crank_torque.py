@@ -32,7 +32,7 @@ def require_no_crank_load(mechanism: Mechanism, subject: str) -> None:
     for load in mechanism.with_largest_variables.loads:
         if load.on_crank:
             raise InputError(
-                f"{subject} only takes loads on the slider; got {load.magnitude_text}; leave that load out"
+                f"{subject} accepts only loads on the slider; got {load.magnitude_text}; leave that load out"
             )
 
 

@@ -78,7 +78,7 @@ class Engine(Cylinder):
     @property
     def effect_text(self) -> str:
         """It gives work."""
-        return "gives more work in expansion than it takes in compression"
+        return "delivers more work in expansion than it absorbs in compression"
 
     @property
     def magnitude_text(self) -> str:

@@ -126,7 +126,7 @@ def _least_violating_points(evaluators: list[Evaluator]) -> list[tuple[int, Arra
 MINIMAX = Method(
     name="minimax",
     title="Minimax",
-    help="Sequential convex programming on all peaks over the cycle at once, without smoothing.",
+    help="Sequential convex programming on all peaks over the cycle simultaneously, without smoothing.",
     family="gradient",
     objectives="one",
     search=minimax,

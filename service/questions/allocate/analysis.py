@@ -35,7 +35,7 @@ from ..record_types import Note, Record
 
 OfLength = Annotated[float | None, Note("null for the crank angle")]
 OfAngle = Annotated[float | None, Note("of the crank angle; null for lengths")]
-Before = Annotated[float | None, Note("null unless the job has all tolerances that have a cost")]
+Before = Annotated[float | None, Note("null unless the job states every tolerance that has a cost")]
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +51,9 @@ class Tolerance(Record):
     tolerance_deg: OfAngle
     cost: float
     share_of_cost_percent: float
-    bound: Annotated[Literal["least", "greatest"] | None, Note("of what is possible, if it is at one; else null")]
+    bound: Annotated[
+        Literal["least", "greatest"] | None, Note("of the permitted range, if the tolerance is at it; otherwise null")
+    ]
     bound_saving_per_um: OfLength
     """Saving if the bound moves; null for the crank angle."""
     bound_saving_per_mdeg: OfAngle
@@ -73,7 +75,9 @@ class Tolerances(Record):
     cost: float
     error_mm: float
     """Maximum over the counted part of the cycle."""
-    exact_worst_case_mm: Annotated[float | None, Note("null where a linkage within the tolerances does not turn")]
+    exact_worst_case_mm: Annotated[
+        float | None, Note("null where a linkage within the tolerances does not rotate fully")
+    ]
     saving_per_um: float
     """Saving if the limit is raised."""
     tolerances: list[Tolerance]
@@ -105,7 +109,7 @@ def compute_shared_options(
     """Return the allocation that numbers and figure share, and the costs. Raises `InputError` if [costs] is missing."""
     if problem is None or problem.costs is None:
         raise InputError(
-            "allocation needs the costs of the tolerances; this job has no [costs]; add for example [costs] crank = { "
+            "allocation needs the costs of the tolerances; this job has no [costs]; for example, add [costs] crank = { "
             'cost = 8.0, at = "0.05 mm" }'
         )
     allocation = allocate_tolerances(linkage, problem.costs, limit, kind, mechanism=mechanism)

@@ -86,8 +86,8 @@ def run_simulation(
     """
     if mechanism.clearance is None:
         raise InputError(
-            "a simulation of joint clearance needs a joint with clearance; all joints of this job are ideal; add to "
-            "the job for example "
+            "a simulation of joint clearance needs a joint with clearance; all joints of this job are ideal; for "
+            "example, add to the job "
             '[clearance] with joint = "crank pin", radial_clearance = "0.2 mm" and journal_radius = "10 mm"'
         )
     with _turns_bar() as report:

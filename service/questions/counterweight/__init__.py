@@ -50,7 +50,7 @@ QUESTION = DesignQuestion(
         Input(
             "arm",
             LENGTH,
-            "Moment counts, divided by",
+            "Include the moment, divided by",
             "Also minimise the shaking moment, as moment / arm; needs a balance mass on the rod.",
             sign="positive",
         ),

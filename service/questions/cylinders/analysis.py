@@ -44,7 +44,7 @@ class Cylinders(ShakingNumbers):
     mean_torque_Nm: NullIfLocked
     rms_torque_Nm: NullIfLocked
     torque_fluctuation_Nm: Annotated[float | None, Note("RMS deviation from the mean; null where friction locks")]
-    energy_change_J: Annotated[float | None, Note("that a flywheel takes up and gives back; null where friction locks")]
+    energy_change_J: Annotated[float | None, Note("that a flywheel absorbs and returns; null where friction locks")]
     peak_rocking_couple_Nm: float
     peak_rocking_couple_angle_deg: PeakAngle
     peak_shaking_force_of_one_N: float

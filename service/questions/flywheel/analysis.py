@@ -127,7 +127,7 @@ def _without_flywheel_text(numbers: Flywheel) -> Text:
     slowest = value_from_record(numbers, "least_speed_without_flywheel_rpm", digits=4)
     if slowest.number:
         return words(f"it is {bare:.4g} (least speed {{slowest}})", slowest=slowest)
-    return f"it is {bare:.4g}: the crank nearly stops, below a millionth of its maximum speed"
+    return f"it is {bare:.4g}: the crank nearly stops, at less than a millionth of its maximum speed"
 
 
 def figure(mechanism: Mechanism, linkage: Linkage, *, fluctuation: float = FLUCTUATION.default) -> PanelFigure:

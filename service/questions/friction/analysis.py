@@ -49,7 +49,7 @@ class FrictionNumbers(Record):
     ]
     least_transmission_angle_deg: float
     guide_friction_angle_deg: float
-    pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for any")]
+    pin_friction_angle_deg: Annotated[float | None, Note("null where the pins are too thick for such an angle")]
     locked_angles_deg: list[list[float]]
     """Start and end of each range of crank angles in which it locks."""
     peak_torque_Nm: NullIfLocked

@@ -47,7 +47,7 @@ def _require_cylinders(mechanism: Mechanism) -> tuple[tuple[int, Cylinder], ...]
     loads = cylinder_loads(mechanism)
     if not loads:
         raise InputError(
-            "an indicator diagram needs a cylinder; this job has none; add to the job for example "
+            "an indicator diagram needs a cylinder; this job has none; for example, add to the job "
             '[[load]] with bore = "70 mm", suction = "1 bar", discharge = "8 bar" and clearance = 0.05'
         )
     return loads

@@ -37,7 +37,7 @@ QUESTION = DesignQuestion(
     swinging crank, the crank angles are those within the swing.""",
         endpoint="find_crank_angles",
         job="Job file that supplies the branch and fixed dimensions; with --design, a run.",
-        alone="Without JOB the branch is open. Dimensions that JOB fixes need not be repeated. With --design, give a "
+        alone="Without JOB, the branch is open. Dimensions that JOB fixes need not be repeated. With --design, give a "
         "run instead of JOB; the dimensions are those of the design.",
     ),
 )

@@ -90,8 +90,8 @@ QUESTION = DesignQuestion(
         help="""Find the crank-speed law over a turn that a servo or electronic cam should follow.
 
     Lengths and loads are those of JOB; the inertia of motor and flywheel in its [drive] is included. The answer
-    compares the law with constant speed at the same cycle time, and has a proven bound. Not for friction in joints,
-    viscous loads, several cylinders or cycles of 720 deg.""",
+    compares the law with constant speed at the same cycle time, and has a proven bound. Does not support
+    friction in joints, viscous loads, several cylinders or cycles of 720 deg.""",
         endpoint="find_motion_law",
         job="Job file that supplies speed, masses, loads and drive.",
         curves="the cam table: time, crank angle, speed, acceleration",

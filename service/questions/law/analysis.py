@@ -152,7 +152,7 @@ def _gain_text(numbers: LawNumbers) -> str:
         even: float = numbers[f"{key}_at_constant_speed_Nm"]  # type: ignore[literal-required]
         change = numbers[f"{key}_Nm"] / even - 1.0 if even else 0.0  # type: ignore[literal-required]
         changes.append(f"{title} {format_number(abs(100.0 * change), 3)} % {'higher' if change > 0.0 else 'lower'}")
-    return f"Against constant speed at the same cycle time: {' and '.join(changes)}."
+    return f"Compared with constant speed at the same cycle time: {' and '.join(changes)}."
 
 
 def _objective_text(objective: LawObjective) -> str:

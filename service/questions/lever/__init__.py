@@ -128,7 +128,7 @@ QUESTION = DesignQuestion(
         ),
     ),
     command=QuestionCommand(
-        help="""Analyse a lever that a cylinder moves, where the cylinder turns about a fixed pivot.
+        help="""Analyse a lever moved by a cylinder that turns about a fixed pivot.
 
     This is the linkage with its rod fixed, as on lids, tippers and booms: the crank is the lever from its pivot O to
     the pin B, the rod is the frame from O to the cylinder's pivot A, the offset the distance of the cylinder's line
@@ -138,7 +138,7 @@ QUESTION = DesignQuestion(
         endpoint="analyse_lever",
         job="Job file that supplies mass and centre of the crank, gravity, tolerances, and the swing in [motion]; with "
         "--design, a run.",
-        alone="Without JOB the lever only has the carried mass.",
+        alone="Without JOB, the lever has only the carried mass.",
         curves="the curves from start to end",
         figure=("lever", "the lever at both ends, force and length"),
     ),

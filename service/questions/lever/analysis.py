@@ -29,8 +29,10 @@ _TELESCOPIC = (
     "its closed length; move a pivot, reduce the swing, or use a telescopic cylinder"
 )
 _IDLE = "the cylinder never has to push or pull: nothing has weight or is accelerated; give a mass, or gravity"
-_BUCKLING = "buckling: Euler, both ends pinned, the whole length as slender as the piston rod, of steel"
-_FULL_BORE = "pull pressure and retracting flow take the full bore: no piston rod was given"
+_BUCKLING = (
+    "buckling: Euler's formula, both ends pinned, for a steel bar as thick as the piston rod over its whole length"
+)
+_FULL_BORE = "pull pressure and retracting flow are based on the full bore, because no piston rod was given"
 _POINTS = {
     "peak_push": FORCE,
     "peak_pull": FORCE,
@@ -48,7 +50,7 @@ _LACKS = {
     "lever_angle_error": "null without tolerances",
     "peak_cylinder_speed": "null for a slow swing",
     "peak_power": "null for a slow swing",
-    "buckling_margin": "null without a piston rod, and where nothing pushes",
+    "buckling_margin": "null without a piston rod, and where the cylinder never pushes",
     "push_pressure": "null without a bore",
     "pull_pressure": "null without a bore",
     "extending_flow": "null without a bore, and for a slow swing",
@@ -69,7 +71,7 @@ def _record_keys(names: Mapping[str, Kind]) -> dict[str, Any]:
 
 
 def _place_keys(name: str) -> dict[str, Any]:
-    kind = Annotated[float | None, Note("null where the value is")]
+    kind = Annotated[float | None, Note("null where the value is null")]
     return {f"{name}_at_lever_angle_deg": kind, f"{name}_at_length_mm": kind}
 
 

@@ -96,7 +96,7 @@ def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any])
     mass, centre = inputs.get("mass", 0.0), inputs.get("centre")
     if mass and centre is None:
         raise InputError(
-            f"a carried mass needs its place on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
+            f"a carried mass needs a position on the lever; got {mass:.6g} kg and no {labels.get('centre', 'centre')}; "
             "give its distance from the pivot"
         )
     body = LeverBody(

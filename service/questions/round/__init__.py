@@ -16,8 +16,8 @@ QUESTION = FrontOrJobQuestion(
     Evaluates every combination of multiples of the steps around the design exactly. Lists the non-dominated designs
     that meet every requirement, or miss it by no more than --allow, smallest loss first. The loss is the greatest
     over the objectives, each relative to its range over the front. If the best design loses much, the list
-    continues with designs that miss slightly but lose clearly less. If no design meets every requirement, lists the
-    nearest ones with what each misses and by how much.""",
+    continues with designs that miss slightly but lose much less. If no design meets every requirement,
+    lists the nearest ones, with each missed requirement and the amount.""",
     inputs=(
         PlainInput(
             "to",

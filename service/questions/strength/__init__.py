@@ -3,5 +3,5 @@
 from ..design_question import DesignQuestion
 
 QUESTION = DesignQuestion(
-    __name__, 48, "stresses, safety factors, pins and wear of crank and rod, and the place of greatest stress"
+    __name__, 48, "stresses, safety factors, pins and wear of crank and rod, and the location of the greatest stress"
 )

@@ -49,7 +49,7 @@ QUESTION = DesignQuestion(
         endpoint="analyse_swing",
         job="Job file that supplies masses, loads, friction, tolerances and the swing in [motion]; with --design, a "
         "run.",
-        alone="Without JOB all bodies are massless.",
+        alone="Without JOB, all bodies are massless.",
         curves="the curves of both strokes",
     ),
 )

@@ -59,8 +59,8 @@ _TITLES = {
 
 
 _Known = Annotated[float | None, Note("null where friction may lock the linkage")]
-_Way = Annotated[Literal["forth", "back"] | None, Note("null where the value is")]
-_Place = Annotated[float | None, Note("null where the value is, and for a constant curve")]
+_Way = Annotated[Literal["forth", "back"] | None, Note("null where the value is null")]
+_Place = Annotated[float | None, Note("null where the value is null, and for a constant curve")]
 _ENDS = [f"drive_at_{end}_{way}" for end in ("start", "end") for way in ("forth", "back")]
 _DRIVES = (TORQUE, FORCE)  # units of the crank and of the slider
 _PLACES = {"at_crank_angle_deg": _Place, "at_slider_position_mm": _Place}

@@ -25,7 +25,7 @@ from ..record_types import Note, Record
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Turning = Annotated[float | None, Note("null where all but one of the machines are stuck")]
+Turning = Annotated[float | None, Note("null unless at least two of the machines rotate fully")]
 Exact = Annotated[float | None, Note("null where a linkage within the tolerances does not rotate fully")]
 SAMPLES = 20_000
 _ERRORS = (Signal.POSITION_ERROR, Signal.POSITION_ERROR_RSS)
@@ -104,7 +104,7 @@ def numbers(
     """
     source_limits = limits_of_sources(mechanism, linkage)
     if not np.any(source_limits):
-        raise InputError('a position error needs tolerances; got none; add for example [tolerances] crank = "0.05 mm"')
+        raise InputError('a position error needs tolerances; got none; for example, add [tolerances] crank = "0.05 mm"')
     design = lengths_row(linkage)
     (worst_case, at), (rss, at_square) = (
         (float(values[0]), angles) for values, angles in (first_peaks(mechanism, signal, design) for signal in _ERRORS)

@@ -37,7 +37,7 @@ UnevenSpeed = Annotated[
     dict[str, Any],
     Keys(
         "UnevenSpeed",
-        "Speeds, torque and peaks along the speed profile, and at constant speed, the mean over the crank angle.",
+        "Speeds, torque and peaks with the speed profile, and at constant speed (its mean over the crank angle).",
         {
             "least_speed_rpm": float,
             "least_speed_angle_deg": float,
@@ -62,7 +62,7 @@ UnevenSpeed = Annotated[
 def _require_profile(mechanism: Mechanism) -> None:
     if mechanism.speed_profile is None:
         raise InputError(
-            "an uneven speed needs a speed profile; the speed of this job is constant; add to the job for example "
+            "an uneven speed needs a speed profile; the speed of this job is constant; for example, add to the job "
             "[mechanism] speed_profile = { cosines = [0.0, 0.05] }"
         )
 

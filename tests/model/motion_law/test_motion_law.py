@@ -158,8 +158,8 @@ def test_the_cam_table_gives_the_torque_to_a_thousandth(law: MotionLaw) -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"loads": (Viscous(coefficient=3.0),)}, "takes loads that do not depend on the speed"),
-        ({"loads": (Drag(drag=3.0),)}, "takes loads that do not depend on the speed"),
+        ({"loads": (Viscous(coefficient=3.0),)}, "accepts only loads that do not depend on the speed"),
+        ({"loads": (Drag(drag=3.0),)}, "accepts only loads that do not depend on the speed"),
         ({"friction": Friction(guide=0.1)}, "without friction in the joints"),
         ({"arrangement": Arrangement(phases=(0.0, np.pi))}, "one cylinder"),
         ({"crank": RigidLink(mass=0.0), "rod": RigidLink(mass=0.0)}, "needs inertia at every angle"),

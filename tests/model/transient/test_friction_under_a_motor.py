@@ -260,6 +260,6 @@ def test_what_friction_locks_or_may_jam_is_refused() -> None:
         slider_mass=50.0,
         friction=Friction(crank_pin=Pin(radius=0.02, coefficient=0.3)),
     )
-    with pytest.raises(InputError, match=r"exceed what friction cancels at every crank angle.*a flywheel"):
+    with pytest.raises(InputError, match=r"exceed the part that friction cancels at every crank angle.*a flywheel"):
         simulate(heavy, LINKAGE, COAST, duration=0.1)
     assert simulate(heavy, LINKAGE, DRIVE, duration=0.05).energy_balance_error < 1e-8

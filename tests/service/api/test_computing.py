@@ -72,7 +72,7 @@ def test_a_request_beyond_a_limit_gets_one_sentence_and_the_next_one_its_answer(
 
 def test_a_process_that_is_killed_fails_its_own_request_alone(client: httpx.Client) -> None:
     answer = client.get("/long/killed")
-    assert "must not end early; it did (killed by SIGKILL); try again" in refusal_sentence(answer, 503)
+    assert "must not end early; it ended (killed by SIGKILL); try again" in refusal_sentence(answer, 503)
     assert answer.headers["retry-after"] == "5"
     resting = _process(client)
     resting.kill()

@@ -149,7 +149,7 @@ def test_a_request_that_never_ends_is_given_up(
             status, document = answer(slow)
         assert (status, document["detail"]) == (
             408,
-            "the body must arrive within 0.5 s; it is incomplete; send less, or over a faster connection",
+            "the body must arrive within 0.5 s; it is incomplete; send less, or use a faster connection",
         )
         time.sleep(0.6)  # a connection at rest after an answer is kept
         assert client.get("/health/live").status_code == 200

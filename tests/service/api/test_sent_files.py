@@ -46,7 +46,7 @@ def test_a_file_that_is_missing_or_broken_is_refused_in_a_sentence(shared: httpx
     asked = body(TRACE)
     for files, words in (
         ({"other.csv": TRACE}, 'load #1.file: "trace.csv" not found among the files sent with the job (other.csv)'),
-        ({"trace.csv": "data:text/csv;base64,?"}, "files.trace.csv: must be a text or base64; got a broken one"),
+        ({"trace.csv": "data:text/csv;base64,?"}, "files.trace.csv: must be text or base64; got neither"),
         ({"trace.csv": "a;b\n1;2\n"}, 'the columns have no units; got "a", "b"'),
     ):
         assert words in refusal_sentence(shared.post("/check", json={**asked, "files": files}), 422)

@@ -48,7 +48,7 @@ def test_what_explains_and_types_a_module_is_not_sent() -> None:
         ({"app.js": 'import all from "./b.js";\n', "b.js": ""}, "import all from"),
         ({"app.js": "export let count = 0;\n"}, "export let count"),
         ({"app.js": "const later = import(name);\n"}, r"import\(name"),
-        ({"app.js": 'import { b } from "./b.js";\n'}, "b.js, which is not there"),
+        ({"app.js": 'import { b } from "./b.js";\n'}, "b.js, which does not exist"),
         (
             {"app.js": 'import { b } from "./b.js";\n', "b.js": 'import { a } from "./app.js";\n'},
             "app.js -> b.js -> app.js",

@@ -15,7 +15,7 @@ from slidercrank.service.store.schema import designs, events, jobs
 from slidercrank.service.store.schema_version import stored_and_known_version
 from tests.service.store.contents import add, claim_waiting_job, progress, result, search_record
 
-UNSAFE = "fsync is off: a crash can lose what was committed; switch it on"
+UNSAFE = "fsync is off: a crash can lose committed data; switch it on"
 """The servers of the tests run so."""
 
 

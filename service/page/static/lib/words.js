@@ -55,7 +55,7 @@ const SAID = [
     () => "let the crank swing, under Motion",
   ],
   [
-    /\b(?:add|write)(?: to the job)?(?: for example)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g,
+    /\b(?:for example, )?(?:add|write)(?: to the job)?(?: an?)? \[\[?([a-z]+)(?:\.[a-z]+)*\]\]?(?: (?:with )?([a-z_]+))?(?:(?!, or (?:use|leave) )[^;])*/g,
     (whole, table, key) =>
       PARTS[table] ? `give it under “${PART_TITLES[`${table}.${key}`] ?? PARTS[table]}”` : whole,
   ],
@@ -71,8 +71,8 @@ const SAID = [
   ],
   [/(?:set )?\[motion\] driver = "(\w+)"/g, (_, end) => `let the ${end} be the driven end`],
   [
-    /add for example law_times = \[([^\]]+)\], law_shares = \[([^\]]+)\]/g,
-    (_, times, ways) => `give for example the times ${times} and the fractions of travel ${ways}`,
+    /for example, add law_times = \[([^\]]+)\], law_shares = \[([^\]]+)\]/g,
+    (_, times, ways) => `for example, give the times ${times} and the fractions of travel ${ways}`,
   ],
   [/by slider_from and slider_to\b/g, "by two slider positions"],
   [/\blaw_times\b/g, "fractions of the time"],
@@ -81,8 +81,8 @@ const SAID = [
   [/, or as a plain number in [^;.]+/g, ""],
   [/ \(a plain number is in rad\)/g, ""],
   [
-    /(write|add) (?:it )?for example [a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g,
-    (verb, _, __, value) => `${verb.startsWith("add") ? "add" : "write"} for example ${value}`,
+    /for example, (write|add) (?:it )?[a-z_]+ = ("?)([^{}[\]"]+)\2(?=$|;)/g,
+    (_, verb, __, value) => `for example, ${verb} ${value}`,
   ],
   [
     /(min|max|equals|step|target) = "([^"]+)"/g,
@@ -103,7 +103,7 @@ const SAID = [
     /must be an? ([a-z ]+): one number and one unit; got ""; write it like /g,
     (_, kind) => `needs a number: a ${kind}, such as `,
   ],
-  [/is missing, but required; (?:add|write) for example /g, "is missing; give a value, such as "],
+  [/is missing, but required; for example, (?:add|write) /g, "is missing; give a value, such as "],
   [
     /^slow_stroke = "(\w+)" leaves/,
     (_, stroke) => `a slow stroke that is the ${stroke} one leaves`,

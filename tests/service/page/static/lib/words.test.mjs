@@ -31,11 +31,11 @@ const SAID = [
     "a quantity with a fixed value cannot also be an objective; got “exactly” among the requirements; leave out one of the two",
   ],
   [
-    'it needs masses that move or weigh, or loads; got none that is not zero; add for example [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
-    "it needs masses that move or weigh, or loads; got none that is not zero; give it under “Masses and loads”",
+    'it needs masses that move or have weight, or loads; got only zeros; for example, add [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
+    "it needs masses that move or have weight, or loads; got only zeros; give it under “Masses and loads”",
   ],
   [
-    'it needs a crank speed; got none; add for example [mechanism] speed = "300 rpm"',
+    'it needs a crank speed; got none; for example, add [mechanism] speed = "300 rpm"',
     "it needs a crank speed; got none; give it under “Motion”",
   ],
   [
@@ -55,11 +55,11 @@ const SAID = [
     "must be a single entry; got a list of 2; keep one of them",
   ],
   [
-    "a self-locking margin needs friction; got none; add for example [friction] guide = 0.1, or use transmission_angle",
+    "a self-locking margin needs friction; got none; for example, add [friction] guide = 0.1, or use transmission_angle",
     "a self-locking margin needs friction; got none; give it under “Friction”, or use transmission_angle",
   ],
   [
-    "it needs a material and pins; got none; add for example [sections] with pins and [sections.material], as in docs/sizing.md",
+    "it needs a material and pins; got none; for example, add [sections] with pins and [sections.material], as in docs/sizing.md",
     "it needs a material and pins; got none; give it under “Material and pins”",
   ],
   [
