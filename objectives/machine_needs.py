@@ -57,7 +57,7 @@ def _has_mass(machine: Mechanism) -> bool:
 _defining = partial(Need, consequence="undefined")
 _MASSES = 'it needs masses; got none; for example, add [mechanism] slider = { mass = "0.8 kg" }'
 _LOADS = (
-    "it needs masses that move or have weight, or loads; got only zeros; for example, add "
+    "it needs masses that move or have weight, or loads; got none, or only zeros; for example, add "
     '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
 )
 _SLIDER_LOADS = _LOADS.replace("or loads;", "or loads on the slider;") + " on the slider"

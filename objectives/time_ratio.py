@@ -35,7 +35,7 @@ def _time_ratio_bounds(box: LengthRanges) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeRatio(ClosedFormQuantity):
-    """Time ratio: a closed form at constant speed; along a profile, the maximum of both stroke time ratios."""
+    """Time ratio: a closed form at constant speed; with a profile, the maximum of both stroke time ratios."""
 
     def closed_form_holds(self, mechanism: Mechanism) -> bool:
         """Return whether the machine rotates at constant speed."""
@@ -87,7 +87,7 @@ TIME_RATIO = TimeRatio(
         "profile can change that and the ratio."
     ),
     formula=(
-        "Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r)); along a "
+        "Q = (180 deg + |b|) / (180 deg - |b|) with the excess angle b = arcsin(e/(l-r)) - arcsin(e/(l+r)); with a "
         "speed profile, stroke times in place of crank angles"
     ),
     picture="time ratio",

@@ -40,7 +40,7 @@ def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
     if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | ClosedFormSwingQuantity):
-        profile = " along a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
+        profile = " with a speed profile" if isinstance(quantity, ClosedFormQuantity) else ""
         return f"{quantity.title}{profile} has no bound over a range of designs"
     has_forces = _has_forces(quantity)
     if has_forces and mechanism.friction.acts and not (isinstance(quantity, SwingPeak) and quantity.free):
@@ -68,7 +68,7 @@ def _has_forces(quantity: Quantity) -> bool:
 
 
 def is_usable(problem: Problem, constraint: Constraint) -> bool:
-    """Whether a constraint helps to rule out boxes; any other still holds for every design that is counted."""
+    """Whether a constraint helps to rule out boxes; other constraints are still met by every design that is counted."""
     stated = [bound for bound in (constraint.lower, constraint.upper) if bound is not None]
     return len(ignored_sides(problem, constraint)) < len(stated)
 

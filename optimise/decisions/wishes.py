@@ -115,7 +115,7 @@ def _require_consistent_wishes(front: ParetoFront, wishes: tuple[Wish, ...], row
     names = [objective.quantity for objective in front.objectives]
     if "value" not in kinds and "improve" not in kinds:
         raise InputError(
-            f"no wish was given; give one of {', '.join(names)} a value, or let it improve on a design of the front"
+            f"no wish was given; give one of {', '.join(names)} a value, or let it improve on a design on the front"
         )
     relative = [name for name, kind in zip(names, kinds, strict=True) if kind in ("improve", "keep")]
     if row is None:

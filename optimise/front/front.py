@@ -270,7 +270,7 @@ class ParetoFront:
                 keep &= values <= greatest
             ranges.append(f"{column} is {values.min():.6g} to {values.max():.6g}")
         if not keep.any():
-            raise InputError(f"no design of the front is within {bounds}, whose {' and '.join(ranges)}; widen a bound")
+            raise InputError(f"no design on the front is within {bounds}, whose {' and '.join(ranges)}; widen a bound")
         rows = np.flatnonzero(keep)
         return int(rows[np.argmin(self.values[rows, objective])])
 
@@ -408,8 +408,8 @@ class ParetoFront:
         """Say that no design on the front is better in an objective."""
         title = self.problem.quantity(objective.quantity).title
         if objective.sense == "target":
-            return f"no design of the front is nearer to the target of {title}"
-        return f"no design of the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
+            return f"no design on the front is nearer to the target of {title}"
+        return f"no design on the front has {'more' if objective.sense == 'maximise' else 'less'} {title}"
 
     def _display_unit(self, objective: Objective, system: System) -> tuple[str, float]:
         """Return an objective's display unit in a unit system, and its metric unit expressed in that unit."""

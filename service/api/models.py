@@ -69,7 +69,7 @@ class JobSummary(RowSummary):
     hypervolume: float | None
     evaluations: Count
     axes: list[str] = Field(description="the columns of the points")
-    points: list[list[float | str | None]] = Field(description="values for at most 64 designs of the front, by column")
+    points: list[list[float | str | None]] = Field(description="values for at most 64 designs on the front, by column")
 
 
 class JobRow(ResponseModel):

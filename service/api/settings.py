@@ -72,6 +72,7 @@ It must follow the numeric limits; otherwise the schema lists them under names u
 JobNumber = Annotated[int, Path(ge=1, le=LARGEST, description="the number of a job", examples=[1]), PLAIN_DIGITS]
 """A path parameter."""
 UnitsParameter = Annotated[
-    System, Query(description="system of units of the answer; in the inch system keys such as crank_mm become crank_in")
+    System,
+    Query(description="system of units of the answer; in the inch system, keys such as crank_mm become crank_in"),
 ]
 """A query parameter."""

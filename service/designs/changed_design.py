@@ -148,7 +148,8 @@ def lengths_meeting_equalities(design: StoredDesign, lengths: Lengths, moved: st
 def nearest_lengths_meeting_equalities(design: StoredDesign, lengths: Lengths, moved: str) -> Lengths:
     """Return lengths that meet every equality; the nearest reachable ones if the changed length cannot be held.
 
-    They lie between the design's own and the given ones. Raises `InputError` if its own cannot be held either.
+    They lie between the design's own and the given ones. Raises `InputError` if the design's own length cannot be held
+    either.
     """
     try:
         return lengths_meeting_equalities(design, lengths, moved)
@@ -199,6 +200,6 @@ def _no_solution_error(design: StoredDesign, equal: list[Constraint], moved: str
         rules.append(f"{quantity.title} exactly {target:.6g} {quantity.unit.symbol}".strip())
     other_lengths = " and ".join(name for name in DIMENSIONS if name != moved)
     return InputError(
-        f"{other_lengths} must change so that {' and '.join(rules)} still holds; for {moved} {1e3 * value:.6g} mm no "
-        "design was found; change it less, or allow the rules to be broken"
+        f"{other_lengths} must change so that {' and '.join(rules)} still holds; no design was found with {moved} "
+        f"{1e3 * value:.6g} mm; change {moved} less, or allow the rules to be broken"
     )

@@ -85,7 +85,7 @@ class FrontOrJobQuestion:
         """
         if (row is None and self.row == "must") or (row is not None and self.row == "none"):
             if row is None:
-                raise InputError(f"{self.name} needs one design of the front; got none; name it")
+                raise InputError(f"{self.name} needs one design on the front; got none; name it")
             raise InputError(f"{self.name} applies to the whole front; got one design; leave it out")
         return read_inputs(self.inputs, inputs, self.name, words)
 

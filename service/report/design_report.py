@@ -93,7 +93,7 @@ def _machine_lines(subject: Subject) -> list[str]:
 def _best_objectives(subject: Subject) -> list[str]:
     """Return the objectives in which a design on the front is best."""
     marks = [name for name, place in subject.result.extremes.items() if place == subject.number - 1]
-    words = [f"best of the front in {name.replace('_', ' ')}" for name in marks]
+    words = [f"best on the front in {name.replace('_', ' ')}" for name in marks]
     if subject.result.knee == subject.number - 1 and len(subject.result.objectives) > 1:
         words.append("knee of the front: nearest to the best values of all objectives")
     return words

@@ -1,4 +1,4 @@
-"""RMS values along a speed profile against integration over time."""
+"""RMS values with a speed profile against integration over time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Quantities of several cylinders and along a speed profile: sums, sweeps, derivatives, what is of all or of one."""
+"""Quantities of several cylinders and with a speed profile: sums, sweeps, derivatives, what is of all or of one."""
 
 from __future__ import annotations
 
@@ -173,7 +173,7 @@ def test_derivatives_are_those_of_extrapolated_differences(name: str) -> None:
 
 
 def test_derivatives_by_numbers_that_vary_count_the_bank_of_gravity() -> None:
-    """Speed, masses, sections, loads and gravity, in banks and along a profile."""
+    """Speed, masses, sections, loads and gravity, in banks and with a profile."""
     varying = tuple(item for item in BARS.varying if item.name != "acceleration")
     machine = replace(BARS, acceleration=0.0, arrangement=BANKS, speed_profile=UNEVEN, varying=varying)
     designs = varied_designs(machine, 1, seed=4)
@@ -239,7 +239,7 @@ def test_a_boxer_shakes_by_a_couple_alone_and_says_so() -> None:
 
 
 def test_what_is_not_of_a_crankshaft_is_refused_with_the_way_out() -> None:
-    with pytest.raises(JobError, match=r"a stroke belongs to one; .* use peak_torque"):
+    with pytest.raises(JobError, match=r"a stroke belongs to one cylinder; .* use peak_torque"):
         boxer(objectives={"peak_torque_outward": "minimise", "footprint": "minimise"})
     plane = {"cylinders": {"phases": ["0 deg", "180 deg"]}}
     with pytest.raises(JobError, match="a rocking couple needs cylinders at different places"):

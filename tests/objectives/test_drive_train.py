@@ -117,7 +117,7 @@ class HandMade:
     "seed", [1, 2, 4, pytest.param(6, marks=pytest.mark.slow), pytest.param(9, marks=pytest.mark.slow)]
 )
 def test_the_motor_is_that_of_an_independent_model_with_rotor_and_lossy_gear(seed: int) -> None:
-    """Several cylinders, cycles of two turns, both directions, loads of all kinds, along a speed profile."""
+    """Several cylinders, cycles of two turns, both directions, loads of all kinds, with a speed profile."""
     case = random_case(seed)
     machine, design = replace(case.machine, drive=LOSSY), case.design[None]
     made = HandMade(case, LOSSY)

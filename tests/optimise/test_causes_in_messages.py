@@ -123,8 +123,10 @@ def test_what_cannot_vary_is_refused_for_what_it_is(path: str, said: str) -> Non
 )
 def test_a_load_of_zero_throughout_loads_nothing(load: dict[str, Any], name: str) -> None:
     said = refusal(job([load], name))
-    assert said.startswith(f"objectives.{name}: it needs masses that move or have weight, or loads; got only zeros")
-    assert "got only zeros; for example, add [mechanism] slider = " in said
+    assert said.startswith(
+        f"objectives.{name}: it needs masses that move or have weight, or loads; got none, or only zeros"
+    )
+    assert "got none, or only zeros; for example, add [mechanism] slider = " in said
     parse_job(job([load, {"viscous": "15 N s/m"}], name))
 
 

@@ -180,7 +180,7 @@ def test_trade_offs_stay_within_the_front(name: str) -> None:
         for sentence in front.trade_offs(row):
             if "target" in sentence:
                 continue
-            ended = re.fullmatch(r"no design of the front has (less|more) ([a-z, ]+)", sentence)
+            ended = re.fullmatch(r"no design on the front has (less|more) ([a-z, ]+)", sentence)
             if ended is not None:
                 column = titles[ended[2]]
                 assert values[row, column] == pytest.approx(best[column], rel=1e-6)
@@ -201,7 +201,7 @@ def test_trade_offs_stay_within_the_front(name: str) -> None:
     assert told > 10
     for quantity, row in front.extremes().items():
         title = front.problem.quantity(quantity).title
-        assert any(re.fullmatch(f"no design of the front .* {title}", said) for said in front.trade_offs(row))
+        assert any(re.fullmatch(f"no design on the front .* {title}", said) for said in front.trade_offs(row))
 
 
 def test_what_is_the_same_in_all_designs_is_not_traded() -> None:

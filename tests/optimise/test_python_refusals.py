@@ -130,7 +130,7 @@ def test_fronts_are_compared_without_a_question_of_truth() -> None:
 def test_a_torque_without_speed_says_what_is_missing() -> None:
     reason = sc.analyse(sc.Mechanism(slider_mass=1.0), [0.04, 0.1, 0.02]).undefined["peak_torque"]
     assert reason == (
-        "it needs masses that move or have weight, or loads; got only zeros; for example, add "
+        "it needs masses that move or have weight, or loads; got none, or only zeros; for example, add "
         '[mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]'
     )
     assert "peak_torque" in sc.analyse(sc.Mechanism(slider_mass=1.0, speed=3.0), [0.04, 0.1, 0.02])

@@ -421,7 +421,7 @@ def test_the_remedy_for_a_value_is_accepted(
     job.write_text(whole.sub(lambda found: found[1] + line, text), encoding="utf-8")
     with pytest.raises(JobError) as refused:
         load_job(job)
-    write = str(refused.value).rpartition("; write ")[2].removeprefix("for example ")
+    write = re.split(r"; (?:for example, )?write ", str(refused.value))[-1]
     remedy = write if " = " in write else f"{key} = {write}"
     job.write_text(whole.sub(lambda found: found[1] + remedy, text), encoding="utf-8")
     load_job(job)

@@ -15,7 +15,7 @@ from tests.service import sized
 
 Random = np.random.Generator
 SORTS = ("turn", "engine", "cylinders", "loose", "sized", "swing")
-"""A press with friction, four strokes (720 deg), two cylinders along a speed profile, a motor, bars, a swing."""
+"""A press with friction, four strokes (720 deg), two cylinders with a speed profile, a motor, bars, a swing."""
 
 
 def some_tables(sort: str, random: Random) -> dict[str, Any]:

@@ -350,7 +350,7 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
     ("certify", None, {"epsilon": True}, "epsilon must be a number; got true; write it like 0.01"),
     ("certify", None, {"delta": 0.1}, "certify may only be given epsilon, seconds; got delta; leave delta out"),
     ("round", 1, {}, 'round needs to; got none; give it like "0.5 mm"'),
-    ("round", None, {"to": "1 mm"}, "round needs one design of the front; got none; name it"),
+    ("round", None, {"to": "1 mm"}, "round needs one design on the front; got none; name it"),
     ("round", 1, {"to": "1 kg"}, 'to must be a length; got "1 kg", which is a mass; write it like '),
     ("round", 1, {"to": ["1 mm", 2]}, "to must be text in quotes; got "),
     ("round", 1, {"to": "1 mm", "count": 0}, "count must be at least 1; got 0; write it like 5"),
@@ -367,7 +367,7 @@ WRONG: list[tuple[str, int | None, dict[str, Any], str]] = [
         {"where": ["rod != 2 mm"]},
         "a condition must use >=, <= or =; got 'rod != 2 mm'; write it like ",
     ),
-    ("like", None, {"where": "rod <= 2 mm"}, "like needs one design of the front; got none; name it"),
+    ("like", None, {"where": "rod <= 2 mm"}, "like needs one design on the front; got none; name it"),
     ("certify", 0, {}, "certify applies to the whole front; got one design; leave it out"),
 ]
 

@@ -82,13 +82,15 @@ def test_a_job_with_neither_mass_nor_load_stays_refused() -> None:
     for load in none:
         with pytest.raises(
             InputError,
-            match=r"masses that move or have weight, or loads; got only zeros; .*\[\[load\]\]",
+            match=r"masses that move or have weight, or loads; got none, or only zeros; .*\[\[load\]\]",
         ):
             sc.problem({**bare, **load})
 
 
 def test_joints_carry_no_force_of_a_torque_on_the_crank_and_a_refusal_says_so() -> None:
     for name in ("peak_pivot_force", "peak_guide_force"):
-        with pytest.raises(InputError, match=r"or loads on the slider; got only zeros; .*\[\[load\]\] on the slider"):
+        with pytest.raises(
+            InputError, match=r"or loads on the slider; got none, or only zeros; .*\[\[load\]\] on the slider"
+        ):
             sc.problem({**JOB, "objectives": {name: "minimise"}})
     assert np.all(sc.problem(JOB).evaluate([DESIGN], ["peak_pivot_force"])[0] == 0.0)

@@ -106,7 +106,7 @@ STORIES = {
 
 
 def at_the_command_line(story: Story, place: Path, command: Command, number: int) -> tuple[list[Row], list[Row]]:
-    """Return designs of the front, and rounded ones near one of them."""
+    """Return designs on the front, and rounded ones near one of them."""
     for name, content in story.files.items():
         (place / name).write_text(content, encoding="utf-8")
     (place / "job.toml").write_text(job_toml(tables_of(story)), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Cycle time in place of a speed, in every interface; and other times along a speed profile."""
+"""Cycle time in place of a speed, in every interface; and other times with a speed profile."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class Delivery(Record):
 
     flow_L_min: float
     """Mean over a revolution; gas is measured at suction pressure."""
-    flow_ripple: Annotated[float | None, Note("of a liquid, over the mean; null for gas and along a speed profile")]
+    flow_ripple: Annotated[float | None, Note("of a liquid, over the mean; null for gas and with a speed profile")]
     mean_torque_Nm: float
     peak_torque_Nm: float
 

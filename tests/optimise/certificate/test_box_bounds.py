@@ -259,7 +259,7 @@ SHAFTS: dict[str, dict[str, Any]] = {
 
 
 def on_shaft(machine: Mechanism, parts: dict[str, Any]) -> Mechanism:
-    """Return a machine on a shaft; along a profile it has no constant acceleration besides."""
+    """Return a machine on a shaft; with a profile it has no constant acceleration besides."""
     return replace(machine, acceleration=0.0 if "speed_profile" in parts else machine.acceleration, **parts)
 
 
@@ -288,7 +288,7 @@ def test_a_box_of_one_design_is_bounded_by_the_design_of_a_shaft(shaft: str, mac
 def test_the_time_ratio_along_a_speed_profile_is_refused_and_a_ratio_of_angles_is_not() -> None:
     uneven = replace(MACHINE, speed_profile=UNEVEN)
     given = problem({"time_ratio": "maximise"}, {"stroke": 0.2}, mechanism=uneven)
-    with pytest.raises(InputError, match="time ratio along a speed profile has no bound over a range"):
+    with pytest.raises(InputError, match="time ratio with a speed profile has no bound over a range"):
         Boxes(Evaluator(given, elimination_branches(given)[0]), np.ones(1))
     closed: Any = {"crank_angle_ratio": "maximise", "position_error": "minimise"}
     assert check(problem(closed, {"stroke": 0.2}, mechanism=uneven), 0.05, count=200) > 100

@@ -135,7 +135,7 @@ def test_trade_offs_are_known_at_every_design(client: httpx.Client, solved: Solv
     for number in range(1, len(solved.result.designs) + 1):
         given = client.get(f"{solved.path}/designs/{number}/trade-offs").json()
         assert given["note"] == "", number
-        assert all("costs" in said or said.startswith("no design of the front") for said in given["trade_offs"])
+        assert all("costs" in said or said.startswith("no design on the front") for said in given["trade_offs"])
 
 
 @pytest.mark.parametrize("moved", ["crank", "rod", "offset"])
@@ -151,7 +151,7 @@ def test_a_length_that_no_others_can_follow_is_refused(client: httpx.Client, sol
     refused = change(client, solved, {"crank_mm": 200.0, "rod_mm": 600.0, "offset_mm": 0.0, "hold": "crank"})
     assert refused.status_code == 422
     assert (
-        "rod and offset must change so that stroke exactly 280 mm still holds; for crank 200 mm"
+        "rod and offset must change so that stroke exactly 280 mm still holds; no design was found with crank 200 mm"
         in refused.json()["detail"]
     )
 

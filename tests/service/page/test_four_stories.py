@@ -66,7 +66,7 @@ def test_designing_a_press_from_nothing_to_a_decided_rounded_design_by_keyboard(
     page.get_by_label("Crank, step").press("Enter", timeout=PATIENCE)
     page.get_by_role("button", name="Apply round numbers 1", exact=True).press("Enter", timeout=PATIENCE)
     expect(page.locator("#what-if-crank_mm")).to_have_value(re.compile(r"^\d+(\.5)?$"), timeout=PATIENCE)
-    page.get_by_role("button", name="Decide for this design").press("Enter", timeout=PATIENCE)
+    page.get_by_role("button", name="Decide on this design").press("Enter", timeout=PATIENCE)
     expect(page.get_by_label("Name of the design")).to_be_focused()
     type_over(page.get_by_label("Name of the design"), "Rounded A")
     page.keyboard.press("Tab")
@@ -133,7 +133,7 @@ def test_deciding_together_in_two_windows_by_keyboard(browser: Browser, solved: 
         theirs.goto(mine.url)  # a link that was sent
         line = theirs.locator(".kept tbody tr")
         expect(line).to_have_count(1, timeout=PATIENCE)
-        theirs.get_by_role("button", name="Decide for Design 2").press("Enter")
+        theirs.get_by_role("button", name="Decide on Design 2").press("Enter")
         type_over(theirs.get_by_label("Reason"), "fits the old frame")
         theirs.keyboard.press("Enter")
         expect(theirs.locator(".decision")).to_contain_text("(fits the old frame)", timeout=PATIENCE)

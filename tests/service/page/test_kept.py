@@ -67,7 +67,7 @@ def test_a_what_if_outside_the_job_is_kept_and_decided_for(opened: tuple[Page, s
     page.get_by_role("button", name="Star of Long rod").press("Enter")
     expect(page.get_by_role("button", name="Star of Long rod")).to_have_attribute("aria-pressed", "true")
     expect(page.get_by_role("button", name="Star of Long rod")).to_be_focused()
-    page.get_by_role("button", name="Decide for Long rod").click()
+    page.get_by_role("button", name="Decide on Long rod").click()
     expect(asking.locator(".bad").first).to_have_text("Misses stroke; outside the job: rod.")
     asking.get_by_label("Reason").fill("the rod is in stock")
     require_accessible(page)
@@ -119,8 +119,8 @@ def test_notes_and_decisions_of_two_people_stay(opened: tuple[Page, str, str], s
     line = page.locator(".kept tr", has_text="Typed 4")
     expect(line.locator("li")).to_contain_text([re.compile("in stock.*Anna"), re.compile("stiff, but heavy.*Ben")])
     expect(page.get_by_role("button", name="Note on Typed 4")).to_be_focused()
-    page.get_by_role("button", name="Decide for Typed 4").click()
-    asking = page.get_by_role("dialog", name="Decide for Typed 4?")
+    page.get_by_role("button", name="Decide on Typed 4").click()
+    asking = page.get_by_role("dialog", name="Decide on Typed 4?")
     expect(asking.locator(".warning")).to_contain_text("replaces the decision for Typed 5 (light), Anna")
     asking.get_by_label("Reason").fill("stiff")
     expect(asking.get_by_label("Your name")).to_have_value("Ben")
@@ -140,7 +140,7 @@ def test_notes_and_decisions_of_two_people_stay(opened: tuple[Page, str, str], s
     page.get_by_text("History (").click()
     entries = page.locator(".kept details li")
     expect(entries.first).to_contain_text("Typed 4 dropped")
-    expect(entries).to_contain_text(["Decision for Typed 4 withdrawn", "Decided for Typed 4: stiff"])
+    expect(entries).to_contain_text(["Decision for Typed 4 withdrawn", "Decided on Typed 4: stiff"])
     httpx.delete(f"{api}/kept/{second}", timeout=60.0).raise_for_status()
 
 

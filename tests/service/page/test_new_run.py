@@ -418,7 +418,7 @@ def test_loads_requirements_and_objectives_are_added_and_taken_away(form: Open, 
     expect(page.get_by_label("peak guide force, at most")).to_be_focused()
     page.keyboard.type("800")
     page.get_by_label("peak torque", exact=True).and_(page.get_by_role("checkbox")).uncheck()
-    page.get_by_label("time ratio: what is wanted").select_option("target")
+    page.get_by_label("time ratio: minimise, maximise or target").select_option("target")
     page.get_by_label("time ratio: target value").fill("1.2")
     page.get_by_label("crank", exact=True).and_(page.get_by_role("combobox")).first.select_option("fixed")
     page.get_by_label("crank, fixed at").fill("45")

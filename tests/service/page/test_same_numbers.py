@@ -123,7 +123,7 @@ def test_numbers_of_a_wished_design_that_is_kept(opened: tuple[Page, str, str], 
     require_shown(table.locator("[data-value]").evaluate_all(NUMBERS), wished["design"])
     require_python(wished["design"], solved)
     reached = (
-        answer.get_by_role("table", name="Desired and reached values").locator("[data-value]").evaluate_all(NUMBERS)
+        answer.get_by_role("table", name="Desired and achieved values").locator("[data-value]").evaluate_all(NUMBERS)
     )
     assert {key: float(value) for key, value in reached} == {
         one["quantity"]: one["reached"] for one in wished["objectives"]

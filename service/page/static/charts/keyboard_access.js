@@ -1,4 +1,7 @@
-/** Keyboard access to the designs in a chart: arrow keys move between designs, Enter opens one, Space selects it; screen readers announce each. */
+/**
+ * Keyboard access to the designs in a chart: arrow keys move between designs, Enter opens one, Space selects it; screen readers
+ * announce each design.
+ */
 
 import { h } from "../lib/dom.js";
 

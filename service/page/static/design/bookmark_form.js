@@ -95,7 +95,7 @@ export function askRemarks({ deciding, list, known, title, faults, send }) {
     known ? "Save" : "Keep",
   ];
   askPerson({
-    title: deciding ? `Decide for ${name}?` : known ? `Note on ${name}` : `Keep ${name}?`,
+    title: deciding ? `Decide on ${name}?` : known ? `Note on ${name}` : `Keep ${name}?`,
     content: [
       deciding &&
         other &&
@@ -184,7 +184,7 @@ export function bookmarkForm({ job, design, list, dimensions, kept, lengths }) {
     if (!list) return;
     const { decided } = decisionOf(list);
     const href = decided && hrefOf(job, decided);
-    deciding.textContent = one?.decided ? "Change the reason" : "Decide for this design";
+    deciding.textContent = one?.decided ? "Change the reason" : "Decide on this design";
     deciding.classList.toggle("primary", !one?.decided);
     noting.textContent = one ? "Add a note" : "Keep";
     const beside = h("a", { href: link(["jobs", job]) }, "beside the front");

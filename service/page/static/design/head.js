@@ -7,7 +7,7 @@ import { first, h } from "../lib/dom.js";
 
 let stepped = ""; // label of the last step
 
-/** Return the focus to the link of the last step, so that one key takes the next. @param {HTMLElement} place */
+/** Return the focus to the link used last, so that one key press takes the next step. @param {HTMLElement} place */
 export function focusLastStep(place) {
   const words = stepped;
   stepped = "";
@@ -124,7 +124,7 @@ function compare({ job, number, front, main, others, objectives }) {
         {
           class: "row prefer",
           title:
-            "Computes the optimal design that goes on in the same direction, at most as far again",
+            "Computes the optimal design that continues in the same direction, by at most the same distance",
         },
         "Which do you prefer?",
         [main, ...others].map((one, n) =>

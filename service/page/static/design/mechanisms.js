@@ -16,7 +16,10 @@ import { frameAround, frameOf } from "../mechanism/frame.js";
 const EVERY = 100; // ms between two readouts of forces while it moves
 /** Labels of the cycle's slider and its units, by the revolutions per cycle. */
 const WORDS = [
-  ["Back and forth", "Drag the crank, or use the arrow and page keys to move it back and forth."],
+  [
+    "Back and forth",
+    "Drag the crank, or use the arrow keys or Page Up and Page Down to move it back and forth.",
+  ],
   [
     "Crank angle",
     "Drag the crank, or change the crank angle with the arrow keys (1°) or Page Up and Page Down (10°).",
@@ -27,7 +30,7 @@ const WORDS = [
   ],
 ];
 const GRIPS =
-  "Drag the crank pin, the slider or the guide, or step to one with Tab and use the arrow and page keys.";
+  "Drag the crank pin, the slider or the guide, or select one with Tab and use the arrow keys or Page Up and Page Down.";
 /** @type {Record<string, number>} */
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }; // deg
 

@@ -20,7 +20,7 @@ const LARGE_OF_SWING = [
  * of(lengths), and turn and close of the charts. series: {name, series, curves, curveColumns, centres} of each design, the first in
  * front. lengths: those of a changed design, for the file, or null.
  * @param {HTMLElement} place
- * rpm: cycles a minute; turns: of the crank in a cycle, 0 of a swing; lever: whether a cylinder moves a lever.
+ * rpm: cycles per minute; turns: crank revolutions per cycle, 0 for a swing; lever: whether a cylinder moves a lever.
  * @param {{ path: string, rpm: number, turns: number, lever: boolean, over: string, turned: (angle: number, taken: boolean) => void, told: (over: string) => void }} options
  */
 export function overCycle(place, { path, rpm, turns, lever, over, turned, told: choose }) {

@@ -28,12 +28,12 @@ export function rankInFront(objective, front, value, changed) {
     : Math.min(Math.max((worst - rank) / (worst - best), 0), 1);
   if (changed?.broken) return { share, words: "misses a requirement" };
   if (!better)
-    return { share, words: changed ? "no design of the front is better" : "best of the front" };
+    return { share, words: changed ? "no design on the front is better" : "best on the front" };
   return {
     share,
     words:
       front.length === 1
-        ? "the only design of the front is better"
+        ? "the only design on the front is better"
         : `${better} of ${front.length} designs are better`,
   };
 }

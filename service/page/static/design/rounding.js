@@ -82,7 +82,7 @@ export function rounding(
     h(
       "p",
       { class: "quiet hint" },
-      "Finds the best designs with round numbers near this one. They meet every requirement, or deviate by no more than you allow. A number without a step stays as it is.",
+      "Finds the best designs with round numbers near this one. They meet every requirement, or deviate by no more than you allow. A number without a step does not change.",
     ),
     form,
     answer,

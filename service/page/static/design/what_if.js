@@ -15,10 +15,15 @@ import { sentenceOf } from "../lib/refusals.js";
 import { headedRow, headsOf, numberCell, table } from "../lib/table.js";
 
 /**
- * Put the sliders into `place`. path: of the design in the API; base: its row; ranges, requirements: of the API; objectives, front:
- * of the job; start: lengths to begin with, or null; wrong: why those of the link are none. changed(answer, {lengths, impossible}): the answer of the API that is drawn
- * and its numbers, null for the design itself; impossible: since the change has no answer. Returns {apply(row), lengths(), dimensions()}:
- * to the numbers of another design; those that it has, all of them or null for the design itself.
+ * Put the sliders into `place`.
+ * - path: address of the design in the API; base: its row.
+ * - ranges, requirements: as the API gives them; objectives, front: those of the job.
+ * - start: lengths to begin with, or null; wrong: why the lengths in the page's address cannot be used.
+ * - changed(answer, {lengths, impossible}): called with the API's answer that is drawn, null for the design itself, and with the
+ *   lengths it belongs to; impossible: true if the changed lengths have no answer.
+ *
+ * Returns {apply(row), lengths(), dimensions()}: apply adopts the numbers of another design, lengths returns the lengths that are
+ * shown, dimensions returns all changed and unchanged numbers, or null for the design itself.
  * @param {HTMLElement} place
  * @param {{
  *   job: string, path: `jobs/${string}/designs/${number}`, base: Api.Row, columns: Api.Column[], ranges: Api.Requirements["ranges"], requirements: Api.Requirement[],
@@ -315,7 +320,7 @@ function sentences(answer, { ranges, requirements }, objectives, job) {
   ];
   const verdict = count
     ? [
-        `Dominated: ${count === 1 ? "one design of the front is" : `${count} designs of the front are`} at least as good in every objective: `,
+        `Dominated: ${count === 1 ? "one design on the front is" : `${count} designs on the front are`} at least as good in every objective: `,
         better
           .slice(0, 3)
           .map((number, n) => [

@@ -59,7 +59,7 @@ export function jobFile(form, taken) {
   function load(chosenFile) {
     return attempt(async () => {
       taken(await jobOf(chosenFile), chosenFile.name);
-      say(`${chosenFile.name} is in the form.`);
+      say(`${chosenFile.name} has been loaded into the form.`);
     });
   }
 

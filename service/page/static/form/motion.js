@@ -104,7 +104,7 @@ export function motion(form, turning) {
       options: ["swing", LEVER, TURNED],
       fallback: "rotates fully",
       label: "the crank",
-      why: "The crank rotates fully at a given speed, swings back and forth between two angles, or is a lever that a cylinder on a second fixed pivot moves. It may also turn that cylinder, or an arm, as in shapers. With a second pivot, the rod is the frame between the pivots.",
+      why: "The crank rotates fully at a given speed, swings back and forth between two angles, or is a lever moved by a cylinder on a second fixed pivot. It may also turn that cylinder, or an arm, as in shapers. With a second pivot, the rod is the frame between the pivots.",
       changed: () => form.redraw(),
     },
   );
@@ -137,7 +137,7 @@ export function motion(form, turning) {
       options: others,
       fallback: usual,
       label: "stated by",
-      why: "Give two crank angles; one angle and the swing from there, so that the start may vary; or two slider positions, so that the angles follow from the lengths.",
+      why: "Give two crank angles, one angle and the swing from it (the start may then vary), or two slider positions (the angles then follow from the lengths).",
     },
   );
   return [

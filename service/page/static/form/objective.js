@@ -66,7 +66,7 @@ export function objectiveField(form, spot, { title, kind, again }) {
     "select",
     {
       id: idOf(spot.id, "s"),
-      "aria-label": `${title}: what is wanted`,
+      "aria-label": `${title}: minimise, maximise or target`,
       onchange: () => {
         form.put(spot.path, select.value === "target" ? { target: "" } : select.value);
         again();

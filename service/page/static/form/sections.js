@@ -398,7 +398,7 @@ function robust(form) {
       options: ["yes"],
       label: "within the tolerances",
       fallback: "no",
-      why: "Objectives and requirements hold over the tolerances, not only at the nominal dimensions.",
+      why: "Objectives and requirements hold within the tolerances, not only at the nominal dimensions.",
       changed: () => form.redraw(),
     },
   );

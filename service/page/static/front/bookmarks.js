@@ -26,7 +26,7 @@ const EVERY = 5_000; // ms between polls for changes by others
 const ACTIONS = {
   note: ({ name, text: note }) => `Note on ${name}: ${note}`,
   reason: ({ name, text: reason }) => `${name}: ${reason}`,
-  decided: ({ name, text: reason }) => `Decided for ${name}${reason && `: ${reason}`}`,
+  decided: ({ name, text: reason }) => `Decided on ${name}${reason && `: ${reason}`}`,
   withdrawn: ({ name }) => `Decision for ${name} withdrawn`,
   deleted: ({ name }) => `${name} dropped`,
 };
@@ -110,7 +110,11 @@ export function bookmarksPanel(explorer) {
       title: `Drop ${name}?`,
       content: [
         decided &&
-          h("p", { class: "warning" }, "It is the decided design; the run would be undecided."),
+          h(
+            "p",
+            { class: "warning" },
+            "It is the chosen design; without it, the run has no decision.",
+          ),
         h("p", {}, "Its notes and reasons stay in the history."),
       ],
       yes: "Drop",
@@ -238,7 +242,7 @@ export function bookmarksPanel(explorer) {
           ? button("Withdraw", "Withdraw the decision for", "decide", () =>
               withdraw(job.id, one, ask),
             )
-          : button("Decide", "Decide for", "decide", (node) => remark(one, true, node)),
+          : button("Decide", "Decide on", "decide", (node) => remark(one, true, node)),
         button("Note", "Note on", "note", (node) => remark(one, false, node)),
         searchButton(`${job.id}`, () => lengthsOf(cells), {
           title: "Search near",

@@ -13,8 +13,8 @@ export const LENGTHS = ["crank_mm", "rod_mm", "offset_mm"];
 const TIMES = 72; // of a swing back and forth
 
 /**
- * Return {of(row), frame(), cycle(row), isRequested(row)} of a front whose lengths are here; cycle: the service's answer for a design that
- * swings, asked for once, null if it has none.
+ * Return {of(row), frame(), cycle(row), isRequested(row)} of a front whose lengths are loaded. cycle: the service's answer for a
+ * swinging design, requested only once, null if the service has none.
  * @param {FrontData} data @param {AbortSignal} signal
  */
 export function linkages(data, signal) {
@@ -48,7 +48,7 @@ export function linkages(data, signal) {
           Number.isFinite(inner) ? inner : 0,
           Number.isFinite(outer) ? outer : r,
         ),
-      ); // of one that need not turn
+      ); // of a linkage that need not rotate fully
     }
     frame = frameAround(frames);
     return frame;

@@ -45,7 +45,8 @@ export function wishQuery(wishes) {
 }
 
 /**
- * Return the wishes of somebody who prefers a design to another one: improve what it is better at, at most as much again of what that costs.
+ * Return the wishes of somebody who prefers a design to another one: improve the objectives in which it is better, and let the
+ * objectives in which it is worse become worse again by at most the same amount.
  * @param {readonly Api.Objective[]} objectives @param {{ number: number, row: Api.Row }} preferred @param {{ row: Api.Row }} other
  * @returns {Wishes}
  */
@@ -105,7 +106,7 @@ export function mistakesIn(wishes, objectives, count) {
   )
     problems.push({
       id: "design",
-      text: `“Improve” and “keep” refer to a design of the front; give its number, 1 to ${count}.`,
+      text: `“Improve” and “keep” refer to a design on the front; give its number, 1 to ${count}.`,
     });
   if (!kinds.some((kind) => kind === "value" || kind === "improve"))
     problems.push({

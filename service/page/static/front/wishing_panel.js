@@ -245,7 +245,7 @@ export function wishingPanel(explorer) {
     }
   }
 
-  /** Find the nearest design of the front, and the link to the resulting design if it differs in lengths alone. @param {Api.Row} wished */
+  /** Find the nearest design on the front, and the link to the resulting design if it differs in lengths alone. @param {Api.Row} wished */
   async function locate(wished) {
     await data.need(objectives.map(({ column }) => column));
     near = nearest(wished, objectives, data);
@@ -358,7 +358,7 @@ export function wishingPanel(explorer) {
     });
     const unseen = h("span", { class: "hidden" }, "met");
     return scrolledTable(
-      "Desired and reached values",
+      "Desired and achieved values",
       headsOf(
         ["Objective", "desired", "reached", unseen, ["against ", nearby]],
         (n) => n && n !== 3,

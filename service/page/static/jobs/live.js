@@ -35,7 +35,7 @@ export function showProgress(place, job, { signal, changed }) {
   const lost = h(
     "p",
     { class: "lost", role: "status", hidden: true },
-    "The connection to the service was lost. This page continues when it is back.",
+    "The connection to the service was lost. This page continues when the service is back up.",
   );
   const curve = h("div", { class: "course" });
   const front = h("div");

@@ -62,7 +62,7 @@ export async function getText(path, query = {}, signal = undefined) {
   const response = await fetchResponse("GET", address(path, query), { signal });
   const text = await response.text();
   if (!response.ok)
-    throw new Problem(response.status, `The service fetchResponse ${response.status}.`);
+    throw new Problem(response.status, `The service answered with status ${response.status}.`);
   return text;
 }
 
@@ -156,7 +156,7 @@ async function jsonOf(response) {
   if (!response.ok)
     throw new Problem(
       response.status,
-      answer?.detail ?? `The service fetchResponse ${response.status}.`,
+      answer?.detail ?? `The service answered with status ${response.status}.`,
       answer?.type,
     );
   return answer;
@@ -190,7 +190,10 @@ export async function fetchResponse(method, url, options = {}, left = 3) {
     response = await fetch(url, { method, ...options });
   } catch (error) {
     if (isAbort(error)) throw error;
-    throw new Problem(0, "The service is not responding; this page will continue when it is back.");
+    throw new Problem(
+      0,
+      "The service is not responding; this page will continue when it is back up.",
+    );
   }
   const seconds = Number(response.headers.get("Retry-After"));
   if (response.status === 503 && method === "GET" && left > 0 && seconds > 0) {

@@ -47,7 +47,7 @@ async function fetched(link) {
       const problem = await response.json().catch(() => ({}));
       throw new Problem(
         response.status,
-        problem.detail ?? `The service fetchResponse ${response.status}.`,
+        problem.detail ?? `The service answered with status ${response.status}.`,
       );
     }
     const named = /filename="([^"]+)"/.exec(response.headers.get("Content-Disposition") ?? "");
@@ -57,7 +57,7 @@ async function fetched(link) {
     );
   } catch (error) {
     throw error instanceof TypeError || statusOf(error) === 0
-      ? new Problem(0, "The service is not responding; try again when it is back.")
+      ? new Problem(0, "The service is not responding; try again when it is back up.")
       : error;
   } finally {
     clearTimeout(notice);

@@ -1,4 +1,7 @@
-/** Numbers as people type them: with a decimal comma, a unit, or as a sum: "150,5", "6 in", "2*75", "1/2 in", "3 in + 5 mm"; and ranges as "180 mm +- 0.5 mm". */
+/**
+ * Numbers as people type them: with a decimal comma, a unit, or as a sum, for example "150,5", "6 in", "2*75", "1/2 in" and
+ * "3 in + 5 mm"; and ranges such as "180 mm +- 0.5 mm".
+ */
 
 /**
  * @typedef {object} Field What a field takes.

@@ -155,8 +155,8 @@ export function withPower(value, digits) {
 }
 
 /**
- * Return a limit as text, rounded to the `side` where all values are possible, "up" or "down", so that what is read can be
- * asked for: what optimise/feasibility/relaxation.py does for sentences, in the unit that is shown.
+ * Return a limit as text, rounded "up" or "down" to the `side` where all values are possible, so that the number shown can be
+ * entered as a requirement. optimise/feasibility/relaxation.py does the same for messages; here the displayed unit counts.
  * @param {number} value @param {string} unit @param {"up" | "down"} side @param {number} digits
  */
 export function limitText(value, unit, side, digits = 5) {

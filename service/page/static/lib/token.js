@@ -57,7 +57,7 @@ function ask() {
       else
         wrong.textContent = answer
           ? "That was not the token of this service."
-          : "The service is not responding; try again when it is back.";
+          : "The service is not responding; try again when it is back up.";
     }
     document.body.append(dialog);
     dialog.showModal();

@@ -18,18 +18,28 @@ import { bar, placed, scenery } from "./scenery.js";
 const EVERY = 100; // ms between values during motion; faster changes are unreadable
 
 /**
- * Put a drawing into `place`; label: what a screen reader says of it; grips: of grips.js, by which its lengths are dragged. It fills the width of its place and returns
- * - show(linkage, motion, options): draw {crank_mm, rod_mm, offset_mm}; motion: curves {crank_angle_deg, slider_position_mm} over a
- *   turn from 0 deg, evenly spaced; with transmission_angle_deg its angle is written, with the forces of the API they are arrows.
- *   options: frame (of frame.js, to draw several at one scale), direction (1 counter-clockwise, -1 clockwise), dead_centres_deg
- *   ([inner, outer]; without them those of the curve), slider_ends_mm (slider positions there, for the
- *   stroke dimension, which is omitted without them), arc (crank angles between which it locks, deg), largest_force (N, drawn as the longest arrow; without it the greatest of the curves),
- *   small (low, and without the offset in words), angle (of the crank to begin with, deg; else the one before), turns (of the crank in a
- *   cycle, if not one; 0 of a swing: then all angles here are places in the cycle, see charts/cycle.js), outlines (of the API: piston,
- *   cylinders, actuator, body on the crank).
- * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that what is written may be read. - fade(yes): show that it is not what was asked for.
- * - forces(yes): show the arrows. - angleAt(x, y): the crank angle that points to a place on the screen. - node: both pictures; handle: what
- *   lies over the crank circle, to be taken hold of. - close().
+ * Put a drawing into `place`, as wide as the place. label: its description for screen readers; grips: from grips.js, to drag the
+ * lengths with. Returns
+ * - show(linkage, motion, options): draw the linkage {crank_mm, rod_mm, offset_mm}. motion: curves {crank_angle_deg,
+ *   slider_position_mm} over a turn, evenly spaced from 0 deg; with transmission_angle_deg, the angle is labelled; with the forces of
+ *   the API, they are drawn as arrows. options:
+ *   - frame: from frame.js, to draw several linkages at one scale.
+ *   - direction: 1 counter-clockwise, -1 clockwise.
+ *   - dead_centres_deg: [inner, outer]; if missing, those of the curve.
+ *   - slider_ends_mm: slider positions at the dead centres; if missing, the stroke is not dimensioned.
+ *   - arc: crank angles between which the crank locks, deg.
+ *   - largest_force: force of the longest arrow, N; if missing, the largest of the curves.
+ *   - small: whether the picture is low and has no offset in words.
+ *   - angle: crank angle to begin with, deg; if missing, the previous one.
+ *   - turns: turns of the crank in a cycle, if not one. 0 means a swing; then all angles here are positions in the cycle, see
+ *     charts/cycle.js.
+ *   - outlines: of piston, cylinders, actuator and body on the crank, from the API.
+ * - turn(angle, settled): set the crank to an angle in deg; settled: whether it stays there, so that labels can be updated.
+ * - fade(yes): show that the drawn linkage is not the requested one.
+ * - forces(yes): show the arrows.
+ * - angleAt(x, y): the crank angle that points to a place on the screen.
+ * - node: both pictures; handle: the element over the crank circle, by which the crank is turned.
+ * - close().
  * @param {HTMLElement} place @param {{ label: string, grips?: Grips | null }} options
  */
 export function drawing(place, { label, grips = null }) {

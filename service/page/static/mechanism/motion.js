@@ -12,7 +12,7 @@ export function deadCentresOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {
 
 /**
  * Return the position of the slider, mm, and the transmission angle, deg, over a turn from 0 deg, evenly spaced:
- * x = r cos θ + sqrt(l^2 − (e − r sin θ)^2), cos μ = |e − r sin θ| / l. The linkage turns fully, on the open branch.
+ * x = r cos θ + sqrt(l^2 − (e − r sin θ)^2), cos μ = |e − r sin θ| / l. The linkage rotates fully, on the open branch.
  * @param {Page.Lengths} linkage
  */
 export function motionOf({ crank_mm: r, rod_mm: l, offset_mm: e }) {

@@ -10,8 +10,11 @@ const SHORTEST = 0.2; // s; shortest revolution that a screen can show
 
 /**
  * Return the shared crank angle: {angle, direction, playing, arc, pace, paces, set(angle), play(), pause(), choose(pace), listen(told)}.
- * rpm: cycles a minute, the sign the direction of the crank. arc: between which angles, deg, it stays, null for a whole turn. cycle: what it is called. told({angle, playing, settled}) is called for every change and every frame; settled:
- * whether nothing moves, so that what takes longer to draw may be drawn.
+ * - rpm: cycles a minute; its sign gives the direction of the crank.
+ * - arc: angles between which the crank stays, deg, or null for a whole turn.
+ * - cycle: name of a cycle in texts.
+ * - told({angle, playing, settled}): called at every change and every frame; settled: whether nothing moves, so that parts that take
+ *   longer to draw can be drawn.
  * @param {number} rpm @param {AbortSignal} signal @param {string} cycle
  */
 export function playback(rpm, signal, cycle = "one turn") {

@@ -12,10 +12,13 @@ import { barrel, walls } from "./attached_parts.js";
 const PITCH = 9; // pixels between hatching lines
 
 /**
- * Return the parts that stand still, as SVG elements.
- * centres: the two dead centres, each {angle, position} in deg and mm, as the curve has them; ends: exact positions there, for the dimension; view: of frame.js; link: width of the links in pixels; written: whether
- * the offset stands there in words; swings: whether the centres are the ends of a swing; block, tall: of frame.js; outlines: of the API;
- * arc: crank angles between which the crank locks, deg; hasStrokeAngles: whether the crank angles of both strokes are drawn, if it rotates fully.
+ * Return the fixed parts as SVG elements.
+ * - centres: the two dead centres of the curve, each {angle, position} in deg and mm; ends: the exact slider positions there, for the
+ *   stroke dimension.
+ * - view, block, tall: from frame.js; outlines: from the API; link: width of the links in pixels.
+ * - written: whether the offset is given in words; swings: whether the centres are the ends of a swing.
+ * - arc: crank angles between which the crank locks, deg.
+ * - hasStrokeAngles: whether the crank angles of both strokes are drawn if the crank rotates fully.
  * @param {{
  *   linkage: Page.Lengths, centres: Centre[], ends?: Page.Point, view: View, block: number, tall: number, link: number, direction: number, written: boolean,
  *   swings?: boolean, outlines?: Api.Outlines, arc?: Page.Point | null, hasStrokeAngles?: boolean,

@@ -31,8 +31,8 @@ const SAID = [
     "a quantity with a fixed value cannot also be an objective; got “exactly” among the requirements; leave out one of the two",
   ],
   [
-    'it needs masses that move or have weight, or loads; got only zeros; for example, add [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
-    "it needs masses that move or have weight, or loads; got only zeros; give it under “Masses and loads”",
+    'it needs masses that move or have weight, or loads; got none, or only zeros; for example, add [mechanism] slider = { mass = "0.8 kg" } with a speed, or a [[load]]',
+    "it needs masses that move or have weight, or loads; got none, or only zeros; give it under “Masses and loads”",
   ],
   [
     'it needs a crank speed; got none; for example, add [mechanism] speed = "300 rpm"',
