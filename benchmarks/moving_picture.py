@@ -108,7 +108,7 @@ def _save(frames: list[Picture], file: Path) -> None:
 
 
 def _chart(figure: Figure, of: _Columns) -> Axes:
-    """Return axes with the designs of the front."""
+    """Return axes with the designs on the front."""
     axes = add_axes(figure, 0.75, 0.6, 2.75, 2.35)
     style_axes(axes, most_x_ticks=4, most_y_ticks=4)
     across, up, colour = _LABELS.values()

@@ -2,19 +2,19 @@
 
     SlidercrankError
     |-- InputError          a value that breaks a rule; also a ValueError
-    |   |-- AssemblyError   the linkage cannot be assembled, or not turned fully
-    |   |-- ForeignRecords  records of another search, from which this one cannot go on
+    |   |-- AssemblyError   the linkage cannot be assembled, or cannot rotate fully
+    |   |-- ForeignRecords  records of another search, from which this one cannot continue
     |   |-- JobError        a job file that cannot be used
     |   |   `-- InfeasibleError     a valid job whose requirements no design can meet
-    |   `-- NotFound        what was asked for by its name or number is not there
+    |   `-- NotFound        nothing has the requested name or number
     |-- MissingExtra        an optional part of the software is not installed; also an ImportError
     |-- OutputLost          standard output that is closed or full
     |-- EngineError         processes or a cluster that cannot evaluate
     `-- RunError            a stored run that cannot be read or written
         |-- StoreError      the database of jobs refuses, or cannot be reached
-        |-- LeaseLost       a job that is another worker's by now
-        |-- QueueFull       as many jobs wait as may wait
-        `-- ServiceError    a service elsewhere refuses, or does not answer
+        |-- LeaseLost       a job that now belongs to another worker
+        |-- QueueFull       the queue contains the maximum number of jobs
+        `-- ServiceError    an external service refuses, or does not answer
 
 Every message states the rule, the value and the remedy. `InputWarning` warns of a valid input that is probably a
 mistake, attributed to the user's line.

@@ -1,4 +1,4 @@
-"""Amounts that a catalogue option brings, such as the price or the mass of a gearmotor."""
+"""Amounts that come with a catalogue option, such as the price or the mass of a gearmotor."""
 
 from __future__ import annotations
 

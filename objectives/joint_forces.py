@@ -1,7 +1,7 @@
 """Forces over the cycle: reactions at pins and guide, the moment on the guide, and shaking force and moment.
 
 Shaking is how the moving masses act on the frame, without gravity and load; see `model.dynamics.torque`. With several
-cylinders, the totals count; see `model.signals.shaft_statistics`.
+cylinders, the totals are used; see `model.signals.shaft_statistics`.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from .quantity import Array, Pieces, Quantity, Values
 from .swing_quantity import SwingQuantity
 
 Form = Callable[[LeverNumbers, Any], Any]
-"""A formula of the numbers of levers and the greatest ds/dt of their law."""
+"""A formula in the numbers of a lever and the greatest ds/dt of its motion law."""
 _CHUNK = 512
 _PEAKS = 4
 

@@ -1,4 +1,4 @@
-"""Times of the outward and the inward stroke and their ratios, at constant speed or along a speed profile."""
+"""Times of the outward and the inward stroke and their ratios, at constant speed or with a speed profile."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _constant_speed_formulas(
 ) -> Sequence[Formula]:
     """Return a factor times a function of the stroke times, as a formula in a machine's numbers.
 
-    None along a profile.
+    None with a profile.
     """
     if mechanism.speed_profile is not None:
         return ()
@@ -91,9 +91,9 @@ def _constant_speed_formulas(
 
 @dataclass(frozen=True, kw_only=True)
 class StrokeTimeRatio(Quantity):
-    """Time of one stroke divided by the other; along a profile, a slow stroke sets a lower bound on it.
+    """Time of one stroke divided by the other; with a profile, a slow stroke sets a lower bound on it.
 
-    For several cylinders along a profile, it is the minimum over the cylinders. outward: whether the outward stroke is
+    For several cylinders with a profile, it is the minimum over the cylinders. outward: whether the outward stroke is
     the numerator.
     """
 

@@ -1,8 +1,8 @@
-"""Times of the outward and the inward stroke, at constant speed or along a speed profile.
+"""Times of the outward and the inward stroke, at constant speed or with a speed profile.
 
 The time of a stroke is the integral of d(theta) / |omega| between its dead centres. At constant speed that is its crank
 angle divided by the speed; with omega = speed p(theta), it is the integral of 1 / p divided by |speed|. At constant
-speed all cylinders have the same stroke times; along a profile, each cylinder has its own.
+speed all cylinders have the same stroke times; with a profile, each cylinder has its own.
 """
 
 from __future__ import annotations

@@ -222,7 +222,7 @@ def _start_compilers(folder: Path, packages: str, modules: Iterable[str], lock: 
     started: list[subprocess.Popen[bytes]] = []
     atexit.register(_end_compilers, started, os.getpid())
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "NUMBA_DISABLE_JIT": "0"}
-    # numba composes messages for every formula that it tries in vain.
+    # numba composes messages for every formula that it tries without success.
     environment |= {"NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING": "1"}
     command = [sys.executable, "-m", f"{MODEL}.kernel.compile_all", INTO, str(folder), packages, *modules]
     options: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.DEVNULL)

@@ -16,7 +16,7 @@ from .inverse_kinematics import ROUNDING, Dimensions, Solution, crank_angle_at, 
 
 _DIGITS = 9  # decimals of a position in messages, m: nanometres
 _LOCKED = 1e-7
-"""Fraction of the rod. This near to an end where the rod is normal to the slider line, rounding decides whether it is
+"""Fraction of the rod. This close to an end where the rod is normal to the slider line, rounding decides whether it is
 locked.
 
 There l - |e - r sin(theta)| is half the square of the distance, and the square of 1e-8 is the rounding error of a

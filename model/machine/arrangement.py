@@ -24,7 +24,7 @@ class Arrangement:
 
     phases: angle of each crank from the shaft's zero, counter-clockwise, rad. banks: angle of each slider line from +x,
     counter-clockwise, rad; all zero by default. places: positions of the cylinders along the shaft, m, positive towards
-    the viewer for whom counter-clockwise holds as stated; all in one plane by default.
+    a viewer who sees these angles as counter-clockwise; all in one plane by default.
     """
 
     phases: tuple[float, ...]

@@ -1,4 +1,4 @@
-"""Size of a single-stage cylinder, and what a swing needs of it: lengths, pressures, buckling."""
+"""Size of a single-stage cylinder, and the lengths, pressures and buckling margin that a swing requires of it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ROUNDING = 1e-8
 
 @dataclass(frozen=True, kw_only=True)
 class Cylinder:
-    """A single-stage hydraulic or pneumatic cylinder; None for what is not known.
+    """A single-stage hydraulic or pneumatic cylinder; None for unknown values.
 
     Each number is checked by itself; `require_sizes_to_agree` compares them.
     closed_length: least length between the pins A and B along the line, m. stroke: m. dead_length: closed length
@@ -173,10 +173,10 @@ class Cylinder:
     def buckling_margin(self, length: Array, push: Array) -> Array | None:
         """Return Euler's load over the push at lengths between the pins, m; inf where nothing pushes.
 
-        pi^2 E I / L^2, I = pi d^4 / 64 of the piston rod: both ends pinned, on a clevis as on a trunnion, with the
-        whole length between pivot and pin as slender as the piston rod, so that a stiffer barrel only adds. None
-        without the piston rod. Source: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 2,
-        fundamental case of buckling of a prismatic bar.
+        pi^2 E I / L^2, I = pi d^4 / 64 of the piston rod, for both mountings: both ends pinned, and the whole length
+        between pivot and pin as slender as the piston rod, so that a stiffer barrel is on the safe side. None without
+        the piston rod. Source: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 2, fundamental
+        case of buckling of a prismatic bar.
         """
         if self.rod is None:
             return None

@@ -1,6 +1,6 @@
 """Means and root mean squares over the cycle, mainly of the torque, with exact gradients.
 
-Here the speed is constant, so the crank angle is proportional to time; along a profile see `shaft_averages`.
+Here the speed is constant, so the crank angle is proportional to time; with a profile see `shaft_averages`.
 """
 
 from __future__ import annotations

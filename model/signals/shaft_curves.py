@@ -1,4 +1,4 @@
-"""Curves for a crankshaft: for all its cylinders or one, at constant speed or along a speed profile.
+"""Curves for a crankshaft: for all its cylinders or one, at constant speed or with a speed profile.
 
 Each cylinder is a single crank at the angle theta + lead, in axes that are rotated with its bank. Speed and
 acceleration of the shaft are w p and w^2 p p', where p is the profile at the shaft's own angle; a constant acceleration

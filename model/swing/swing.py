@@ -106,7 +106,7 @@ class Swing:
             )
 
     def _require_lever_swing(self, angle: float) -> None:
-        """Raise `InputError` for a swing that no lever makes. angle: its size, rad."""
+        """Raise `InputError` for a swing that no lever can make. angle: its size, rad."""
         excluded = {
             "slider positions": self.stated_for == "slider",
             "a table of its law": self.law == "table",

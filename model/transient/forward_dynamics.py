@@ -10,8 +10,8 @@ with it. Where a guide force changes sides, the acceleration has a kink rather t
 resolves it, as the energy balance confirms.
 
 At standstill the loads for both directions of rotation are evaluated. The crank starts in the direction in which motor
-and loads leave an accelerating torque. Otherwise it stands still for good, because motor and loads depend only on angle
-and speed.
+and loads leave an accelerating torque. Otherwise it stays at rest, because motor and loads depend only on angle and
+speed.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ def transmission_angle(c: LeverNumbers, lever_angle: Any) -> Any:
 
 
 def dead_point_margin(c: LeverNumbers, lever_angle: Any) -> Any:
-    """Return the angle, rad, by which the lever is off the nearest dead point."""
+    """Return the angle, rad, between the lever and the nearest dead point."""
     psi = lever_angle + c.pin_angle - c.frame_angle
     return magnitude(psi - np.pi * np.round(np.real(psi) / np.pi))
 
@@ -39,7 +39,8 @@ def cylinder_travel(c: LeverNumbers) -> Any:
 def spare_extension(c: LeverNumbers, length: Any) -> Any:
     """Return the length, m, by which a cylinder reaches beyond a length of the motion.
 
-    Of a cylinder whose stroke follows the travel, the length by which it is off the closed one, as it always reaches.
+    For a cylinder whose stroke follows from the travel, only the distance from the closed length, because the open
+    length always suffices.
     """
     known = ~np.isnan(np.real(c.stroke))
     return np.where(known, c.closed_length + c.stroke - length, length - c.closed_length)

@@ -1,8 +1,8 @@
 """Greatest values of a lever's curves over its motion, for many levers, to rounding and with exact derivatives.
 
 `peak_search` searches a full turn, or one way of a swing, as the way back has the same forces at the same places. A law
-that starts with a jump of speed or acceleration has other forces at its ends than the cylinder that holds the lever
-there, so both count.
+that starts with a jump in speed or acceleration causes other forces at its ends than those that hold the lever at rest
+there, so both are included.
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ class TurningCylinder:
         return [math.pi * k - self.angle_from_frame_to_crank(0.0) for k in range(first, last + 1)]
 
     def dead_point_margin(self, start: float, end: float) -> float:
-        """Return the least angle, rad, that the lever keeps from a dead point between two lever angles."""
+        """Return the least angle, rad, between the lever and a dead point, from one lever angle to another."""
         if self.dead_points(start, end):
             return 0.0
         return min(abs(math.remainder(self.angle_from_frame_to_crank(angle), math.pi)) for angle in (start, end))

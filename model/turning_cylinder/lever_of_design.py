@@ -1,4 +1,4 @@
-"""One design of a machine as a lever with its cylinder: what an analysis of a single swing takes."""
+"""One design of a machine as a lever with its cylinder: the input to the analysis of a single swing."""
 
 from __future__ import annotations
 

@@ -22,8 +22,8 @@ class LeverNumbers(NamedTuple):
 
     rate: 1 / duration of one way, 0 for a slow swing. along, across: first moments of the lever. areas: full and
     annular area; NaN if there is no bore. buckling: push times length^2 that buckles the piston rod, N m^2; NaN if
-    there is none. supply: pressure; NaN if there is none, as closed_length and stroke. speed: of the crank, rad/s, if
-    it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; ram: 0 without one; see
+    there is none. supply: pressure; NaN if there is none, as for closed_length and stroke. speed: of the crank, rad/s,
+    if it rotates fully. arm_moment: first moment of the arm. arm_inertia: about its pivot; ram: 0 without one; see
     `machine.arm`. spring: see `machine.lever_spring`; without force and stiffness if there is none.
     """
 

@@ -30,7 +30,7 @@ class LeverPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class LeverSummary:
-    """A swing out and back, SI and radians; None for what does not follow from the given numbers.
+    """A swing out and back, SI and radians; None for values that do not follow from the given numbers.
 
     lengths: cylinder at start and end.
     hold: push at rest at start and end, without friction of the seal. push, pull: greatest forces with it, over both
@@ -65,7 +65,7 @@ class LeverSummary:
     def suits_single_stage_cylinder(self) -> bool:
         """Whether a single-stage cylinder can have both lengths: its stroke is less than its closed length.
 
-        On a trunnion it need not be.
+        With a trunnion, this need not hold.
         """
         return self.mounting == "trunnion" or self.extension_ratio < 2.0
 
@@ -75,7 +75,7 @@ def summarise_swing(
 ) -> LeverSummary:
     """Return the numbers of a swing; peaks are over the continuous lever angle, and rest at both ends.
 
-    Raises the errors of `TurningCylinder.require_swing`, and of all that `Cylinder` requires.
+    Raises the errors of `TurningCylinder.require_swing`, and those of the checks in `Cylinder`.
     """
     sizes = machine.sizes
     sizes.require_swing(swing.start, swing.end)

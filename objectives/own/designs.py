@@ -159,7 +159,7 @@ class Designs:
 
         NaN where friction locks the linkage.
 
-        Raises `InputError` along a speed profile, and for a cycle of two turns.
+        Raises `InputError` with a speed profile, and for a cycle of two turns.
         """
         if self.mechanism.speed_profile is not None:
             raise InputError(

@@ -113,7 +113,10 @@ def require_possible_cylinder(mechanism: Mechanism) -> None:
 
 
 def _require_nothing_of_a_driving_cylinder(mechanism: Mechanism) -> None:
-    """Raise `InputError` for what only a cylinder that drives its lever has. mechanism: one with a crank that turns."""
+    """Raise `InputError` for properties that only apply to a cylinder that drives its lever.
+
+    mechanism: a machine whose crank rotates fully.
+    """
     machine = mechanism.with_largest_variables
     assert machine.lever is not None
     stated = {

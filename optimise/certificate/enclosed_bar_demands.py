@@ -3,7 +3,7 @@
 The greatest stress over the cycle is at least the stress at one point and angle. The greatest force on a pin is at
 least its force at one angle. So stresses and pressures have lower bounds, and safety factors have upper bounds. The
 point is a fraction of the bar's length, so it moves with the design. Where the section may vanish in a box, a safety
-factor uses max(section, 0): designs without a section have no positive one.
+factor uses max(section, 0): a design without a section has no positive safety factor.
 """
 
 from __future__ import annotations

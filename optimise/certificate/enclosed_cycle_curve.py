@@ -6,7 +6,7 @@ second order in the box size, because the curve is flat there. If the curve coun
 peaks at the end of that part, the angle follows the design. There, the slider has covered a fixed fraction of its
 stroke. This module does not bound peaks from above.
 
-The cylinders of a crankshaft add up at the same shaft angle. Along a speed profile, that angle determines the speed.
+The cylinders of a crankshaft add up at the same shaft angle. With a speed profile, that angle determines the speed.
 """
 
 from __future__ import annotations

@@ -226,7 +226,7 @@ def _add_nearer_designs(
         after = distance_to_design(
             finished.values[_rank_by_distance(finished, archive, values)[:1]], values, finished.span
         )[0]
-        # A design that still moves nearer by about one step has farther to go.
+        # A design that still moves nearer by about one step has not reached its nearest point yet.
         if before - after < 0.5 * width:
             width *= 0.5
         if width < _CLOSEST:

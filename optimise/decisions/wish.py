@@ -213,7 +213,7 @@ def wish(front: ParetoFront, wishes: Mapping[str, object], *, row: int | None = 
     """Return the Pareto-optimal design nearest to desired values for a front's objectives, from a new solve.
 
     wishes: by objective, a desired value, "110 N m" or a number in SI, which is not a bound; or a class. Classes:
-    "improve" on a design of the front; "keep" its value or better; "may worsen to 120 N m", which is a bound; or
+    "improve" on a design on the front; "keep" its value or better; "may worsen to 120 N m", which is a bound; or
     "free", the default. row: row of the design to which classes refer.
 
     `wish(front, {"peak_torque": "110 N m", "transmission_angle": "45 deg"})`. For many wishes on one front, `Wishes` is

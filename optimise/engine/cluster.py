@@ -24,7 +24,7 @@ _log = logging.getLogger(__name__)
 PATIENCE = 300.0
 """s, time without a scheduler or any worker after which a search gives up."""
 MOST_KILLED = 3
-"""How often Dask may give up an item because its workers died; each time, four of them did."""
+"""Number of times that Dask may give up an item because its workers died; each time, four workers have died."""
 _START = 1.0  # s, typical time to connect
 _CONNECT = 5.0  # s, timeout for one attempt
 _TICK = 0.1
@@ -79,7 +79,7 @@ class Cluster:
         self._reached = 0.0  # last time the scheduler answered
 
     def should_map(self, seconds: float) -> bool:
-        """Whether this much work pays; see `Engine`."""
+        """Whether this amount of work is worth sending; see `Engine`."""
         if self._client is None:
             self._refused += seconds
         return self._client is not None or self._refused >= _START

@@ -37,8 +37,8 @@ class Engine(Protocol):
     def should_map(self, seconds: float) -> bool:
         """Whether to map work that takes this long, s, in this process.
 
-        Called for all expensive work: an engine that is slow to start declines until the declined work outweighs its
-        start.
+        Called for all expensive work: an engine that is slow to start declines work until the work declined so far
+        outweighs its start.
         """
         ...
 
@@ -172,8 +172,8 @@ class Chunked(Generic[Subject]):
         """Return the results of the work on rows (n, k), in order; a single result if it is cheap.
 
         kind: key for work with the same time per row; by default, the question. together: whether rows are much faster
-        together than one by one. Such rows are not divided here, and elsewhere into at most one chunk per worker.
-        Raises the errors of the work, the engine and `poll`.
+        together than one by one. Such rows are not divided in this process; elsewhere they are divided into at most one
+        chunk per worker. Raises the errors of the work, the engine and `poll`.
         """
         n = len(rows)
         if n == 0 or (isinstance(self.engine, Serial) and self.poll is None):

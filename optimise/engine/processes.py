@@ -41,7 +41,7 @@ class Processes:
         self._refused = 0.0
 
     def should_map(self, seconds: float) -> bool:
-        """Whether mapping this much work pays; see `Engine`."""
+        """Whether this amount of work is worth mapping; see `Engine`."""
         if self._pool is None:
             self._refused += seconds
         return self._pool is not None or self._refused >= _START

@@ -123,7 +123,7 @@ def diagnose_infeasibility(
         item.quantity for item in problem.constraints
     }
     for constraint in constraints_with_floors(problem):
-        if constraint.quantity in stroke:  # the slow stroke along a speed profile is reported below
+        if constraint.quantity in stroke:  # the slow stroke with a speed profile is reported below
             continue
         for item in relaxations(problem, constraint, best):
             if not isinstance(item, Relaxation):

@@ -41,7 +41,7 @@ def nearest_neighbours(points: Array, count: int) -> tuple[Array, IntArray]:
 
 @kernel
 def _search_neighbours(points: Table, begin: int, end: int, distance: Table, nearest: Integers) -> None:
-    """Search points by their first coordinate, until it alone exceeds the distance of the neighbours found."""
+    """Search points by their first coordinate, until that distance alone exceeds those of the neighbours found."""
     n, m = points.shape
     count = distance.shape[1]
     for i in range(begin, end):

@@ -88,9 +88,9 @@ def round_design(
 def _steps_of_movable_numbers(
     part: Problem, given: Array, steps: Mapping[str, float]
 ) -> tuple[dict[str, float], list[str]]:
-    """Return the steps for numbers that vary over a range, and reasons why others stay.
+    """Return the steps for numbers that vary over a range, and reasons why others stay unchanged.
 
-    Raises `InputError` if all stay.
+    Raises `InputError` if all of them stay unchanged.
     """
     ranges = part.ranges
     moved = {name: step for name, step in steps.items() if not ranges[name].fixed}

@@ -21,9 +21,9 @@ from .progress import DiscreteSearch, Progress
 SAME = 1e-9
 """Relative spread within which numbers count as equal.
 
-A quantity that the requirements hold at a value leaves the search with a spread of a few last bits (2e-16 each),
-amplified by its inputs. Constraints count as met to 1e-9. A spread that is visible in a drawing is a million times
-greater.
+A quantity that the requirements hold at a value leaves the search with a spread of a few units in the last place (2e-16
+each), amplified by its inputs. Constraints count as met to 1e-9. A spread that is visible in a drawing is a million
+times greater.
 """
 
 

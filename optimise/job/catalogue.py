@@ -182,7 +182,7 @@ def _require_distinct_row_names(table: TableFile) -> None:
 
 
 def _validated_column(table: TableFile, column: Column) -> Column | None:
-    """Return a column, one that is stored as numbers or text; None if it is empty. Texts are checked."""
+    """Return a column that is stored as numbers or text; None if it is empty. Texts are checked."""
     cells = table.texts(column.place)
     filled = [cell for cell in cells if cell]
     if not column.is_amount or column.unit or not filled:

@@ -214,7 +214,7 @@ def _require_varying_objective(problem: Problem, name: str) -> None:
         )
     centred = problem.offset.fixed and problem.offset.lower == 0.0
     if centred and problem.quantity(name).in_line is not None:
-        # Along a speed profile, a ratio of times is also the same for every design, though not 1.
+        # With a speed profile, a ratio of times is also the same for every design, though not 1.
         values = {_value_without_offset(part, name) for part in problem.parts()}
         if len(values) > 1:
             return

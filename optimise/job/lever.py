@@ -1,4 +1,4 @@
-"""The inversion with a cylinder that turns in a job file: [cylinder], [arm], its keys in [mechanism] and [motion]."""
+"""The turning-cylinder inversion in a job file: [cylinder], [arm], its keys in [mechanism] and [motion]."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ TURNING_CYLINDER = "turning cylinder"
 
 
 class CylinderPart(Checked[Cylinder]):
-    """The single-stage cylinder of a lever; what is not given is not known."""
+    """The single-stage cylinder of a lever; numbers that are not given are unknown."""
 
     makes = Cylinder
 

@@ -114,7 +114,7 @@ def _kind_of_entry(entry: Entry) -> Kind:
 
 
 def require_increasing(typed: Any, handler: ValidatorFunctionWrapHandler) -> tuple[float, ...]:
-    """Return a table's points in SI; reject any that is not above the one before."""
+    """Return a table's points in SI; reject any point that is not above the previous one."""
     points: tuple[float, ...] = handler(typed)
     for n, (before, after) in enumerate(itertools.pairwise(points)):
         if after <= before:

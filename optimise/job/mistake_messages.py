@@ -173,11 +173,12 @@ def _unknown_key_message(loc: Sequence[Any], value: object, schema: Schema) -> t
 
 
 _RARE = ("[arm]", "[spring]")
-"""Tables of few jobs whose keys are common words, such as torque and force: a similar key is meant more often."""
+"""Rarely used tables whose keys are common words, such as torque and force: a similar key of another table is
+likelier."""
 
 
 def where_key_belongs(key: str, schema: Schema) -> str:
-    """Say where a key belongs that its table lacks; "" if no table has it either."""
+    """Name the table to which a key belongs that its own table lacks; "" if no table has it."""
     if key in schema["properties"] and not headings_with_keys([key], schema):
         return f"{key} belongs above the first table of the file; move it there"
     owners = [owner for owner in _tables_with_all_keys([key], schema) if owner not in _RARE]

@@ -94,7 +94,7 @@ _Bearing = Annotated[
         greatest=5e9,
     ),
 ]
-"""Solid bars of any material, from soft plastics to fibres, lie well within; a value beyond has another unit."""
+"""Solid bars of any material, from soft plastics to fibres, lie well within; a value outside has the wrong unit."""
 
 
 class MaterialPart(Checked[Material]):

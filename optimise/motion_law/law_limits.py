@@ -4,7 +4,7 @@
 by at most tau -+ Q per angle. So among all laws within the speed limits K_low and K_high, one is the slowest at every
 angle simultaneously, and one the fastest:
 
-    K_slowest(phi) = greatest over psi of K_low(psi) less what tau can take or give between psi and phi,
+    K_slowest(phi) = greatest over psi of K_low(psi) less the energy that tau can remove or add between psi and phi,
 
 and likewise from K_high. The smaller of two such laws is also such a law, which proves it. So no law within tau has a
 shorter turn than the fastest one, or a longer turn than the slowest one. Acceleration limits are ignored: the bounds

@@ -39,10 +39,9 @@ def constraints_with_floors(problem: Problem) -> tuple[Constraint, ...]:
     """Return a problem's constraints, with default floors where none is set.
 
     Floors apply to the transmission angle; with friction, also to the self-locking margin; if a compressor may deliver
-    nothing, also to the volumetric efficiency. For a required slow stroke, a floor applies to the time ratio or, along
-    a speed profile, to that stroke's ratio. A swing has only one, on its transmission angle, as the margin from dead
-    points.
-    A lever has further ones as far as its cylinder is known: it must be long, strong and stiff enough.
+    nothing, also to the volumetric efficiency. For a required slow stroke, a floor applies to the time ratio or, with a
+    speed profile, to that stroke's ratio. A swing has only one, on its transmission angle, as the margin from dead
+    points. A lever has further ones as far as its cylinder is known: it must be long, strong and stiff enough.
     """
     if problem.mechanism.lever is not None:
         return _with_floors_of_lever(problem, problem.constraints)
@@ -68,7 +67,7 @@ def _with_floors_of_lever(problem: Problem, constraints: tuple[Constraint, ...])
 
 
 def _with_slow_stroke(problem: Problem, constraints: tuple[Constraint, ...]) -> tuple[Constraint, ...]:
-    """Return constraints with a time ratio above 1; along a speed profile, the ratio of the required slow stroke."""
+    """Return constraints with a time ratio above 1; with a speed profile, the ratio of the required slow stroke."""
     found = _with_floor(problem, constraints, TIME_RATIO, above=1.0)
     if problem.mechanism.speed_profile is None:
         return found

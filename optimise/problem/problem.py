@@ -443,7 +443,7 @@ class Problem:
         """Sign of the offset (+1 or -1) that gives the required slow stroke; None if none is required.
 
         The inward stroke is slow if e w s > 0, with s = +1 on the open branch and -1 on the crossed one. Also None
-        along a speed profile, where a constraint replaces the sign, see `constraints_with_floors`.
+        with a speed profile, where a constraint replaces the sign, see `constraints_with_floors`.
         """
         if self.slow_stroke is None or self.mechanism.speed_profile is not None:
             return None

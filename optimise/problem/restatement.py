@@ -116,7 +116,7 @@ def _restatement(
         return None
     values = of.evaluate(machine, designs).values
     for quantity, form, inverse, rises in _FORMS:
-        if quantity is TIME_RATIO and not steady:  # along a speed profile, it is not a formula of the dimensions
+        if quantity is TIME_RATIO and not steady:  # with a speed profile, it is not a formula of the dimensions
             continue
         found = _line_through(form(quantity.evaluate(machine, designs).values), values)
         if found is not None:

@@ -3,8 +3,8 @@
 Linear equalities between dimensions are solved for one of them, in exact fractions. Lengths that give a swing its exact
 travel, or its exact crank angle, have a closed form. A pin at a rod's length from two points lies on their
 perpendicular bisector. For the travel S between two crank angles, the slider pin at the start is as far from the crank
-pin there as from the crank pin at the end moved back by S. For the angle between two slider positions, the crank pin at
-the start is as far from the slider pin there as from the slider pin at the end turned back by the angle.
+pin there as from the crank pin at the end, moved back by S. For the angle between two slider positions, the crank pin
+at the start is as far from the slider pin there as from the slider pin at the end, rotated back by the angle.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     """Search for the Pareto front of a job, and save it as a run.
 
     Takes a second to several minutes; reports progress. A cancelled search keeps its results; `resume` continues it and
-    ends with the same front as an uninterrupted search. The answer contains some designs of the front; `front` selects
+    ends with the same front as an uninterrupted search. The answer contains some designs on the front; `front` selects
     others. numbers: their design numbers; knee and extremes: positions in the answer.
     """
     from ..store import Limits

@@ -146,7 +146,7 @@ def add_bookmark(stored_front: FrontDep, request: NewBookmark, store: StoreDep) 
 def change_bookmark(
     stored_front: FrontDep, kept: BookmarkNumber, change: BookmarkChange, store: StoreDep
 ) -> BookmarkedDesign:
-    """Change a bookmark, or decide for its design."""
+    """Change a bookmark, or decide on its design."""
     return _bookmark_model(
         stored_front,
         update_bookmark(store, stored_front.job.id, kept, **change.model_dump(exclude_unset=True)),
@@ -242,7 +242,7 @@ def _bookmark_model(stored_front: StoredFront, bookmark: Bookmark) -> Bookmarked
 
 
 def _design_query(design: StoredDesign) -> dict[str, float | list[str]]:
-    """Return the query that gives a reference design with the same choices the dimensions of this one."""
+    """Return the query that changes a reference design, which has the same choices, to the dimensions of this one."""
     lengths = {key: 1e3 * value for key, value in zip(_LENGTHS, design.values[:3], strict=True)}
     pairs = zip(map(column_of_variable, design.part.mechanism.varying), design.values[3:], strict=True)
     values = [f"{column}={value * unit.factor!r}" for (column, unit), value in pairs]

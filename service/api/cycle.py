@@ -77,11 +77,11 @@ class CycleModel(BaseModel):
     """Curves over the cycle: one crank revolution, two if a load repeats every 720 deg, or a swing.
 
     columns: descriptions of the curves. curves: values by column, equal in length; null where friction leaves a force
-    undetermined. Samples are at even crank angles from 0 deg; for a swing at even times, half of them forward and half
-    return. turns: crank revolutions; 0 for a swing, which has no dead centres. seconds: cycle duration; null without a
-    speed and for a quasi-static swing. slider_ends_mm: slider positions at the inner and outer dead centres, or at the
-    start and end of a swing; for a lever, lengths of its cylinder. slow_stroke: outward, inward or equal; differs if
-    cylinders differ. outlines: outlines of the moving parts.
+    undetermined. Samples are at evenly spaced crank angles from 0 deg; for a swing, at evenly spaced times, half on the
+    forward and half on the return stroke. turns: crank revolutions; 0 for a swing, which has no dead centres. seconds:
+    cycle duration; null without a speed and for a quasi-static swing. slider_ends_mm: slider positions at the inner and
+    outer dead centres, or at the start and end of a swing; for a lever, lengths of its cylinder. slow_stroke: outward,
+    inward or equal; differs if cylinders differ. outlines: outlines of the moving parts.
     """
 
     turns: int = Field(examples=[1])

@@ -196,7 +196,7 @@ def problem_of_tables(
 
 
 def merge_patch(value: Any, changes: Any) -> Any:
-    """Return a value with changes applied (RFC 7396): tables key by key; null removes a key; all else replaces it."""
+    """Return a value with changes applied (RFC 7396): tables key by key, null removes, other values replace."""
     if not isinstance(changes, Mapping):
         return changes
     table = dict(value) if isinstance(value, Mapping) else {}

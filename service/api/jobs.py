@@ -64,7 +64,7 @@ def list_front_points(
         list[_Number], Query(min_length=1, max_length=_MOST_FRONTS, description="the numbers of jobs", examples=[[1]])
     ],
 ) -> Response:
-    """Return some designs of the fronts of jobs; for running jobs, of their fronts so far."""
+    """Return some designs on the fronts of jobs; for running jobs, of their fronts so far."""
     jobs = store.jobs(numbers=set(job), limit=_MOST_FRONTS)
     content = to_json(
         {"fronts": [{"job": stored_job.id, **stored_job.front_points()} for stored_job in reversed(jobs)]}

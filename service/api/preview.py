@@ -328,7 +328,8 @@ def _swing(possible: PossibleSwing | None) -> SwingPreview | None:
 def _swing_example(possible: PossibleSwing, lengths: tuple[float, float, float]) -> SwingExample:
     swing = possible.example_swing or possible.swing
     low, high = sorted((math.degrees(swing.start), math.degrees(swing.end)))
-    # One point per degree: from a full revolution those of the swing, plus one beyond each end at the end's position.
+    # One point per degree: the points of a full revolution that lie within the swing, plus one beyond each end at the
+    # position of that end.
     angles = range(math.floor(low), math.floor(high) + 2)
     clipped_angles = np.radians(np.clip(angles, low, high))
     places = {angle % 360: possible.position_at(at) for angle, at in zip(angles, clipped_angles, strict=True)}

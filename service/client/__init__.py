@@ -119,7 +119,7 @@ class Client(Designs):
         return self._connection.ask(f"jobs/{number}")
 
     def front_points(self, numbers: Collection[int]) -> list[Record]:
-        """Return some designs of the fronts (so far) of at most 100 jobs: job, columns, points.
+        """Return some designs on the fronts (so far) of at most 100 jobs: job, columns, points.
 
         At most 64 designs of each, in the first two objectives. Jobs are in order of number; deleted jobs are omitted.
         """

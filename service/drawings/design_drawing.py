@@ -81,8 +81,8 @@ def swing_drawing(
     """Return one swinging linkage at true scale, mm: crank pivot at (0, 0), slider line at y = offset.
 
     Pivots, ends of the swing, paths of the pins and dimensions are exact. crank_angle: crank angle of the drawing,
-    within the swing up to full revolutions; None for half-way. name, design: as for `linkage_drawing`. Raises
-    `InputError` for a crank angle outside the swing, and the errors of `require_swing`.
+    within the swing, to which full revolutions may be added; None for half-way. name, design: as for `linkage_drawing`.
+    Raises `InputError` for a crank angle outside the swing, and the errors of `require_swing`.
     """
     drawn = swing_sizes(mechanism, linkage, swing)
     angle = _angle_in_swing(drawn.swing, crank_angle)

@@ -54,7 +54,8 @@ def moving_lever_shapes(machine: LeverMachine, swing: LeverSwing, angle: float) 
 def lever_parts(machine: LeverMachine, swing: LeverSwing) -> dict[str, list[Shape]]:
     """Return piston rod, barrel or slotted arm, lever and pins in their own coordinates, by link name.
 
-    The piston rod lies behind its pin, barrel and arm before the cylinder's pivot, as the rod and slider of a linkage.
+    The piston rod is drawn behind its pin, and barrel and arm in front of the cylinder's pivot, like the rod and slider
+    of a linkage.
     """
     size, barrel = _size(machine), barrel_length(machine, swing)
     foot, pin = 1j * machine.sizes.offset, machine.sizes.crank * complex(np.exp(1j * machine.sizes.pin_angle))
@@ -132,7 +133,7 @@ def _links(layers: tuple[Layer, Layer, Layer], machine: LeverMachine, swing: Lev
     pin, line = sizes.crank * complex(motion.radial[0]), complex(motion.line[0])
     foot = pin - float(motion.length[0]) * line
     lug = [Line(layers[0], _point(_pivot(machine)), _point(foot))] if sizes.offset else []
-    if swing.of_full_turn:  # a slotted arm, of which the pin never leaves the slot
+    if swing.of_full_turn:  # a slotted arm, whose slot the pin never leaves
         end = foot + max(sizes.closable_length_range[1], machine.ram) / _NECK * line
         slotted = _strip(layers[0], foot, end, _BARREL * size)
         lever = bar(layers[2], (0.0, 0.0), _point(pin), _LEVER * size)

@@ -71,7 +71,7 @@ def player_page(
 
 
 def _column_in_units(column: CurveColumn, system: System) -> CurveColumn:
-    """Return a curve with its values in a unit system. Its key stays: the script finds it by that."""
+    """Return a curve with its values in a unit system. Its key stays the same: the script finds the curve by it."""
     unit, factor = metric_unit_in(column.unit, system)
     return replace(column, unit=unit, values=[factor * value for value in column.values])
 

@@ -74,7 +74,8 @@ class Possible(Feasibility):
     on it. slow_strokes: slow strokes of the designs that meet every checked requirement, or else of those that rotate
     fully; "equal" only if no design has a slow stroke. hardest: requirement that the fewest fully rotating designs
     meet, and their fraction. nearest: value of its quantity, SI, that one in ten samples that meet all others reach, if
-    none meets all. The example is near the middle of the feasible designs, else the nearest to it.
+    none meets all. The example is near the middle of the feasible designs; if there are none, it is the least
+    infeasible one.
     """
 
     turning: float
@@ -265,8 +266,8 @@ def _hardest_requirement(problem: Problem, designs: Array) -> tuple[str, float] 
 def _nearest_value(problem: Problem, name: str) -> float | None:
     """Return a value of a quantity, SI, near its requirement.
 
-    One in ten samples that meet all other requirements is at least as near. So few designs would meet the very nearest
-    value that the samples of a job that asks for it may have none.
+    One in ten samples that meet all other requirements is at least as near. Only very few designs meet the nearest
+    value itself, so the samples of a job that requires it might contain none.
     """
     constraint = next(item for item in constraints_with_floors(problem) if item.quantity == name)
     others = tuple(item for item in problem.constraints if item.quantity != name)

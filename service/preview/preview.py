@@ -184,7 +184,7 @@ def infeasibility_sentences(
 
 
 def _none_meets_all_sentence(problem: Problem, possible_values: Possible, fixed_names: Sequence[str]) -> str:
-    """Return a sentence on samples of which none meets everything: the hardest requirement, and a value to ask for."""
+    """Return a sentence on samples of which none meets everything: the hardest requirement, and a value to require."""
     hardest, change = "", None
     if possible_values.hardest is not None and possible_values.hardest[1] < 1.0:
         name, share = possible_values.hardest

@@ -52,7 +52,7 @@ def measured_section(subject: Subject, measured: Measured) -> Section:
 
 
 def _pictures_by_page(panel_figure: PanelFigure, system: System) -> list[Picture]:
-    """Return pictures with as many panels each as a page shows well."""
+    """Return pictures, each with as many panels as fit well on a page."""
     parts = [panel_figure.panels[start : start + _PANELS] for start in range(0, len(panel_figure.panels), _PANELS)]
     return [
         Picture(

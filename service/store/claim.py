@@ -99,7 +99,7 @@ class Claim:
     def report(self, progress: Progress, front: Mapping[str, Any] | None = None) -> None:
         """Write the progress of the search and the records since the last report. Loading does not count as a start.
 
-        front: some designs of the front so far, as JSON. Only the latest is stored, with the job: a front in each event
+        front: some designs on the front so far, as JSON. Only the latest is stored, with the job: a front in each event
         would inflate a store with many runs.
         """
         self.has_started = self.has_started or not progress.is_preparing

@@ -381,7 +381,7 @@ def _constraint_text(constraint: Constraint, problem: Problem, *, is_stated: boo
 
 
 def _allowed_minimum_values(problem: Problem) -> list[dict[str, Any]]:
-    """Return the least allowed values of quantities with a default: quantity, value, unit, and is default or not."""
+    """Return the least allowed values of quantities with a default: quantity, value, unit, whether it is that one."""
     floors = []
     for constraint in constraints_with_floors(problem):
         restated = restate_constraint(problem, constraint)

@@ -60,7 +60,7 @@ class WorkerSettings:
 
 
 def main() -> int:
-    """Work until told to stop; return the exit code."""
+    """Work until asked to stop; return the exit code."""
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())

@@ -158,11 +158,12 @@ def _starts_for_extremes(evaluators: list[Evaluator], group: Archive) -> list[tu
 def _polish_extremes(
     evaluators: list[Evaluator], starts: list[tuple[int, int, Array]], span: Array
 ) -> Iterator[tuple[int, Polished | None]]:
-    """Yield the extreme designs of the front by branch: best in one objective, then in the others.
+    """Yield the extreme designs on the front by branch: best in one objective, then in the others.
 
     The starts, several designs that lead in each objective, are improved in it alone, then in all objectives with this
     one held firmly. If the result still loses visibly, the best in the objective alone is an end too. Held less firmly,
-    it would move to where the others gain much for little, if its slope vanishes at the end. None: in progress.
+    the design would move to where the others gain much for a small loss, if the slope of this objective vanishes at the
+    end. None: in progress.
     """
     parts: dict[int, list[tuple[int, Polished]]] = {}
     for column, index, u in starts:
@@ -239,7 +240,7 @@ def _screen_fresh_points(
 
 
 def _masks_of_dominating_and_undominated(screened: Array, front: Array) -> tuple[Mask, Mask]:
-    """Return which screened designs dominate a design of the front, and which are not dominated by any."""
+    """Return which screened designs dominate a design on the front, and which are not dominated by any."""
     undominated = np.zeros(len(front) + len(screened), dtype=bool)
     undominated[nondominated(np.concatenate([front, screened]))] = True
     return dominating(screened, front, clearly=_CLEAR, slightly=_GAIN), undominated[len(front) :]

@@ -23,7 +23,7 @@ from .auto import add_projected
 _LEAST, _MOST_SECONDS, _SHARE = 1.0, 5.0, 0.1
 """Time in which a front is delivered: a tenth of the search, within limits, s."""
 _PROJECTING, _ANALYSING = 0.3, 0.7  # fractions of it, to move designs onto the constraints, and to compute quantities
-_FUNCTION_TIME = 0.8  # s since the search was told to stop, after which calls of custom functions are ended
+_FUNCTION_TIME = 0.8  # s since the search was asked to stop, after which calls of custom functions are ended
 _BATCH = 16  # designs to move at a time
 _TRIED = 50  # designs to time first; custom functions get them in one call
 _MOST = 1000  # maximum number of designs; selection among more would take longer

@@ -149,8 +149,8 @@ class Descent:
         corrected = self._solve(point, goals, limits, root, radius, weight)
         if corrected is None:
             return None
-        # Judged by the decrease that the first step predicted, because the corrected rows predict what they were built
-        # to.
+        # Judged by the decrease that the first step predicted, because the corrected rows predict what they were
+        # constructed to predict.
         return self._try_step(point, replace(step, move=corrected.move), root, weight)
 
     def _hessian_root(self, point: Point, step: Step) -> Array:

@@ -23,7 +23,7 @@ _CYLINDER = {
     **{name: name for name in ("barrel_mass", "piston_rod_mass", "length_tolerance", "dead_length", "mounting")},
     **{name: name.partition("_")[2] for name in ("cylinder_stroke", "piston_rod")},
 }
-"""Inputs, and what they are of a `Cylinder`."""
+"""Inputs, and the field of a `Cylinder` that each one sets."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def _cylinder_of_job(mechanism: Mechanism, swing: Swing | None) -> Cylinder:
 
 
 def _lever(design: Design, labels: Mapping[str, str], inputs: Mapping[str, Any]) -> LeverBody:
-    """Return the crank of a design with what the lever carries in addition."""
+    """Return the crank of a design, including the additional mass that the lever carries."""
     mass, centre = inputs.get("mass", 0.0), inputs.get("centre")
     if mass and centre is None:
         raise InputError(
