@@ -56,7 +56,7 @@ DEAD_POINT_MARGIN = _form(
 LEAST_CYLINDER_LENGTH = _length(
     name="least_cylinder_length",
     kind=LENGTH,
-    forms=(lambda c, _: c.ends[0], lambda c, _: c.ends[1]),
+    forms=(lambda c, _: c.cylinder_end_lengths[0], lambda c, _: c.cylinder_end_lengths[1]),
     least=True,
     place=332,
     sentence="The least length of the cylinder between its pins over the motion.",
@@ -68,7 +68,7 @@ LEAST_CYLINDER_LENGTH = _length(
 GREATEST_CYLINDER_LENGTH = _length(
     name="greatest_cylinder_length",
     kind=LENGTH,
-    forms=(lambda c, _: c.ends[0], lambda c, _: c.ends[1]),
+    forms=(lambda c, _: c.cylinder_end_lengths[0], lambda c, _: c.cylinder_end_lengths[1]),
     place=333,
     sentence="The greatest length of the cylinder between its pins over the motion.",
     advice="Closed length plus stroke of the cylinder must not be less.",
@@ -107,10 +107,10 @@ CYLINDER_LENGTH_MARGIN = _length(
     title="spare length of the cylinder",
     kind=LENGTH,
     forms=(
-        lambda c, _: c.ends[0] - c.closed_length,
-        lambda c, _: c.ends[1] - c.closed_length,
-        lambda c, _: spare_extension(c, c.ends[0]),
-        lambda c, _: spare_extension(c, c.ends[1]),
+        lambda c, _: c.cylinder_end_lengths[0] - c.closed_length,
+        lambda c, _: c.cylinder_end_lengths[1] - c.closed_length,
+        lambda c, _: spare_extension(c, c.cylinder_end_lengths[0]),
+        lambda c, _: spare_extension(c, c.cylinder_end_lengths[1]),
     ),
     least=True,
     known=("closed_length or dead_length",),
