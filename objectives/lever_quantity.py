@@ -25,6 +25,7 @@ Form = Callable[[LeverNumbers, Any], Any]
 """A formula in the numbers of a lever and the greatest ds/dt of its motion law."""
 _CHUNK = 512
 _PEAKS = 4
+_LABEL_STEP = 20.0  # between the labels of different curves, which are places of up to 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +39,7 @@ class LeverQuantity(SwingQuantity):
     known: tuple[str, ...] = field(default=(), compare=False)
     moved_by: tuple[SwingDriver, ...] = field(default=("cylinder",), compare=False)
     swing_counterpart: str = field(default="", compare=False)
+    smooth_at_zero_offset: bool = field(default=True, compare=False)
 
     @property
     def required(self) -> str:
@@ -116,17 +118,18 @@ class LeverPeak(LeverQuantity):
         floor = [] if self.least_value is None else [self.least_value]
         values = np.full((len(designs), width + len(floor)), absent)
         values[:, width:] = floor
-        labels = np.zeros(values.shape)
+        labels = np.full(values.shape, -_LABEL_STEP)
         slopes = np.zeros((*values.shape, designs.shape[1] if gradients else 0))
         values[np.setdiff1d(np.arange(len(designs)), rows), 0] = np.nan
 
         batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
         by_number = np.zeros((len(rows), width, len(numbers.columns) if gradients else 0))
+        curve_labels = np.repeat(_LABEL_STEP * np.arange(len(self.curves)), limit + at_rest)
 
         def work(begin: int, end: int) -> None:
             chunk = rows[begin:end]
             peaks = lever_peaks(batch.levers_between(begin, end), self.curves, gradients=gradients, limit=limit)
-            labels[chunk, :width] = np.nan_to_num(peaks.places)
+            labels[chunk, :width] = np.nan_to_num(peaks.places) + curve_labels
             found, slope = peaks.values, peaks.gradients
             if self.inverse:
                 is_loaded = found > 0.0

@@ -51,6 +51,7 @@ ARM_TRANSMISSION_ANGLE = _form(
     short="transmission angle",
     kind=ANGLE,
     forms=(lambda c, _: least_arm_transmission_angle(c),),
+    smooth_at_zero_offset=False,
     place=362,
     group=Group.PROPORTIONS,
     sentence="The least angle between the force of the crank on the arm and the line from pin to arm pivot.",

@@ -156,6 +156,7 @@ class Quantity(ABC):
     there is none. about_tolerances: whether it already includes tolerances. offered: parts of a form that offer it.
     on_datasheet: whether the datasheet of a design shows it. plain: whether it follows obviously from others, so that a
     short table omits it. turning: whether it needs a fully rotating crank, so that a swing does not have it.
+    smooth_at_zero_offset: whether it has no kink where the offset changes its sign.
     """
 
     name: str
@@ -188,6 +189,7 @@ class Quantity(ABC):
     on_datasheet: bool = display_fact(False)
     plain: bool = display_fact(False)
     turning: bool = display_fact(True)
+    smooth_at_zero_offset: bool = display_fact(False)
     table: ClassVar[str] = ""
     """Table that a job must have for the quantity to exist; empty if every problem has it."""
 

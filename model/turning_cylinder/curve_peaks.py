@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -29,27 +30,35 @@ _PEAKS = 4
 
 @dataclass(frozen=True)
 class LeverBatch:
-    """Levers that can make their motion. plain: numbers (n,). stepped: with an imaginary step of each variable.
+    """Levers that can make their motion.
 
-    law: that of a swing.
+    table: rows of `LeverNumbers` (n, ...). steps: tables with an imaginary step of each variable. law: that of a swing.
     """
 
-    plain: LeverNumbers
+    table: Array
     law: LeverLaw
-    stepped: tuple[LeverNumbers, ...] = ()
+    steps: tuple[Complexes, ...] = ()
     of_full_turn: bool = False
 
     @property
     def lever_count(self) -> int:
         """Number of levers."""
-        return len(self.plain.crank)
+        return len(self.table)
+
+    @property
+    def plain(self) -> LeverNumbers:
+        """Numbers (n,) of the levers."""
+        return LeverNumbers(*self.table.T)
+
+    @property
+    def stepped(self) -> tuple[LeverNumbers, ...]:
+        """Numbers (n,) with each step."""
+        return tuple(LeverNumbers(*table.T) for table in self.steps)
 
     def levers_between(self, begin: int, end: int) -> LeverBatch:
         """Return some of the levers."""
-        plain, *stepped = (
-            LeverNumbers(*(number[begin:end] for number in numbers)) for numbers in (self.plain, *self.stepped)
-        )
-        return LeverBatch(plain, self.law, tuple(stepped), self.of_full_turn)
+        steps = tuple(table[begin:end] for table in self.steps)
+        return LeverBatch(self.table[begin:end], self.law, steps, self.of_full_turn)
 
     @property
     def curve_breakpoints(self) -> Array:
@@ -59,7 +68,7 @@ class LeverBatch:
     @cached_property
     def number_tables(self) -> tuple[Complexes, ...]:
         """Numbers (n, ...) of the levers, then with each step."""
-        return tuple(np.stack(numbers, axis=1, dtype=np.complex128) for numbers in (self.plain, *self.stepped))
+        return self.table.astype(np.complex128), *self.steps
 
     def curve_codes(self, curves: Sequence[str]) -> IntArray:
         """Return the codes of curves by name."""
@@ -87,6 +96,14 @@ class LeverBatch:
             law = law_code("slow" if slow else self.law)
             fill_curves_of_swing(table, law, NO_TABLE, lever, curve, places, np.ascontiguousarray(probe), found)
         return found
+
+
+def table_of_numbers(numbers: LeverNumbers, count: int, kind: Any = np.float64) -> Any:
+    """Return numbers of levers (count,), or one for all, as a table with a row for each lever."""
+    table = np.empty((count, len(numbers)), kind)
+    for place, number in enumerate(numbers):
+        table[:, place] = number
+    return table
 
 
 @dataclass(frozen=True)
@@ -153,7 +170,7 @@ def lever_peaks(
     Those of curve c are columns c k to (c + 1) k. limit: local peaks of each curve, highest first; for a law other than
     slow, two values at rest at the ends follow.
     """
-    rows = _Rows(batch, batch.curve_codes(curves), len(batch.stepped) if gradients else 0)
+    rows = _Rows(batch, batch.curve_codes(curves), len(batch.steps) if gradients else 0)
     count = batch.lever_count * len(curves)
     cuts = batch.curve_breakpoints
     pieces = len(cuts) - 1

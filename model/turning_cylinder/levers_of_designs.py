@@ -14,12 +14,12 @@ from ..machine.derived_designs import derived_blocks
 from ..machine.design import Design
 from ..machine.lever_cylinder import buckling_number, piston_areas
 from ..machine.mechanism import Mechanism
-from ..machine.memoise import memoise_by_batch
+from ..machine.memoise import memoise_by_batch, memoise_by_machine
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import LEVER, SPRING, START, RawNumbers, raw_machine_numbers
 from ..machine.varying_numbers import number_at
 from ..swing.swing import Swing
-from .curve_peaks import LeverBatch
+from .curve_peaks import LeverBatch, table_of_numbers
 from .lever_state import LeverNumbers
 
 _FIELDS = Design._fields
@@ -49,14 +49,16 @@ def lever_batch(
     return LeverBatch(plain, law, tuple(stepped), of_full_turn=swing.of_full_turn), numbers
 
 
-def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, raw_numbers_by_slot: dict[int, Any]) -> LeverNumbers:
-    """Return numbers (n,). block: (n, rows), see `machine.design`. raw_numbers_by_slot: those that designs set."""
-    machine = mechanism.nominal
+def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, raw_numbers_by_slot: dict[int, Any]) -> Any:
+    """Return the table of `LeverBatch`.
+
+    block: (n, rows), see `machine.design`. raw_numbers_by_slot: those that designs set.
+    """
+    machine, nominal = mechanism.nominal, _nominal_numbers(mechanism)
 
     def part(name: str) -> Any:
         slot = LEVER[name]
-        number = raw_numbers_by_slot[slot] if slot in raw_numbers_by_slot else number_at(machine, f"lever.{name}")
-        return np.nan if number is None else number
+        return raw_numbers_by_slot[slot] if slot in raw_numbers_by_slot else nominal[name]
 
     def of_block(*names: str) -> list[Any]:
         return [block[:, _FIELDS.index(name)] for name in names]
@@ -90,7 +92,17 @@ def _lever_numbers(mechanism: Mechanism, swing: Swing, block: Any, raw_numbers_b
         *(closed_length, stroke, *of_block("speed"), *_arm_numbers(part)),
         *(() if machine.lever is None or machine.lever.spring is None else map(part, SPRING)),
     )
-    return LeverNumbers(*(np.broadcast_to(number, crank.shape) for number in LeverNumbers(*numbers)))
+    is_complex = np.iscomplexobj(block) or any(map(np.iscomplexobj, raw_numbers_by_slot.values()))
+    return table_of_numbers(LeverNumbers(*numbers), len(crank), np.complex128 if is_complex else np.float64)
+
+
+@memoise_by_machine
+def _nominal_numbers(mechanism: Mechanism) -> dict[str, float]:
+    """Return the numbers of a lever by name; NaN for those that are not given."""
+    has_spring = mechanism.lever is not None and mechanism.lever.spring is not None
+    names = [name for name in LEVER if has_spring or name not in SPRING]
+    numbers = {name: number_at(mechanism.nominal, f"lever.{name}") for name in names}
+    return {name: np.nan if number is None else number for name, number in numbers.items()}
 
 
 def _is_number_given(number: Any) -> bool:

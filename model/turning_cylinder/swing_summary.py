@@ -8,10 +8,9 @@ import numpy as np
 
 from ..machine.lever_cylinder import Cylinder
 from ..machine.mounting import Mounting
-from .curve_peaks import LeverBatch, lever_peaks
+from .curve_peaks import LeverBatch, lever_peaks, table_of_numbers
 from .cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves, numbers_of_machine
 from .lever_geometry import DimensionErrors, crank_and_frame_for_stroke
-from .lever_state import LeverNumbers
 
 _CURVES = (
     *("push", "pull", "pin", "pivot", "cylinder_pivot"),
@@ -149,9 +148,9 @@ def _greatest_points(
     machine: LeverMachine, swing: LeverSwing, cylinder: Cylinder, errors: DimensionErrors | None
 ) -> dict[str, LeverPoint]:
     """Return where each curve is greatest, from one search."""
-    numbers = LeverNumbers(*map(np.atleast_1d, numbers_of_machine(machine, swing, cylinder, errors)))
+    table = table_of_numbers(numbers_of_machine(machine, swing, cylinder, errors), 1)
     names = _CURVES if cylinder.rod is None else (*_CURVES, "buckling_share")
-    peaks = lever_peaks(LeverBatch(numbers, swing.law), names)
+    peaks = lever_peaks(LeverBatch(table, swing.law), names)
     values, places = (part.reshape(len(names), -1) for part in (peaks.values, peaks.places))
     best = values.argmax(axis=1)[:, None]
     value, place = (np.take_along_axis(part, best, axis=1)[:, 0] for part in (values, places))

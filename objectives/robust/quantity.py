@@ -17,6 +17,7 @@ from ...model.machine.mechanism import Mechanism
 from ...model.tolerance.error_distributions import Shape, error_distribution
 from ..kinds import Kind
 from ..quantity import Array, Pieces, Quantity, Values
+from .negated_quantity import NegatedQuantity, negated_pieces
 from .quantile import sample
 from .worst_points import (
     PointValues,
@@ -57,7 +58,8 @@ class RobustQuantity(Quantity):
 
     The slope of a percentile has small steps where machines change rank, and larger ones where peaks tie within
     machines. A design at such a step may have the status "best found" rather than stationary. Infinite on the bad side
-    if a corner or a point of the star does not rotate fully. Raises `InputError` for options that are out of range.
+    if a corner or a point of the star does not rotate fully, or a lever there cannot make its swing. Raises
+    `InputError` for options that are out of range.
     """
 
     name: str = _field(init=False)
@@ -120,6 +122,12 @@ class RobustQuantity(Quantity):
         dimensions = np.asarray(dimensions, dtype=np.float64)
         limits = tolerance_limits(mechanism, dimensions)  # raises for unusable tolerances
         columns = toleranced_columns(mechanism)
+        if columns and self.inner.pieces(mechanism, dimensions[:1]).least:
+            same = ("name", "kind", "smooth_at_zero_offset")
+            facts: dict[str, Any] = {name: getattr(self.inner, name) for name in same}
+            inner = NegatedQuantity(inner=self.inner, **facts)
+            negated = replace(self, inner=inner, side="low" if self.side == "high" else "high")
+            return negated_pieces(negated.pieces(mechanism, dimensions))
         if not columns:
             pieces = self.inner.pieces(mechanism, dimensions)
             if self.side == "high":
@@ -157,7 +165,8 @@ class RobustQuantity(Quantity):
             )
         else:
             width = np.abs(steps).sum(axis=1)
-        return np.where(_box_turns_fully(dimensions, limits), inner.values + sign * width, sign * np.inf)
+        moves = _box_turns_fully(dimensions, limits) if mechanism.lever is None else ~np.isnan(inner.values)
+        return np.where(moves, inner.values + sign * width, sign * np.inf)
 
     # ---- worst case -----------------------------------------------------------------------------------------------
 
@@ -228,6 +237,8 @@ class RobustQuantity(Quantity):
         slopes = slope + np.where(on_both_sides[:, :, :, None], change_slope, 0.0)
         labels = point_values.labels[:, :1] + _LABEL_STEP * np.arange(len(signs))[:, None]
         turns_fully = _box_turns_fully(dimensions, limits)
+        if mechanism.lever is not None:
+            turns_fully = evaluate_points(self.inner, mechanism, dimensions, signs).turns.all(axis=1)
         if self.side == "low":
             values, slopes, labels = values[:, :, :1], slopes[:, :, :1], labels[:, :, :1]  # the highest piece
         values = np.where(turns_fully[:, None, None], values, np.inf if self.side == "high" else -np.inf)
@@ -252,10 +263,12 @@ class RobustQuantity(Quantity):
         drawn = sample(columns, self.shape, self.samples, self.seed, share)
         # Quantities that depend on |offset| have a kink at zero, which machines in the sample may reach.
         widest = np.abs(drawn.deviations[:, 2]).max()
-        kinked = (2 in columns) & (np.abs(dimensions[:, 2]) < widest * tolerance_limits(mechanism, dimensions)[:, 2])
+        near_zero = np.abs(dimensions[:, 2]) < widest * tolerance_limits(mechanism, dimensions)[:, 2]
+        kinked = near_zero & (2 in columns and not self.inner.smooth_at_zero_offset)
         good = np.isfinite(top).all(axis=1) & ~kinked
         n, _, _, width = slopes.shape
         quantiles, gradients = np.full(n, np.inf if self.side == "high" else -np.inf), np.zeros((n, width))
+        quantiles[(top == -np.inf).all(axis=1)] = -np.inf  # a margin that is infinite for all machines
         for rows in _row_blocks(good, len(drawn.deviations) * values.shape[2]):
             quantiles[rows], gradients[rows] = drawn.quantile_of_star(values[rows], slopes[rows])
         for rows in _row_blocks(kinked, 32 * len(drawn.deviations)):

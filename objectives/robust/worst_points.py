@@ -24,9 +24,9 @@ class PointValues:
     """A quantity at q points around each of n designs.
 
     values: (n, q, p), values of its pieces, -inf where absent; +inf in the first piece where the linkage does not
-    rotate fully. gradients: (n, q, p, 3 + k), with respect to the design rather than the point: a tolerance may grow
-    with its dimension. local: (n, q, p, 3), with respect to the point. labels: (n, q, p). turns: (n, q), whether the
-    linkage rotates fully.
+    rotate fully, or a lever cannot make its swing. gradients: (n, q, p, 3 + k), with respect to the design rather than
+    the point: a tolerance may grow with its dimension. local: (n, q, p, 3), with respect to the point. labels:
+    (n, q, p). turns: (n, q), whether the linkage can move.
     """
 
     values: Array
@@ -109,11 +109,14 @@ def evaluate_points(quantity: Quantity, mechanism: Mechanism, dimensions: Array,
     n, q, width = len(dimensions), points.shape[-2], dimensions.shape[1]
     moved = np.repeat(dimensions[:, None, :], q, axis=1)
     moved[:, :, :3] += points * (absolute + fraction * np.abs(dimensions[:, None, :3]))
-    turns = (moved[:, :, 0] > 0.0) & (moved[:, :, 1] > moved[:, :, 0] + np.abs(moved[:, :, 2]))
+    is_slider_crank = mechanism.lever is None
+    shortest_rod = (moved[:, :, 0] + np.abs(moved[:, :, 2])) * is_slider_crank
+    turns = (moved[:, :, 0] > 0.0) & (moved[:, :, 1] > shortest_rod)
     moved = np.where(turns[:, :, None], moved, dimensions[:, None, :])
     pieces = quantity.pieces(mechanism, np.ascontiguousarray(moved.reshape(n * q, width)))
     values = pieces.values.reshape(n, q, pieces.values.shape[1]).copy()
     gradients = pieces.gradients.reshape(*values.shape, width).copy()
+    turns &= is_slider_crank | ~np.isnan(values).any(axis=2)  # NaN: a lever that cannot make its swing
     local = gradients[:, :, :, :3].copy()
     gradients[:, :, :, :3] *= (1.0 + points * fraction * np.sign(dimensions[:, None, :3]))[:, :, None, :]
     values[~turns] = -np.inf

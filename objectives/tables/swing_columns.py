@@ -120,7 +120,6 @@ def _require_nothing_of_a_driving_cylinder(mechanism: Mechanism) -> None:
     machine = mechanism.with_largest_variables
     assert machine.lever is not None
     stated = {
-        "tolerances": machine.tolerances.are_stated,
         "cylinder.length_tolerance": machine.lever.cylinder.length_tolerance,
         "cylinder.supply_pressure": machine.lever.cylinder.supply_pressure,
     }

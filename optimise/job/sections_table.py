@@ -251,8 +251,8 @@ def make_robust(problem: Problem, part: RobustPart | None) -> Problem:
     """Return the problem made robust if the job requests it. Raises JobError if that is impossible."""
     if part is None:
         return problem
-    if problem.motion is not None:
-        raise JobError("robust: needs a rotating crank; this crank swings; leave the table out")
+    if problem.motion is not None and not problem.motion.of_lever:
+        raise JobError("robust: needs a rotating crank, or a lever; got a crank that swings; leave the table out")
     if not toleranced_columns(problem.part(0).mechanism):
         raise JobError(
             "robust: needs tolerances of crank, rod or offset; got none (that of the crank angle affects no quantity "

@@ -80,7 +80,7 @@ def test_time_ratio_and_swing_that_are_required_hold_exactly(name: str, value: f
             "ram_stroke: it needs the ram of",
         ),
         (shaper(arm={"ram": None}), "arm: mass and force of a ram need the distance of its pin"),
-        (shaper(tolerances={"crank": "1 mm"}), "tolerances: is for a lever that its cylinder swings; got it with a"),
+        (shaper(robust={}), "robust: needs tolerances of crank, rod or offset; got none"),
         (
             shaper(cylinder={"supply_pressure": "9 bar"}),
             "cylinder.supply_pressure: is for a lever that",

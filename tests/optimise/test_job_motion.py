@@ -163,7 +163,7 @@ def test_places_that_are_no_swing_are_refused(job: dict[str, Any], words: str) -
         ({"objectives": {"peak_torque / 2": "minimise"}}, "peak_torque needs a crank that rotates fully"),
         ({"constraints": {"slow_stroke": "inward"}}, "slow_stroke: needs a rotating crank"),
         ({"objectives": {"peak_actuator_power": "minimise"}}, "give .motion. a law and a duration"),
-        ({"robust": {}}, "robust: needs a rotating crank"),
+        ({"robust": {}}, "robust: needs a rotating crank, or a lever; got a crank that swings"),
         ({"friction": {"crank_pin": {"radius": "1 m", "coefficient": 1.5}}}, "friction may lock every design"),
         (
             {"load": [{"positions": ["0 mm", "9 mm"], "forces": ["1 N", "0 N"], "measured_from": "inner dead centre"}]},
