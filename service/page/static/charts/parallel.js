@@ -389,6 +389,7 @@ function strength(count) {
 
 /** @param {Page.Range} options @param {string} unit @param {boolean} log @returns {[number, string][]} */
 function ticks({ low, high }, unit, log) {
+  if (low === high) return [[low, text(low, unit)]];
   const displayScale = (log ? logScale : scale)(
     inDisplayUnit(low, unit),
     inDisplayUnit(high, unit),

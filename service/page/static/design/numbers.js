@@ -45,7 +45,7 @@ export function showNumbers(place, { designs, columns, requirements, slow, names
       h(
         "details",
         {},
-        h("summary", {}, `${missing.length} quantities that are not defined for this machine`),
+        h("summary", {}, `Quantities that are not defined for this machine (${missing.length})`),
         table("Quantities without a value", designs, [{ title: "", columns: missing }], names),
       ),
     );

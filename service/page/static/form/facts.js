@@ -31,7 +31,11 @@ export function showFacts(place, { allowed, understood, swing, example }, apply)
       h(
         "dl",
         { class: "terms" },
-        row("makes the swing", share(swing.closing_share, Boolean(swing.example)), "of the ranges"),
+        row(
+          Number(swing.to_deg) - Number(swing.from_deg) > 359 ? "rotates fully" : "makes the swing",
+          share(swing.closing_share, Boolean(swing.example)),
+          "of the ranges",
+        ),
         row(
           `travel of the ${swing.example?.outlines ? "cylinder" : "slider"}`,
           between(swing.travel_mm, "mm"),

@@ -84,18 +84,23 @@ export function choicesFrom(query, front) {
  * @param {Chosen} chosen @param {FrontData} data
  */
 export function leaveOutConstants(chosen, data) {
-  const { standard, axes, columns } = chosen;
-  /** @param {string} key */
-  const isVaried = (key) => {
-    const { low, high } = data.range(key);
-    return low < high || data.count < 2 || data.better(key) !== "" || key === "slow_stroke";
-  };
-  if (axes.map(({ key }) => key).join(",") === standard.axes) {
-    chosen.axes = axes.filter(({ key }) => isVaried(key));
-    standard.axes = chosen.axes.map(({ key }) => key).join(",");
+  const { standard } = chosen;
+  /** @param {string[]} keys */
+  const varied = (keys) =>
+    keys.filter(
+      (key) =>
+        data.count < 2 ||
+        key === "slow_stroke" ||
+        data.better(key) !== "" ||
+        data.range(key).low < data.range(key).high,
+    );
+  const keys = chosen.axes.map(({ key, flipped }) => (flipped ? `-${key}` : key));
+  if (keys.join(",") === standard.axes) {
+    chosen.axes = varied(keys).map((key) => ({ key, flipped: false }));
+    standard.axes = varied(keys).join(",");
   }
-  if (columns.join(",") === standard.columns) {
-    chosen.columns = columns.filter(isVaried);
+  if (chosen.columns.join(",") === standard.columns) {
+    chosen.columns = varied(chosen.columns);
     standard.columns = chosen.columns.join(",");
   }
 }
