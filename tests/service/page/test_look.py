@@ -61,7 +61,7 @@ def test_a_lecture_drags_a_mechanism_until_it_locks_and_starts_a_search_from_it(
     page.get_by_label("Speed", exact=True).fill("-90")
     r, l, e = 50.8, 160.0, 30.0
     excess = math.degrees(math.asin(e / (l - r)) - math.asin(e / (l + r)))
-    expect(locate_fact(page, "Time ratio")).to_have_text(f"{(180 + excess) / (180 - excess):.4g}, slow outward")
+    expect(locate_fact(page, "Time ratio")).to_have_text(f"{(180 + excess) / (180 - excess):#.4g}, slow outward")
     expect(locate_fact(page, "Outward stroke")).to_contain_text(f"{180 + excess:.4g}°")
     expect(page.locator(".stroke-angle.outward text")).to_have_text(f"{180 + excess:.4g}°")
     least = math.degrees(math.acos((r + e) / l))
