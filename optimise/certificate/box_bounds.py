@@ -65,9 +65,10 @@ class Boxes:
         for objective in self.objectives:
             reason = unbounded_reason(problem, objective)
             if reason:
+                remedy = "leave this objective out; " if problem.mechanism.lever is None else ""
                 raise InputError(
-                    f"this job cannot be certified: {reason}; leave this objective out; the residuals of the front "
-                    "show how close its designs are to optimal"
+                    f"this job cannot be certified: {reason}; {remedy}the residuals of the front show how close its "
+                    "designs are to optimal"
                 )
         constraints = restated_constraints(problem)
         least = max((c.lower or 0.0 for c in constraints if c.quantity == TRANSMISSION_ANGLE.name), default=0.0)

@@ -36,7 +36,7 @@ def unbounded_reason(problem: Problem, objective: Objective) -> str:
 def _unbounded_reason_in_part(problem: Problem, objective: Objective) -> str:
     quantity, mechanism = problem.quantity(objective.quantity), problem.mechanism
     if mechanism.lever is not None:
-        return f"{quantity.title} has no bound over a range of designs where a cylinder moves a lever"
+        return f"{quantity.title} has no bound over a range of designs of a lever or an arm"
     if quantity.formulas(mechanism) or is_swing_form(quantity):
         return ""
     if not isinstance(quantity, BarPeak | CyclePeak | SwingPeak | SwingLeast | ClosedFormSwingQuantity):

@@ -59,7 +59,8 @@ def _versions_in_words(versions: Mapping[str, str]) -> str:
 def _certificate_blocks(subject: Subject) -> tuple[Block, ...]:
     certificate = subject.certificate
     if certificate is None:
-        text = "No certificate: how far the front is from the true one was not proven (slidercrank certify does that)."
+        remedy = " (slidercrank certify does that)" if subject.design.mechanism.lever is None else ""
+        text = f"No certificate: how far the front is from the true one was not proven{remedy}."
         return (Paragraph(text, "note"),)
     lines = [f"{certificate['status']}: {certificate['message']}"]
     for key, title in (
