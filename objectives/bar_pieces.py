@@ -9,12 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..model.machine.links import Bar
-from ..model.machine.mechanism import Mechanism
+from ..model.machine.clearance import Bar
+from ..model.machine.mechanism import Mechanism, Strength
 from ..model.machine.memoise import memoise_by_batch
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers
-from ..model.machine.strength import Strength
 from ..model.signals.peaks import STORED_PEAKS, find_peaks
 from ..model.signals.signals import Signal
 from ..model.strength.section_forces import CRANK, ROD

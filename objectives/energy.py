@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from ..model.machine.cylinder_machines import cycle_turns
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import evaluate_formula_of_raw_numbers
-from ..model.machine.two_turn_machine import cycle_turns
 from ..model.machine.work_absorption import with_loads_alone
 from ..model.signals.averages import torque_averages
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, GUIDE, LOAD, SLIDER_PIN, TurnWork, turn_work

@@ -8,8 +8,8 @@ from functools import partial
 from typing import Literal
 
 from ..model.cycle.gas_work import compressors, cylinder_loads
+from ..model.machine.clearance import Bar
 from ..model.machine.cylinder_machines import cylinder_count
-from ..model.machine.links import Bar
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.work_absorption import (
     carries_linkage_forces,

@@ -1,7 +1,8 @@
-"""Drive torque over the cycle: its peak, also over one stroke, its root mean square, its mean, and its fluctuation.
+"""Drive torque over the cycle: peak, also over one stroke, root mean square, mean, fluctuation; other loads on a motor.
 
 The root mean square over time heats a motor. The mean over the crank angle is work per angle. The fluctuation is the
-root mean square deviation from the mean, over the crank angle.
+root mean square deviation from the mean, over the crank angle. Other
+loads on a motor are its maximum and mean power, and the maximum reflected inertia.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from ..model.machine.mechanism import Mechanism
 from ..model.signals.averages import torque_averages
 from ..model.signals.signals import Signal
 from .cycle_peak import CycleAverage, CyclePeak
-from .kinds import TORQUE
-from .machine_needs import DRIVEN, ONE_CYLINDER, WORK
+from .kinds import INERTIA, POWER, TORQUE
+from .machine_needs import DRIVEN, MASSES, ONE_CYLINDER, SPEED, WORK
 from .quantity import Array, Group, Quantity, Values
 
 _TORQUE = "T = J alpha + J' omega^2 / 2 + V' - F x'"
@@ -141,4 +142,50 @@ TORQUE_FLUCTUATION = TorqueFluctuation(
     picture="torque",
     needs=(DRIVEN,),
     plain=True,
+)
+
+
+_motor_peak = partial(CyclePeak, group=Group.DRIVE, section="10. Motor and balance")
+
+PEAK_POWER = _motor_peak(
+    name="peak_power",
+    kind=POWER,
+    signal=Signal.POWER,
+    place=210,
+    sentence="The greatest power that passes between drive and crank within a turn, driving or braking.",
+    formula="max |T omega|",
+    picture="power",
+    needs=(SPEED, DRIVEN),
+)
+MEAN_POWER = CycleAverage(
+    name="mean_power",
+    title="mean power over time",
+    short="mean power",
+    kind=POWER,
+    signal=Signal.TORQUE,
+    statistic="mean",
+    times_speed=True,
+    place=220,
+    group=Group.DRIVE,
+    sentence="The mean drive power over time: the energy that the machine consumes per cycle, divided by the cycle "
+    "time.",
+    formula="mean of T omega over time: integral of T d theta over a cycle / cycle time",
+    picture="power",
+    signed=True,
+    needs=(SPEED, DRIVEN, WORK),
+    instead=PEAK_POWER.name,
+)
+PEAK_REFLECTED_INERTIA = _motor_peak(
+    name="peak_reflected_inertia",
+    title="greatest reflected inertia",
+    kind=INERTIA,
+    signal=Signal.REFLECTED_INERTIA,
+    place=230,
+    sentence=(
+        "The greatest moment of inertia of the linkage as seen by the drive at the crank, including rod and slider."
+    ),
+    advice="To compare it with the inertia of a motor, divide it by the square of the gear ratio.",
+    formula="max J, where J omega^2 / 2 is the kinetic energy of all links",
+    picture="inertia",
+    needs=(MASSES,),
 )

@@ -10,11 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ..model.machine.cylinder_machines import single_cylinder
+from ..model.machine.cylinder_machines import cycle_turns, single_cylinder
 from ..model.machine.mechanism import Mechanism
 from ..model.machine.raw_machine_vector import Raw
 from ..model.machine.raw_numbers_of_designs import PINS, evaluate_formula_of_raw_numbers
-from ..model.machine.two_turn_machine import cycle_turns
 from ..model.signals.turn_work import CRANK_PIN, CRANK_PIVOT, SLIDER_PIN, turn_work
 from .bar_pieces import LINKS, NEAR, BarPeak, BarPieces, BarQuantity, SectionLoad, material_and_pins
 from .kinds import LENGTH, PRESSURE, PRESSURE_SPEED

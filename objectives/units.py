@@ -24,8 +24,7 @@ from fractions import Fraction
 from typing import Any, Literal
 
 from ..model.errors import InputError
-from .column_keys import count_with_noun
-from .kinds import KINDS, DisplayUnit, Kind, amount_kind, kind_in
+from .kinds import KINDS, DisplayUnit, Kind, amount_kind, count_with_noun, kind_in
 
 Sign = Literal["any", "positive", "zero or more"]
 Dimension = frozenset[tuple[str, int]]

@@ -43,8 +43,7 @@ from ..cycle.cycle import cycle
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.clearance import Friction
-from ..machine.links import Bar, Link, RigidLink
+from ..machine.clearance import Bar, Friction, Link, RigidLink
 from ..machine.mechanism import Mechanism
 
 

@@ -21,14 +21,12 @@ from ..dynamics.torque import reflected_inertia, shaking_force_and_moment
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import Arrangement
-from ..machine.cylinder_machines import member_machines
+from ..machine.cylinder_machines import TURN, cycle_turns, machine_of_first_turn, member_machines
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import raw_inputs_with_added_masses_only, raw_vector
 from ..machine.speed_profile import time_per_angle
-from ..machine.two_turn_machine import TURN, cycle_turns, machine_of_first_turn
-from ..signals.first_of_equal_maxima import angle_in_cycle
-from ..signals.panel_polynomials import Extreme, Panels, larger_extreme, resolve_curves
+from ..signals.panel_polynomials import Extreme, Panels, angle_in_cycle, larger_extreme, resolve_curves
 from ..signals.signals import design_motion
 from .crank_speed import crank_speed_and_acceleration, speed_knots
 from .cycle import breakpoints, cycle

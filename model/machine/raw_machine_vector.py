@@ -15,13 +15,13 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table
-from .links import Bar, Link
+from .clearance import Bar, Link
+from .cylinder_machines import require_one_turn
 from .loads.load import Load
 from .loads.registry import kernel_code_of_load
 from .loads.stroke_force import StrokeForce
 from .mechanism import Mechanism
 from .memoise import memoise_by_machine
-from .two_turn_machine import require_one_turn
 
 Raw = IntEnum(
     "Raw",

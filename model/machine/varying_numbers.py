@@ -20,7 +20,7 @@ class Varying:
     each with its dotted path ("slider_mass", "crank.width", "loads.0.stiffness") and a factor: the number is the factor
     times the value. A force F that opposes every motion sets ("loads.0.outward", -1.0) and ("loads.0.inward", 1.0).
     lower, upper: bounds of the value, SI; equal bounds fix it. idle: whether it sets nothing, because it belongs to the
-    other turn of the cycle (`two_turn_machine`).
+    other turn of the cycle (`cylinder_machines`).
     """
 
     name: str

@@ -11,7 +11,7 @@ from collections import defaultdict
 from collections.abc import Hashable
 from dataclasses import replace
 
-from .links import Bar, Link, RigidLink
+from .clearance import Bar, Link, RigidLink
 from .loads.load import Load
 from .mechanism import Mechanism
 from .memoise import memoise_by_machine

@@ -21,8 +21,8 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.arrangement import require_one_cylinder
+from ..machine.cylinder_machines import cycle_turns
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns
 from ..quadrature import DEGREE, FIT, INTEGRALS, INTEGRATED, WEIGHTS
 from ..transient.crank_equation import TURN, CrankEquation
 from ..transient.steady_cycle import PeriodicTurn

@@ -12,10 +12,9 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.cylinder_machines import is_treated_as_shaft
+from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from ..machine.work_absorption import may_do_work_over_a_turn
 from .shaft_statistics import shaft_signal_averages
 from .signal_inputs import cycle_window, signal_inputs

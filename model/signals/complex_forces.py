@@ -10,13 +10,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque import Forces
 from ..dynamics.torque_with_friction import (
     friction_signs_in_segment,
     joint_forces_with_optional_friction,
     needs_friction_kernel,
+    rotation_sense,
+    torque_without_crank_loads,
 )
 from ..kernel.batches import in_chunks
 from ..kernel.kernel import ComplexCube, ComplexTable, Row, rarely_used_kernel

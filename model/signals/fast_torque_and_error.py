@@ -22,14 +22,13 @@ from ..dynamics.torque import forces_without_friction, load_without_pieces
 from ..kernel.arithmetic import STEP, analytic, inverse, root
 from ..kernel.batches import in_chunks, require_full_rotation
 from ..kernel.kernel import Cube, Integers, Row, Table, kernel
-from ..machine.cylinder_machines import is_treated_as_shaft
+from ..machine.cylinder_machines import is_treated_as_shaft, machine_of_first_turn
 from ..machine.design import DESIGN, LOAD_ROWS, derive_design, design_at
 from ..machine.loads.load import Enters
 from ..machine.mechanism import Clearances, Mechanism
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import raw_inputs_with_all_features
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import machine_of_first_turn
 from .coarse_peaks import LANES as LANES
 from .coarse_peaks import ROWS, fill_curve_numbers, find_two_highest, row_number_of_signal, sample_curves
 from .signal_inputs import cycle_window

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from ..machine.cylinder_machines import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import TURN, cycle_turns
-from .first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
+from .panel_polynomials import angle_in_cycle, index_of_first_maximum
 from .peaks import find_peaks
 from .signals import Signal
 

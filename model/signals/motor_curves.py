@@ -32,8 +32,7 @@ from ..machine.raw_machine_vector import Raw, knot_count
 from ..machine.raw_numbers_of_designs import DRIVE, raw_number_at_slot
 from .peaks import Peaks
 from .shaft import Shaft
-from .shaft_averages import MEAN, SQUARE_OVER_TIME, shaft_means
-from .shaft_peaks import shaft_peaks
+from .shaft_averages import MEAN, SQUARE_OVER_TIME, shaft_means, shaft_peaks
 from .shaft_segments import GEAR, SUPPLY, Breaks, join_breaks
 from .signals import Signal
 

@@ -7,19 +7,54 @@ kink or a jump. The derivative of a maximum with respect to the design is the pa
 theorem); a maximum at a breakpoint moves with it. Only the choice between two maxima within one spacing is not exact.
 
 The motion defines the independent variable (place): the crank angle of a shaft, or the time of a swing.
+
+Segments of many designs' cycles, and their panels, are flat lists.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from ..arrays import Array, IntArray, Mask
+from ..dynamics.segments import angle_identifying_segment
 from ..quadrature import NODES, Samples, last_coefficients_magnitude, resolve_panels
-from .cycle_segments import Segments
 from .roots import find_roots
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Cycles of n designs between breakpoints: s segments ordered by design and place, with smooth curves.
+
+    row: design. low, high: places (crank angle or time) of the ends. cut: breakpoint at its start. next_segment:
+    following segment, -1 if there is none. unit: unit of place for counting panels.
+    """
+
+    row: IntArray
+    low: Array
+    high: Array
+    cut: IntArray
+    next_segment: IntArray
+    unit: float = 1.0
+
+    @property
+    def probe(self) -> Array:
+        """A place in each segment that identifies its strokes and pieces."""
+        low: Any = self.low
+        high: Any = self.high
+        return np.asarray(angle_identifying_segment(low, high))
+
+    def split_into_panels(self, fineness: Array) -> tuple[IntArray, Array, Array, Array, IntArray]:
+        """Return design, a place inside, start, width and segment of panels, at least `fineness` (n,) per unit."""
+        width = self.high - self.low
+        count = np.maximum(1, np.ceil(width / self.unit * fineness[self.row])).astype(np.int64)
+        segment = np.repeat(np.arange(len(width)), count)
+        place = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
+        panel_width = (width / count)[segment]
+        return self.row[segment], self.probe[segment], self.low[segment] + place * panel_width, panel_width, segment
+
 
 _ROUGH = 1e-6  # maximum of the last coefficients on a resolved panel, as a fraction of the curve's maximum
 _DEEPEST = 8  # maximum halvings of a panel

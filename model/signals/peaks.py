@@ -9,11 +9,10 @@ import numpy as np
 from ..arrays import Array
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import in_chunks, require_full_rotation
-from ..machine.cylinder_machines import is_treated_as_shaft
+from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
 from ..machine.derived_designs import derived_blocks
 from ..machine.mechanism import Mechanism
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from .shaft_statistics import equivalent_single_cranks, highest_peaks, shaft_signal_peaks
 from .signal_inputs import cycle_window, signal_inputs
 from .signals import Signal

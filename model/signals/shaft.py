@@ -14,14 +14,13 @@ from ..dynamics.segments import crowding_parameter
 from ..dynamics.speed_ratio import speed_ratio_of
 from ..dynamics.torque_with_friction import least_determinacy_margin, needs_friction_kernel
 from ..kinematics import geometry
-from ..machine.cylinder_machines import cylinder_machines, single_cylinder
+from ..machine.cylinder_machines import TURN, cylinder_machines, half_of_cycle_at, machines_of_turns, single_cylinder
 from ..machine.derived_designs import derived_blocks
 from ..machine.design import design_at
 from ..machine.mechanism import Mechanism
 from ..machine.raw_machine_vector import Loads
 from ..machine.raw_numbers_of_designs import raw_machine_numbers
-from ..machine.two_turn_machine import TURN, half_of_cycle_at, machines_of_turns
-from .cycle_segments import Segments
+from .peak_search import Segments
 from .roots import find_roots
 from .shaft_curves import (
     TOUCH,

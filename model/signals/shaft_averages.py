@@ -1,4 +1,6 @@
-"""Means and mean squares of a crankshaft's curve over its cycle, with exact derivatives, by Gauss quadrature.
+"""Means, mean squares and peaks of a crankshaft's curve over its cycle, with exact derivatives.
+
+Means are by Gauss quadrature; for peaks see `peak_search`.
 
 In means over time, every crank angle has the weight 1 / p, where p is the speed profile. A panel is resolved if the
 curve T is and, for the mean square over time, if T / sqrt(p) is, too.
@@ -13,10 +15,29 @@ import numpy as np
 from ..arrays import Array, IntArray, Mask
 from ..machine.speed_profile import time_per_angle
 from ..quadrature import NODES, WEIGHTS, Samples, last_coefficients_magnitude, resolve_panels
-from .cycle_segments import Segments
+from .peak_search import Segments, find_maxima
 from .shaft import Shaft
-from .shaft_peaks import NOTHING
 from .shaft_segments import segments_of
+
+NOTHING = 1e-12
+"""If the total is below this fraction of the cylinders' individual magnitudes, it counts as zero: they cancel up to
+rounding."""
+
+
+def shaft_peaks(shaft: Shaft, *, limit: int, stroke: bool | None = None) -> tuple[Array, Array, Array]:
+    """Return values, crank angles (n, kept) and derivatives for the highest local maxima of the curve's magnitude.
+
+    stroke: whether only the outward stroke, or only the inward stroke, counts; None for both. The value is infinite
+    where friction locks the design.
+    """
+    segments = segments_of(shaft.breaks, shaft.period)
+    live = None if stroke is None else shaft.moves_outward(segments) == stroke
+    maxima = find_maxima(shaft, segments, shaft.panels_per_turn, limit=limit, counted=live)
+    nothing = np.isfinite(maxima.values) & (maxima.values <= NOTHING * maxima.size[:, None])
+    values = np.where(nothing, 0.0, maxima.values)
+    values[~shaft.unlocked_designs, 0] = np.inf
+    return values, np.mod(maxima.places, shaft.period), np.where(nothing[:, :, None], 0.0, maxima.slopes)
+
 
 MEAN, SQUARE, SQUARE_OVER_TIME = range(3)
 """Rows of `Means`: mean and mean square over the crank angle, mean square over time."""

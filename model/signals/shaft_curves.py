@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -30,6 +29,8 @@ from ..dynamics.torque_with_friction import (
     friction_signs_in_segment,
     guide_side_function,
     joint_forces_with_optional_friction,
+    rotation_sense,
+    torque_without_crank_loads,
 )
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, IntegerTable, Row, Table, rarely_used_kernel

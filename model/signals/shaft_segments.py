@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, IntArray
-from ..machine.two_turn_machine import TURN
-from .cycle_segments import Segments
+from ..machine.cylinder_machines import TURN
+from .peak_search import Segments
 
 FIXED, CONTACT, GEAR, SUPPLY = -1, -2, -3, -4
 """Codes of a breakpoint that no design moves, and of breakpoints where a sign changes: that of a guide force, of the

@@ -14,17 +14,15 @@ import numpy as np
 
 from ..arrays import Array
 from ..kernel.batches import in_chunks
-from ..machine.cylinder_machines import cylinder_count, cylinder_machines, single_cylinder
+from ..machine.cylinder_machines import TURN, cylinder_count, cylinder_machines, single_cylinder
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import knot_count
-from ..machine.two_turn_machine import TURN
 from ..machine.work_absorption import may_do_work_over_a_turn
 from .panel_polynomials import resolve_curves
 from .shaft import Shaft
-from .shaft_averages import MEAN, SQUARE, shaft_means
+from .shaft_averages import MEAN, SQUARE, shaft_means, shaft_peaks
 from .shaft_curves import CURVES, WORK
-from .shaft_peaks import shaft_peaks
 from .shaking_balance import has_rocking_couple
 from .signals import Signal
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from ..arrays import Array
 from ..dynamics.segments import CycleWindow
+from ..machine.cylinder_machines import machine_of_first_turn
 from ..machine.loads.crank_torque import require_loads_repeating_each_turn
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_machine
 from ..machine.raw_machine_vector import Loads, raw_inputs_with_added_masses_only, raw_inputs_with_all_features
-from ..machine.two_turn_machine import machine_of_first_turn
 from .signals import Signal
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from enum import IntEnum, auto
 from typing import Any
 
-from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import forces_without_friction, reflected_inertia, shaking_force_and_moment
-from ..dynamics.torque_with_friction import Sides, joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import (
+    Sides,
+    joint_forces_with_optional_friction,
+    rotation_sense,
+    torque_without_crank_loads,
+)
 from ..kernel.arithmetic import analytic, magnitude, root
 from ..kinematics.position import motion, third_slider_derivative
 from ..machine.design import Design

@@ -21,7 +21,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.crank_loads import rotation_sense, torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -41,6 +40,8 @@ from ..dynamics.torque_with_friction import (
     friction_signs_in_segment,
     joint_forces_with_optional_friction,
     least_determinacy_margin,
+    rotation_sense,
+    torque_without_crank_loads,
 )
 from ..kernel.arithmetic import STEP, analytic, magnitude, root
 from ..kernel.batches import in_chunks

@@ -20,10 +20,9 @@ from ..arrays import Array
 from ..dynamics.segments import CycleWindow
 from ..dynamics.torque_with_friction import needs_friction_kernel
 from ..kernel.batches import require_full_rotation
-from ..machine.cylinder_machines import is_treated_as_shaft
+from ..machine.cylinder_machines import cycle_turns, is_treated_as_shaft, machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import cycle_turns, machines_of_turns
 from .shaft_statistics import shaft_turn_work
 from .signal_inputs import signal_inputs
 from .signals import Signal

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..kinematics import geometry
+from ..machine.cylinder_machines import shift_angles_into_half
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import shift_angles_into_half
 
 
 class _Peaks(Protocol):

@@ -29,9 +29,9 @@ import numpy as np
 
 from ..arrays import Array, IntArray, Mask
 from ..kernel.batches import in_chunks, require_full_rotation
+from ..machine.cylinder_machines import machines_of_turns
 from ..machine.mechanism import Mechanism
 from ..machine.memoise import memoise_by_batch
-from ..machine.two_turn_machine import machines_of_turns
 from ..signals.two_turn_peaks import angles_within_both_turns
 from .section_forces import Stress, stress_at_length_fraction
 from .stress_locations import StressLocation, StressLocations, stress_at_locations

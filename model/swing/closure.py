@@ -20,7 +20,7 @@ from ..kernel.arithmetic import STEP
 from ..kinematics.position import motion
 from ..machine.mechanism import Mechanism
 from .end_angles import Ends, swing_ends
-from .slider_pin_force import pin_distance_from_crank_line
+from .forces import pin_distance_from_crank_line
 from .swing import Swing
 
 _FLAT = 1e-12

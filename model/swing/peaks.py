@@ -16,8 +16,7 @@ from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
 from ..kernel.batches import in_chunks
 from ..machine.mechanism import Mechanism
-from ..signals.cycle_segments import Segments
-from ..signals.peak_search import Maxima, find_maxima
+from ..signals.peak_search import Maxima, Segments, find_maxima
 from .closure import swings_without_dead_point
 from .swing import Swing
 from .swing_batch import Pieces, SwingBatch

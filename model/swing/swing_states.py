@@ -9,24 +9,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import CycleWindow, Segment, find_segment_pieces, load_on_slider
 from ..dynamics.torque import add_crank_couple, balance_before_pin_force
-from ..dynamics.torque_with_friction import friction_signs_in_segment, joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import (
+    friction_signs_in_segment,
+    joint_forces_with_optional_friction,
+    torque_without_crank_loads,
+)
 from ..kernel.arithmetic import analytic, inverse, magnitude
 from ..kernel.kernel import ComplexCube, ComplexTable, Cube, Integers, Row, Table, rarely_used_kernel
 from ..kinematics.position import motion
 from ..machine.design import Design, design_at
 from ..machine.raw_machine_vector import Loads
 from ..signals.position_error import influences, worst_case
-from .law import law_code, travel_and_derivatives_at
-from .slider_pin_force import (
+from .forces import (
     PinSides,
     frictionless_pin_force,
     newton_step,
     pin_distance_from_crank_line,
     rod_and_crank_residuals,
 )
+from .law import law_code, travel_and_derivatives_at
 from .swing import Swing
 
 Complexes = NDArray[np.complex128]

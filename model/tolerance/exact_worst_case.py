@@ -39,7 +39,7 @@ from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
 from ..machine.mechanism import Mechanism
-from ..signals.first_of_equal_maxima import angle_in_cycle
+from ..signals.panel_polynomials import angle_in_cycle
 from .error_distributions import angle_ranges_where_error_counts, limit_box, limits_of_sources, source_influences
 
 

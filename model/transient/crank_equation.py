@@ -23,7 +23,6 @@ import numpy as np
 
 from ..arrays import Array
 from ..cycle.self_locking import require_no_locking
-from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import (
     Cuts,
     CycleWindow,
@@ -36,6 +35,7 @@ from ..dynamics.segments import (
     load_on_slider,
 )
 from ..dynamics.torque import forces_without_friction, load_without_pieces
+from ..dynamics.torque_with_friction import torque_without_crank_loads
 from ..errors import InputError
 from ..kernel.kernel import Integers, Row, Table, kernel
 from ..linkage.linkage import Linkage

@@ -13,9 +13,8 @@ import numpy as np
 from ..arrays import Array
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
-from ..machine.cylinder_machines import Member, member_machines
+from ..machine.cylinder_machines import Member, cycle_turns, half_of_cycle_at, machines_of_turns, member_machines
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns, half_of_cycle_at, machines_of_turns
 from .crank_equation import NEAREST, TURN, CrankEquation, Equation, Span, Stretch, Terms
 from .friction_torque import (
     ITERATIONS,

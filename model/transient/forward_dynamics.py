@@ -26,9 +26,9 @@ import numpy as np
 from ..arrays import Array
 from ..errors import InputError
 from ..linkage.linkage import Linkage
+from ..machine.cylinder_machines import cycle_turns
 from ..machine.drive import Drive, speed_range
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import cycle_turns
 from .crank_equation import NEAREST, TURN, Span
 from .crankshaft_equation import equation_of
 from .simulated_motion import Recorder, Transient, Verdict

@@ -26,10 +26,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..dynamics.crank_loads import torque_without_crank_loads
 from ..dynamics.segments import Segment, load_on_slider
 from ..dynamics.torque import balance_before_pin_force
-from ..dynamics.torque_with_friction import Sides, guide_side_function, joint_forces_with_optional_friction
+from ..dynamics.torque_with_friction import (
+    Sides,
+    guide_side_function,
+    joint_forces_with_optional_friction,
+    torque_without_crank_loads,
+)
 from ..errors import InputError
 from ..kernel.arithmetic import analytic, root
 from ..kernel.kernel import ComplexTable, Integers, Row, Table, rarely_used_kernel

@@ -24,10 +24,9 @@ from ..cycle.multi_cylinder import shaking_curves
 from ..errors import InputError
 from ..linkage.linkage import Linkage
 from ..linkage.require_single_linkage import require_single_rotating_linkage
+from ..machine.cylinder_machines import TURN, cycle_turns
 from ..machine.mechanism import Mechanism
-from ..machine.two_turn_machine import TURN, cycle_turns
-from ..signals.first_of_equal_maxima import angle_in_cycle
-from ..signals.panel_polynomials import Extreme, larger_extreme, resolve_curves
+from ..signals.panel_polynomials import Extreme, angle_in_cycle, larger_extreme, resolve_curves
 
 _PIECES = 12  # minimum number of panels in a turn
 _SAMPLES = 360

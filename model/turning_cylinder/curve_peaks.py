@@ -16,8 +16,7 @@ import numpy as np
 
 from ..arrays import Array, IntArray
 from ..kernel.arithmetic import STEP
-from ..signals.cycle_segments import Segments
-from ..signals.peak_search import find_maxima
+from ..signals.peak_search import Segments, find_maxima
 from ..swing.law import NO_TABLE, corner_times, law_code
 from ..swing.swing_types import LeverLaw
 from .crank_turn_state import PIECES

@@ -1,10 +1,19 @@
-"""Formulas as trees of numbers in SI, names and functions; evaluating a tree in an algebra gives it a meaning."""
+"""Formulas as trees of numbers in SI, names and functions; evaluating a tree in an algebra gives it a meaning.
+
+Algebras here are text, formulas exactly linear in dimensions and variables with factors as fractions, and values with
+derivatives by the chain rule, node by node.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Protocol, TypeVar
+
+import numpy as np
+
+from ..quantity import Array, Values
 
 T = TypeVar("T")
 
@@ -114,3 +123,171 @@ def _bracketed_text(part: tuple[str, int], least: int) -> str:
 def formula_text(node: Node) -> str:
     """Return a formula as text, identical for formulas that differ only in spaces and redundant brackets."""
     return evaluate_in_algebra(node, Text())[0]
+
+
+SIZE = "|offset|"
+"""Absolute value of the offset, as a name in linear formulas."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A sum of factors times names, plus a constant, SI. factors: none is zero, in the order of the names."""
+
+    factors: tuple[tuple[str, Fraction], ...]
+    constant: Fraction
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names on which it depends."""
+        return tuple(name for name, _ in self.factors)
+
+    def plus(self, addend: Linear, times: Fraction = Fraction(1)) -> Linear:
+        """Return the sum with a multiple of another linear formula."""
+        factors = dict(self.factors)
+        for name, factor in addend.factors:
+            factors[name] = factors.get(name, Fraction(0)) + times * factor
+        nonzero = tuple((name, factor) for name, factor in factors.items() if factor)
+        return Linear(nonzero, self.constant + times * addend.constant)
+
+    def times(self, factor: Fraction) -> Linear:
+        """Return a multiple."""
+        return Linear((), Fraction(0)).plus(self, factor) if factor else Linear((), Fraction(0))
+
+
+@dataclass(frozen=True)
+class _LinearAlgebra:
+    """An algebra of linear formulas; None for any nonlinear formula. known: linear formulas of the names."""
+
+    definitions: Mapping[str, Linear | None]
+
+    def number(self, number: Number) -> Linear | None:
+        return Linear((), Fraction(number.si))
+
+    def name(self, name: str) -> Linear | None:
+        return self.definitions.get(name)
+
+    def call(self, function: str, arguments: list[Linear | None]) -> Linear | None:
+        linear = [item for item in arguments if item is not None]
+        if len(linear) < len(arguments):
+            return None
+        first, last = linear[0], linear[-1]
+        if function == "neg":
+            return first.times(Fraction(-1))
+        if function in ("+", "-"):
+            return first.plus(last, Fraction(1 if function == "+" else -1))
+        if function == "*" and not (first.factors and last.factors):
+            return first.times(last.constant) if not last.factors else last.times(first.constant)
+        if function == "/" and not last.factors and last.constant:
+            return first.times(1 / last.constant)
+        if function == "abs" and first == Linear((("offset", Fraction(1)),), Fraction(0)):
+            return Linear(((SIZE, Fraction(1)),), Fraction(0))
+        return None
+
+
+def linear_of(node: Node, definitions: Mapping[str, Linear | None]) -> Linear | None:
+    """Return a formula as linear in the names that it contains; None if it is not linear.
+
+    definitions: linear formulas by name; `linear_unknown` gives those for dimensions and variables.
+    """
+    return evaluate_in_algebra(node, _LinearAlgebra(definitions))
+
+
+def linear_unknown(name: str) -> Linear:
+    """Return a dimension or a variable as a linear formula."""
+    return Linear(((name, Fraction(1)),), Fraction(0))
+
+
+Slope = Callable[[Array, Array], Array]
+UNARY: dict[str, tuple[Callable[[Array], Array], Slope]] = {
+    "neg": (np.negative, lambda x, y: np.full_like(x, -1.0)),
+    "sqrt": (np.sqrt, lambda x, y: 0.5 / y),
+    "abs": (np.abs, lambda x, y: np.where(x < 0.0, -1.0, 1.0)),
+    "sin": (np.sin, lambda x, y: np.cos(x)),
+    "cos": (np.cos, lambda x, y: -np.sin(x)),
+    "tan": (np.tan, lambda x, y: 1.0 + y * y),
+    "asin": (np.arcsin, lambda x, y: 1.0 / np.sqrt((1.0 - x) * (1.0 + x))),
+    "acos": (np.arccos, lambda x, y: -1.0 / np.sqrt((1.0 - x) * (1.0 + x))),
+    "atan": (np.arctan, lambda x, y: 1.0 / (1.0 + x * x)),
+}
+"""Functions of one argument x, with their derivative as a function of x and of the value y."""
+Partials = tuple[Array, Array]
+BINARY: dict[str, tuple[Callable[[Array, Array], Array], Callable[[Array, Array, Array], Partials]]] = {
+    "+": (np.add, lambda a, b, y: (np.ones_like(a), np.ones_like(b))),
+    "-": (np.subtract, lambda a, b, y: (np.ones_like(a), np.full_like(b, -1.0))),
+    "*": (np.multiply, lambda a, b, y: (b, a)),
+    "/": (lambda a, b: np.where(b == 0.0, np.nan, a / b), lambda a, b, y: (1.0 / b, -y / b)),
+    "**": (
+        lambda a, b: np.where((a == 0.0) & (b < 0.0), np.nan, np.power(a, b)),
+        lambda a, b, y: (np.where(b == 0.0, 0.0, b * np.power(a, b - 1.0)), y * np.log(a)),
+    ),
+}
+"""Operations on two arguments a and b, with both derivatives as functions of a, b and the value y.
+
+Division by zero is undefined rather than infinite: min, max and atan would turn infinity into a number.
+"""
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """An algebra of values (n,) and gradients (n, d); without gradients if the leaves have none.
+
+    leaves: values of the names. n, d: shape of the zero gradients of plain numbers.
+    """
+
+    leaves: Mapping[str, Values]
+    n: int
+    d: int
+    gradients: bool
+
+    def number(self, number: Number) -> Values:
+        """Return a number, the same for all designs."""
+        return Values(np.full(self.n, number.si), np.zeros((self.n, self.d)) if self.gradients else None)
+
+    def name(self, name: str) -> Values:
+        """Return the values of a name."""
+        return self.leaves[name]
+
+    def call(self, function: str, arguments: list[Values]) -> Values:
+        """Return a function of its arguments; at a kink, with the slope for the first active argument."""
+        if function in ("min", "max"):
+            return _minimum_or_maximum(function, arguments)
+        argument_values = [item.values for item in arguments]
+        values = (
+            UNARY[function][0](argument_values[0])
+            if function in UNARY
+            else BINARY[function][0](argument_values[0], argument_values[1])
+        )
+        if not self.gradients:
+            return Values(values, None)
+        return Values(
+            values,
+            weighted_sum_of_gradients(
+                partial_derivatives(function, argument_values, values), [item.gradients for item in arguments]
+            ),
+        )
+
+
+def partial_derivatives(function: str, arguments: list[Array], values: Array) -> tuple[Array, ...]:
+    """Return the derivatives of a smooth function with respect to its arguments, each shaped like the arguments."""
+    if function in UNARY:
+        return (UNARY[function][1](arguments[0], values),)
+    return BINARY[function][1](arguments[0], arguments[1], values)
+
+
+def weighted_sum_of_gradients(slopes: tuple[Array, ...], gradients: list[Array | None]) -> Array:
+    """Return the sum of gradients (..., d) weighted by slopes (...); a slope is ignored if its gradient is zero."""
+    total: Array | None = None
+    for slope, gradient in zip(slopes, gradients, strict=True):
+        assert gradient is not None
+        part = np.where(gradient == 0.0, 0.0, slope[..., None] * gradient)
+        total = part if total is None else total + part
+    assert total is not None
+    return total
+
+
+def _minimum_or_maximum(function: str, arguments: list[Values]) -> Values:
+    stacked = np.stack([item.values for item in arguments])
+    first = (np.argmin if function == "min" else np.argmax)(stacked, axis=0)  # NaN counts as active
+    rows = np.arange(stacked.shape[1])
+    slopes = [item.gradients for item in arguments if item.gradients is not None]
+    return Values(stacked[first, rows], np.stack(slopes)[first, rows] if slopes else None)

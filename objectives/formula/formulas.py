@@ -29,8 +29,7 @@ from ..units import (
     value_of_one_si_unit_in,
 )
 from .dimensional_analysis import kind_of_formula
-from .expression import ARGUMENTS, Name, Node, formula_text, names_in
-from .linear import Linear, linear_of, linear_unknown
+from .expression import ARGUMENTS, Linear, Name, Node, formula_text, linear_of, linear_unknown, names_in
 from .parser import parse
 from .quantity import FormulaQuantity, basic_quantities, column_key_of_formula
 from .ranges import FormulaBounds, Interval

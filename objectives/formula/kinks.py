@@ -19,8 +19,7 @@ import numpy as np
 
 from ...model.arrays import IntArray, Mask
 from ..quantity import Array, Pieces
-from .expression import Number
-from .linear import BINARY, UNARY, partial_derivatives, weighted_sum_of_gradients
+from .expression import BINARY, UNARY, Number, partial_derivatives, weighted_sum_of_gradients
 
 _MOST_PIECES = 8
 """Maximum number of pieces of a part that may tie."""

@@ -16,9 +16,8 @@ from ...model.machine.raw_numbers_of_designs import require_design_columns
 from ...model.machine.varying_numbers import Varying, number_at
 from ..machine_needs import Consequence
 from ..quantity import Array, Pieces, Quantity, Values
-from .expression import Call, Name, Node, evaluate_in_algebra
+from .expression import Call, Linear, Name, Node, Slopes, evaluate_in_algebra, linear_of, linear_unknown
 from .kinks import Kinks, TwoSided, pieces_from_above_and_below, pieces_of_formula, single_smooth_piece
-from .linear import Linear, Slopes, linear_of, linear_unknown
 
 _GOLDEN = 0.6180339887498949  # parts' labels are added with incommensurate factors, so that they hardly ever coincide
 _LONGEST_KEY = 60

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...model.errors import InputError
-from .expression import Call, Name, Node, Number, formula_text
-from .linear import SIZE, Linear, linear_of
+from .expression import SIZE, Call, Linear, Name, Node, Number, formula_text, linear_of
 
 _ROUNDING = 1e-14
 

@@ -28,8 +28,7 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.kernel.batches import interruption_grace_time, poll_interruption, record_killed_call
 from ...model.machine.mechanism import Mechanism
-from .call_function import FunctionResult, Refused
-from .function_process import HEAD, unpack_result
+from .function_process import HEAD, FunctionResult, Refused, unpack_result
 
 _START = 600.0  # s for importing this software or compiling a kernel on a busy machine; neither counts in the limit
 _GRACE = 10.0  # s beyond the limit before the process is ended from here

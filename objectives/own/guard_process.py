@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from .call_function import printable
+from .function_process import printable
 
 PRINTED = 1_000_000
 """Bytes that a function and its descendants may print."""

@@ -18,7 +18,7 @@ from ...model.errors import InputError
 from ...model.kernel.batches import require_full_rotation
 from ...model.machine.mechanism import Mechanism
 from ..quantity import Array, Pieces, Quantity, Values
-from .call_function import Function, FunctionResult, Refused, call_function
+from .function_process import Function, FunctionResult, Refused, call_function
 from .function_process_client import Worker
 
 Gradient = Literal["complex step", "finite differences", "none"]

@@ -32,11 +32,10 @@ from ..formula.quantity import FormulaQuantity
 from ..motion_deviation import MotionDeviation
 from ..own.quantity import OwnQuantity
 from ..peak_torque import MEAN_TORQUE, PEAK_TORQUE, RMS_TORQUE
-from ..proportions import STROKE
+from ..proportions import STROKE, TIME_RATIO
 from ..quantity import Array, Quantity
 from ..registry import QUANTITIES
 from ..robust.quantity import RobustQuantity
-from ..time_ratio import TIME_RATIO
 from .design_input import column_of_variable
 from .evaluate_quantities import can_run_despite_friction
 from .swing_columns import INNER_DEAD_CENTRE, LOADED_STROKE, OUTER_DEAD_CENTRE, PEAK_TORQUE_ANGLE, SLOW_STROKE

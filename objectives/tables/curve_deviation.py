@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.linkage.linkage import Linkage
+from ...model.machine.cylinder_machines import TURN, cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import TURN, cycle_turns
 from ..kinds import Kind
 from ..quantity import Array
 from .curve_extremes import defined_curves, golden_section_maxima

@@ -23,9 +23,9 @@ from ...model.dynamics.segments import crank_angle_from_crowded, crowded_from_cr
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
 from ...model.machine.clearance import Friction
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
-from ...model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
+from ...model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
 from ..kinds import Kind
 from ..machine_needs import DRIVEN, LOADED, PIVOT_LOADED, SPEED, TOLERANCES, Need
 from ..motion_deviation import POSITION_ERROR, POSITION_ERROR_RSS

@@ -19,11 +19,10 @@ from ...model.arrays import Array
 from ...model.dynamics.torque import Forces
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion
-from ...model.machine.cylinder_machines import single_cylinder
+from ...model.machine.cylinder_machines import machines_of_turns, single_cylinder
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.raw_machine_vector import Raw
-from ...model.machine.two_turn_machine import machines_of_turns
 from ...model.signals.signals import Signal
 from ...model.strength.section_forces import ROD, stress_along, stress_at_length_fraction
 from ...model.strength.stress_cycle import stress_peaks

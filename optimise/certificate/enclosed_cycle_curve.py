@@ -25,18 +25,23 @@ from ...model.dynamics.torque import Forces, forces_without_friction
 from ...model.kernel.arithmetic import magnitude
 from ...model.kinematics.position import Motion, motion
 from ...model.machine.arrangement import Arrangement
-from ...model.machine.cylinder_machines import Member, cylinder_machines, is_treated_as_shaft, single_cylinder
+from ...model.machine.cylinder_machines import (
+    TURN,
+    Member,
+    cylinder_machines,
+    is_treated_as_shaft,
+    machines_of_turns,
+    single_cylinder,
+)
 from ...model.machine.design import Design
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import TURN, machines_of_turns
 from ...model.signals.fast_torque_and_error import is_supported, screened_maxima
 from ...model.signals.peaks import find_peaks
 from ...model.signals.shaft_curves import VECTORS, vector_of_force, vector_of_motion
 from ...model.signals.shaft_statistics import SUMS, equivalent_single_cranks
 from ...model.signals.signal_inputs import cycle_window, signal_inputs
 from ...model.signals.signals import Signal, design_motion, signal_of_motion
-from .enclosed_crank_angles import crank_at_stroke_fraction, dead_centre_angle, track_dead_centre
-from .enclosed_machine import BoxMachine, Numbers
+from .enclosed_machine import BoxMachine, Numbers, crank_at_stroke_fraction, dead_centre_angle, track_dead_centre
 from .enclosure import Enclosure, enclosure_of_ends, join_parts, select_by_mask
 
 _SIDE_STEP, _FARTHEST = 1e-9, 0.5  # rad, distances from a step

@@ -22,14 +22,13 @@ from ...model.machine.raw_numbers_of_designs import START
 from ...model.signals.position_error import influences, worst_case
 from ...model.signals.signals import design_motion
 from ...model.swing.end_angles import swing_ends, swing_start_column
+from ...model.swing.forces import frictionless_pin_force, pin_distance_from_crank_line
 from ...model.swing.law import corner_times, law_code, travel_and_derivatives_at
 from ...model.swing.peaks import negated_least_drive_peaks, swing_peaks
-from ...model.swing.slider_pin_force import frictionless_pin_force, pin_distance_from_crank_line
 from ...model.swing.swing import Swing, without_inertia
 from ...model.swing.swing_states import DRIVE, ERROR, POWER
 from ...objectives.swing_quantity import ClosedFormSwingQuantity, SwingLeast, SwingPeak
-from .enclosed_crank_angles import angle_near, crank_sine_and_cosine
-from .enclosed_machine import BoxMachine, Numbers
+from .enclosed_machine import BoxMachine, Numbers, angle_near, crank_sine_and_cosine
 from .enclosure import Enclosure, constant_like, join_parts, sign_of
 
 _SIDE_STEP = 1e-9  # fraction of the time; moves to one side of a corner in the law, or of a step

@@ -29,9 +29,8 @@ from ...model.arrays import Array, IntArray
 from ...model.errors import InputError
 from ..front.front import ParetoFront, require_front
 from ..front.rounding import ranges_or_sizes
-from ..methods.achievement_objectives import Achievement
 from ..methods.registry import require_gradients
-from ..methods.scalar_objective import SUM, Form
+from ..methods.scalar_objective import SUM, Achievement, Form
 from ..problem.constraint_violation import FEASIBLE
 from ..search.assemble_front import assemble_front, empty_front
 from ..search.candidates import Candidates, FrontCandidates

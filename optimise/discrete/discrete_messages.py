@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.errors import InfeasibleError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...objectives.tables.design_input import columns_of_numbers
 from ..front.front import ParetoFront
 from ..problem.constraint_violation import constraints_with_floors, relative_violation

@@ -12,8 +12,8 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.column_keys import count_with_noun
 from ...objectives.formula.quantity import FormulaQuantity
+from ...objectives.kinds import count_with_noun
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ..engine.engine import Engine
 from ..problem.constraint_violation import FEASIBLE, constraints_with_floors

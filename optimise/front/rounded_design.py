@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ...model.arrays import Array
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import System, metric_unit_in
+from ...objectives.kinds import System, count_with_noun, metric_unit_in
 from ...objectives.tables.design_input import columns_of_numbers
 from ..problem.constraint_violation import FEASIBLE, relative_violation
 from ..problem.problem import Problem

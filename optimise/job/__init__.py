@@ -22,12 +22,13 @@ from ...model.file_name_encoding import path_from_text, path_text
 from ...objectives.units import quoted_if_unprintable
 from ..problem.problem import Problem
 from .catalogue import catalogue_files, with_catalogues, with_options
+from .crank_speed import speed_profile_file, with_speed_points
 from .custom_quantities import declared_quantities, function_module_files
 from .drive import motor_torque_warnings
 from .job_file import LARGEST, read_job_file, require_few_values_and_no_nulls
 from .loads import names_of_load_files, with_load_points
 from .mistake_messages import LONGEST, MOST, sentences_on_mistakes
-from .model import Job, job_type_with_quantities
+from .model import Job, job_type_with_quantities, schema_of
 from .named_files import Files
 from .plain_numbers import (
     PlainNumbers,
@@ -37,8 +38,6 @@ from .plain_numbers import (
     read_and_note_plain_numbers,
 )
 from .problem_of_job import problem_of
-from .schema import schema_of
-from .speed_profile import speed_profile_file, with_speed_points
 from .target_motion import target_motion_file, with_target_motion
 from .toml_errors import with_line_numbers
 from .variables_and_variants import with_values_at_paths

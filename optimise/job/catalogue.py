@@ -19,7 +19,7 @@ from .catalogue_columns import Column, columns_of_header
 from .catalogue_screening import screen_rows
 from .mistake_messages import key_of_location
 from .named_files import Files, read_named_text, table_in, tables_in
-from .number_paths import unknown_path_message, with_value_at_path
+from .plain_numbers import unknown_path_message, with_value_at_path
 from .text_table import TableFile, read_table
 from .text_table_layout import are_numbers
 

@@ -13,15 +13,14 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.errors import InfeasibleError, InputError, JobError
-from ...model.machine.links import Bar
+from ...model.machine.clearance import Bar
 from ...model.machine.loads.compressor import Compressor
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import number_at
 from ...objectives.bar_pieces import LINKS, NEAR
 from ...objectives.link_strength import LinkStress
-from ...objectives.proportions import STROKE
+from ...objectives.proportions import STROKE, TIME_RATIO
 from ...objectives.swing_quantity import SwingQuantity
-from ...objectives.time_ratio import TIME_RATIO
 from ...objectives.units import quote
 from ..feasibility.impossible_swing_reasons import require_swinging
 from ..problem.contradictory_problems import require_longer_slow_stroke, require_nonzero_quantities

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ...model.swing.swing import CRANK_TURN
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...objectives.registry import FACTS
 from ...objectives.units import quote
 from .catalogue import Catalogue, with_options

@@ -16,8 +16,7 @@ from fractions import Fraction
 import numpy as np
 
 from ...model.errors import InfeasibleError, InputError
-from ...objectives.formula.expression import Call
-from ...objectives.formula.linear import Linear, linear_unknown
+from ...objectives.formula.expression import Call, Linear, linear_unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ..problem.problem import Problem
 from ..search.elimination import offset_signs

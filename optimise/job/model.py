@@ -1,16 +1,19 @@
-"""The job: content of a job file, key by key. Also the JSON body of a request. After reading, every value is in SI."""
+"""The job: content of a job file, key by key. Also the JSON body of a request. After reading, every value is in SI.
+
+Its JSON Schema is of draft 2020-12.
+"""
 
 from __future__ import annotations
 
 from functools import lru_cache
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BaseModel, Field
 from pydantic_core import CoreSchema, core_schema
 
 from ...model.errors import InputError
+from ...model.machine.cylinder_machines import turns_per_cycle
 from ...model.machine.mechanism import Mechanism, SliderDistances
-from ...model.machine.two_turn_machine import turns_per_cycle
 from ...model.swing.swing import Swing
 from ...objectives.units import quote
 from ..methods.registry import methods_by_name
@@ -227,3 +230,26 @@ def _job_with(custom_facts: tuple[tuple[str, Stated], ...], formulas: tuple[str,
     choice: Any = choice_type_with_constraints(constraints)
     wishes: Any = Annotated[objectives, AfterValidator(_require_objective)]
     return with_entry_types(Job, choice=tuple[choice, ...], constraints=constraints, objectives=wishes)
+
+
+@lru_cache(maxsize=16)
+def schema_of(job: type[BaseModel]) -> dict[str, Any]:
+    """Return the JSON Schema of a job, without nulls; do not change it, because it is cached."""
+    schema = job.model_json_schema(mode="validation")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **_without_null(schema)}
+
+
+def _without_null(node: Any) -> Any:
+    """Return a schema without nulls, because optional keys are omitted instead."""
+    if isinstance(node, list):
+        return [_without_null(item) for item in node]
+    if not isinstance(node, dict):
+        return node
+    entries = {key: _without_null(item) for key, item in node.items()}
+    if entries.get("default", 0) is None or isinstance(entries.get("default"), dict):
+        del entries["default"]
+    choices = [choice for choice in entries.get("anyOf", ()) if choice != {"type": "null"}]
+    if len(choices) == 1 and len(entries["anyOf"]) == 2:
+        del entries["anyOf"]
+        return {**choices[0], **entries}
+    return {**entries, "anyOf": choices} if choices else entries

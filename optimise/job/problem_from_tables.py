@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import JobError
-from ...objectives.own.call_function import Function
+from ...objectives.own.function_process import Function
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.quantity import Quantity
 from ..problem.problem import Problem

@@ -12,10 +12,16 @@ from ...model.linkage.dimensions import DIMENSIONS
 from ...objectives.bounds_over_ranges import CLEAR, LengthRanges
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
-from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
+from ...objectives.proportions import (
+    CRANK_ANGLE_RATIO,
+    ROD_TO_CRANK,
+    ROD_TO_OFFSET,
+    STROKE,
+    TIME_RATIO,
+    time_ratio_of_excess_angle,
+)
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.time_ratio import CRANK_ANGLE_RATIO, TIME_RATIO, time_ratio_of_excess_angle
 from ..problem.problem import Problem
 from ..problem.requirements import RELATIONS, Constraint, Range
 from .mistake_messages import key_of_location

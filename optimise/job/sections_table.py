@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from ...model.errors import InputError, JobError
-from ...model.machine.strength import Criterion, Material, Strength
+from ...model.machine.mechanism import Criterion, Material, Strength
 from ...model.tolerance.error_distributions import Shape
 from ...objectives import kinds
 from ...objectives.force_transmission import TRANSMISSION_ANGLE

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.errors import InputError
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...objectives.units import is_value, number_and_unit, quote, quoted_if_unprintable
 from .text_table_layout import (
     EXPONENT,

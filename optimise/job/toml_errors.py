@@ -27,9 +27,8 @@ from .mistake_messages import (
     mistake_sentence,
     schema_nodes_at,
 )
-from .model import Job
+from .model import Job, schema_of
 from .plain_numbers import key_above
-from .schema import schema_of
 
 _LONGEST = 1000  # maximum length of a line to read and edit
 _LONGEST_EXCERPT = 200  # maximum number of characters to quote from a line

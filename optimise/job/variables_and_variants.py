@@ -30,10 +30,9 @@ from ..problem.requirements import Constraint, Discrete, Range
 from .constraints_and_objectives import constraints_of, slow_stroke_of
 from .crank_speed import TIME_KEYS
 from .mistake_messages import sentences_on_mistakes
-from .model import Job
-from .number_paths import stated_values_of_part, unknown_path_message, with_value_at_path
+from .model import Job, schema_of
 from .option_amounts import amount_values
-from .schema import schema_of
+from .plain_numbers import stated_values_of_part, unknown_path_message, with_value_at_path
 from .value_grids import Grid, crossed_ends_remedy, read_grid, states_value_grid
 from .value_types import Choices, RangeOf, ToleranceOf
 

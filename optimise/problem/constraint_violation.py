@@ -13,11 +13,11 @@ from ...objectives.force_transmission import SELF_LOCKING_MARGIN, TRANSMISSION_A
 from ...objectives.lever_drive import BUCKLING_MARGIN, PRESSURE_MARGIN
 from ...objectives.lever_geometry import CYLINDER_LENGTH_MARGIN, LEVER_TRANSMISSION_ANGLE
 from ...objectives.lever_turn import ARM_TRANSMISSION_ANGLE
+from ...objectives.proportions import TIME_RATIO
 from ...objectives.quantity import Quantity
 from ...objectives.robust.quantity import RobustQuantity
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
 from ...objectives.swing_quantities import SWING_TRANSMISSION_ANGLE
-from ...objectives.time_ratio import TIME_RATIO
 from .problem import Problem
 from .requirements import Constraint, Objective, merge_constraints
 from .restatement import restate_constraint

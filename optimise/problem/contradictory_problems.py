@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ...model.errors import InfeasibleError, InputError
+from ...objectives.proportions import TIME_RATIO
 from ...objectives.stroke_times import STROKE_TIME_RATIOS
-from ...objectives.time_ratio import TIME_RATIO
 from .problem import Problem
 from .question_registry import Change, Remark
 

@@ -15,8 +15,8 @@ from ...model.errors import InputError, reading_in_both_units, warn_user
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.linkage_values import real_or_complex_array
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
 from ...objectives.formula.quantity import FormulaQuantity
 from ...objectives.formula.resolve_names import resolve_quantities

@@ -350,8 +350,7 @@ class Problem:
         `InputError` for a dead point that the slider cannot pass, for ends that are missing or of two kinds, and as
         `analyse` does.
         """
-        from ...model.swing.summary import summarise
-        from ...model.swing.swing_request import SwingRequest, resolve_swing
+        from ...model.swing.summary import SwingRequest, resolve_swing, summarise
 
         self._require_no_choices()
         requested_names = SwingRequest(

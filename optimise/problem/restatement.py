@@ -21,10 +21,9 @@ from ...model.machine.mechanism import Branch, Mechanism
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
 from ...objectives.formula.expression import Call, Name, Node, Number
 from ...objectives.formula.quantity import FormulaQuantity, linear_form
-from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE
+from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET, STROKE, TIME_RATIO
 from ...objectives.quantity import Quantity
 from ...objectives.registry import QUANTITIES
-from ...objectives.time_ratio import TIME_RATIO
 from .problem import Problem
 from .requirements import Constraint, Range
 

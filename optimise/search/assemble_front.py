@@ -10,8 +10,8 @@ import numpy as np
 from ...model.arrays import Array, IntArray, Mask, sorted_unique
 from ...model.kinematics.geometry import offset_without_rounding
 from ...objectives.catalogue_amount import Amount
-from ...objectives.column_keys import count_with_noun
 from ...objectives.formula.quantity import FormulaQuantity
+from ...objectives.kinds import count_with_noun
 from ..front.front import Columns, ParetoFront, Status
 from ..front.hypervolume import ReportProgress, choose_designs, hypervolume, ideal_and_range, ignore_progress
 from ..front.stationarity import STATIONARY, optimality_multipliers, slack_of

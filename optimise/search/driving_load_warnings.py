@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...model.arrays import Array
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.loads.stroke_force import StrokeForce
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
 from ...model.machine.varying_numbers import Varying
 from ...model.machine.work_absorption import loads_may_do_work_over_a_turn, with_loads_alone
 from ...model.signals.averages import torque_averages

@@ -21,7 +21,7 @@ import numpy as np
 
 from ...model.swing.end_angles import swing_start_column
 from ...objectives.force_transmission import TRANSMISSION_ANGLE
-from ...objectives.formula.linear import SIZE, Linear, linear_unknown
+from ...objectives.formula.expression import SIZE, Linear, linear_unknown
 from ...objectives.formula.quantity import FormulaQuantity, equation_of
 from ...objectives.proportions import ROD_TO_CRANK, ROD_TO_OFFSET
 from ...objectives.quantity import Quantity

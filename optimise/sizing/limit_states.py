@@ -48,8 +48,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...model.machine.mechanism import Mechanism
-from ...model.machine.strength import Material
+from ...model.machine.mechanism import Material, Mechanism
 from ..problem.tolerance_costs import SectionLimits
 from .section_loads import JointLoads, Range, Whip
 

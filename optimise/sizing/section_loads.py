@@ -19,8 +19,8 @@ import numpy as np
 from ...model.arrays import Array
 from ...model.cycle.cycle import breakpoints, cycle
 from ...model.linkage.linkage import Linkage
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
 from ...model.signals.peaks import find_peaks
 from ...model.signals.signals import Signal
 

@@ -22,11 +22,9 @@ from ...model.arrays import Array
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.linkage import Linkage
 from ...model.linkage.require_single_linkage import require_single_rotating_linkage
-from ...model.machine.clearance import require_frictionless
+from ...model.machine.clearance import Bar, require_frictionless
 from ...model.machine.cylinder_machines import require_single_cylinder_at_constant_speed
-from ...model.machine.links import Bar
-from ...model.machine.mechanism import Mechanism
-from ...model.machine.strength import Material
+from ...model.machine.mechanism import Material, Mechanism
 from ...model.optional_packages import import_extra
 from ..problem.tolerance_costs import SectionLimits
 from .limit_states import (
@@ -201,7 +199,7 @@ class _Task:
         return found
 
     def mass(self, x: list[Any]) -> Any:
-        """Return the mass of both bars from their widths and depths, see `links.Bar`."""
+        """Return the mass of both bars from their widths and depths, see `Bar`."""
         (w, d, v, e), crank, rod = x, float(self.linkage.crank), float(self.linkage.rod)
         of_crank = crank * d * w + 0.25 * math.pi * d * w**2
         of_rod = rod * e * v + 0.25 * math.pi * e * v**2

@@ -13,8 +13,7 @@ from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
 from ...objectives.units import closest_word
 from ...optimise.job.mistake_messages import schema_nodes_at, toml_text
-from ...optimise.job.model import Job
-from ...optimise.job.schema import schema_of
+from ...optimise.job.model import Job, schema_of
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import SUBJECTS
 from ..designs.quantity_facts import facts_of_all

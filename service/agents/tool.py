@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from ...model.errors import InputError
 from ...objectives.units import closest_word, quote
 from ...optimise.job.mistake_messages import broken_rule
-from ...optimise.job.schema import schema_of
+from ...optimise.job.model import schema_of
 from .call import Call, ToolResult
 
 

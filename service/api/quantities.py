@@ -151,7 +151,7 @@ class TopicList(BaseModel):
 @router.get("/units")
 def list_units() -> UnitTable:
     """List the units for every kind, and the equivalents of API units in inches and pounds."""
-    from ...objectives.column_keys import name_unit_and_factor_of_key
+    from ...objectives.kinds import name_unit_and_factor_of_key
     from ...objectives.registry import FACTS
     from ...objectives.units import value_of_one_si_unit_in
 

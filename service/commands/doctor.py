@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 import typer
 
 from ...model.errors import NotFound, SlidercrankError
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ..jobs.stores import Address, has_store, is_store_specified, printable_store_address, store_address
 from ..resources.memory import size_text
 from ..runs.result import json_text

@@ -7,8 +7,7 @@ from typing import Annotated
 import typer
 
 from ...model.errors import InputError
-from ...objectives.column_keys import column_key_in_system, count_with_noun
-from ...objectives.kinds import ANGLE
+from ...objectives.kinds import ANGLE, column_key_in_system, count_with_noun
 from ..designs.columns import find_columns
 from ..designs.selection import no_match_message, numbered_rows, result_part
 from ..motion.design_file import ENDINGS, design_file

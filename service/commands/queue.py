@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, get_args
 import typer
 
 from ...model.errors import InputError
-from ...objectives.column_keys import count_with_noun, name_unit_and_factor_of_key
+from ...objectives.kinds import count_with_noun, name_unit_and_factor_of_key
 from ...optimise.front.progress import stage_text
 from ..jobs.stores import (
     Address,

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...model.errors import InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
-from ...objectives.kinds import System
+from ...objectives.kinds import System, column_key_in_system, metric_key, name_unit_and_factor_of_key
 
 if TYPE_CHECKING:
     from ...objectives.quantity import Group

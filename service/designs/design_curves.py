@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
-from ...model.machine.two_turn_machine import cycle_turns
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.swing.swing import require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
 from ...model.turning_cylinder.lever_of_design import (
@@ -79,7 +79,7 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 
     machine: whether masses, loads and tolerances are known; otherwise only the motion is returned.
     """
-    from ...model.machine.two_turn_machine import cycle_turns
+    from ...model.machine.cylinder_machines import cycle_turns
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     turns = cycle_turns(mechanism)

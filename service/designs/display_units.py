@@ -11,8 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import SlidercrankError
-from ...objectives.column_keys import column_key_in_system, name_unit_and_factor_of_key
-from ...objectives.kinds import System, metric_unit_in
+from ...objectives.kinds import System, column_key_in_system, metric_unit_in, name_unit_and_factor_of_key
 from ..runs.result import Cell, Result, Row, StoredObjective
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import System, metric_unit_in
+from ...objectives.kinds import System, count_with_noun, metric_unit_in
 from ..runs.result import Result, StoredObjective
 from .design_selection_options import minimised_values
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import metric_key, name_unit_and_factor_of_key
-from ...objectives.kinds import System, metric_unit_in
+from ...objectives.kinds import System, metric_key, metric_unit_in, name_unit_and_factor_of_key
 from ..runs.result import Cell, Result, Row
 from .columns import find_column
 

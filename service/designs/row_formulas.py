@@ -8,14 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.errors import InputError
-from ...objectives.column_keys import name_unit_and_factor_of_key
 from ...objectives.formula.dimensional_analysis import kind_of_formula
-from ...objectives.formula.expression import Name, Node, evaluate_in_algebra, formula_text, names_in
+from ...objectives.formula.expression import Name, Node, Slopes, evaluate_in_algebra, formula_text, names_in
 from ...objectives.formula.formulas import Units
-from ...objectives.formula.linear import Slopes
 from ...objectives.formula.parser import parse
 from ...objectives.formula.quantity import column_key_of_formula
-from ...objectives.kinds import Kind
+from ...objectives.kinds import Kind, name_unit_and_factor_of_key
 from ...objectives.quantity import Array, Values
 from ...objectives.units import kind_of_any_unit
 from ..runs.result import Row

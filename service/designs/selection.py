@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import Kind
+from ...objectives.kinds import Kind, count_with_noun
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from ...model.cycle.gas_work import cylinder_loads
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
-from ...model.machine.links import Bar
+from ...model.machine.clearance import Bar
 from ...model.machine.mechanism import Mechanism
 from ...objectives.kinds import LENGTH, System
 from . import layers as on

@@ -10,8 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...model.arrays import Array
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import count_with_noun, unit_text
 from ...optimise.decisions.price_of_robustness import robust_cost
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.robust_problem import robust_quantities

@@ -15,12 +15,11 @@ from ...model.cycle.stroke_times import slow_stroke
 from ...model.dynamics.segments import crank_angle_from_crowded, crowding_parameter
 from ...model.linkage.dimensions import DIMENSIONS
 from ...model.linkage.linkage import Linkage
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
 from ...model.signals.first_peak import first_peaks
 from ...model.signals.signals import Signal
-from ...objectives.column_keys import name_unit_and_factor_of_key
-from ...objectives.kinds import LENGTH, System, metric_unit_in, unit_text
+from ...objectives.kinds import LENGTH, System, metric_unit_in, name_unit_and_factor_of_key, unit_text
 from ...objectives.registry import QUANTITIES
 from ...objectives.tables.cycle_curves import cycle_curves as all_curves
 from ..render.blocks import Value, joined, words

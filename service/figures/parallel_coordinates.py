@@ -9,8 +9,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import System
+from ...objectives.kinds import System, count_with_noun
 from ...optimise.front.front import ParetoFront
 from ..render.numerals import format_on_scale
 from .design_marks import Axis, dimension_axes, marked_designs, objective_axis

@@ -8,8 +8,7 @@ from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import System
+from ...objectives.kinds import System, count_with_noun
 from ...optimise.front.front import ParetoFront
 from .design_marks import Axis, Mark, dimension_axes, marked_designs, objective_axis, with_better_arrow
 from .style import (

@@ -9,11 +9,10 @@ import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
-from ...model.cycle.gas_work import cylinder_loads
-from ...model.cycle.indicator_diagram import indicator_diagram
+from ...model.cycle.gas_work import cylinder_loads, indicator_diagram
 from ...model.linkage.linkage import Linkage
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.mechanism import Mechanism
-from ...model.machine.two_turn_machine import cycle_turns
 from ...model.swing.swing import Swing
 from ...model.turning_cylinder.lever_of_design import lever_machine, lever_swing
 from ...objectives.kinds import System

@@ -8,16 +8,16 @@ from typing import Any
 
 from ...model.errors import InfeasibleError, InputError
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...optimise.feasibility.relaxation import Relaxation, relaxation_of_missed_bound
 from ...optimise.front.saved_front import is_constant
 from ...optimise.job import Job
 from ...optimise.job.incomplete_formulas import FormulaName, StatedFormula, formula_names, stated_formulas
 from ...optimise.job.job_file import require_few_values
 from ...optimise.job.mistake_messages import where_key_belongs
+from ...optimise.job.model import schema_of
 from ...optimise.job.plain_numbers import numbers_without_unit
 from ...optimise.job.reachable_values import STROKE_RATIOS, ratio_and_angle_conflict
-from ...optimise.job.schema import schema_of
 from ...optimise.problem.constraint_violation import constraints_with_floors
 from ...optimise.problem.problem import Problem
 from ...optimise.problem.question_registry import Change, Remark

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from ...objectives.column_keys import kind_of_key
+from ...objectives.kinds import kind_of_key
 from ..designs.columns import find_column
 from ..render.blocks import Text, Unit
 

@@ -10,8 +10,7 @@ from typing import Annotated, Any, NotRequired
 
 from typing_extensions import TypedDict
 
-from ...objectives.column_keys import name_unit_and_factor_of_key
-from ...objectives.kinds import Kind
+from ...objectives.kinds import Kind, name_unit_and_factor_of_key
 
 _Handler = Callable[[Any], dict[str, Any]]
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import kind_of_key
-from ...objectives.kinds import LENGTH, RATIO, Kind
+from ...objectives.kinds import LENGTH, RATIO, Kind, kind_of_key
 
 if TYPE_CHECKING:
     from ...model.linkage.linkage import Linkage

@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ...objectives.column_keys import kind_of_key
-from ...objectives.kinds import ANGLE, LENGTH
+from ...objectives.kinds import ANGLE, LENGTH, kind_of_key
 from .blocks import Table, Text, Unit, column, value_from_record
 
 _PLACES = (column("at", ANGLE), column("slider", LENGTH))

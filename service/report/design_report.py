@@ -3,8 +3,7 @@
 import time
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import count_with_noun, metric_key
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import count_with_noun, metric_key, unit_text
 from ...objectives.proportions import STROKE
 from ...objectives.swing_quantities import ACTUATOR_TRAVEL, SWING_ANGLE
 from ..designs.changed_design import Variation

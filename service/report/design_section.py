@@ -6,8 +6,7 @@ from typing import get_args
 
 from ...model.errors import InputError
 from ...model.swing.swing import CRANK_TURN
-from ...objectives.column_keys import column_key_in_system
-from ...objectives.kinds import unit_text
+from ...objectives.kinds import column_key_in_system, unit_text
 from ...objectives.machine_needs import Consequence
 from ...objectives.registry import QUANTITIES
 from ..designs.columns import Column, all_columns

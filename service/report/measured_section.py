@@ -3,8 +3,7 @@
 from dataclasses import replace
 from functools import partial
 
-from ...objectives.column_keys import count_with_noun
-from ...objectives.kinds import System
+from ...objectives.kinds import System, count_with_noun
 from ...objectives.tables.measured_curves import Measured
 from ..figures.panel_drawing import draw_panel_figure
 from ..figures.panel_figure import PanelFigure

@@ -8,8 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...objectives.column_keys import column_key_in_system
-from ...objectives.kinds import System
+from ...objectives.kinds import System, column_key_in_system
 from ...objectives.tables.measured_curves import Measured
 from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem

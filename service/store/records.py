@@ -11,7 +11,7 @@ from sqlalchemy import Row as Found
 from sqlalchemy import select
 
 from ...model.errors import InputError
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from .schema import bookmarks, jobs
 
 State = Literal["queued", "running", "done", "infeasible", "cancelled", "failed"]

@@ -6,15 +6,13 @@ from typing import Any
 
 from ...model.cycle.crank_speed import turn_time
 from ...model.linkage.dimensions import DIMENSIONS
-from ...model.machine.clearance import Friction
-from ...model.machine.links import Bar, Link
+from ...model.machine.clearance import Bar, Friction, Link
+from ...model.machine.cylinder_machines import cycle_turns
 from ...model.machine.loads.load_text import join_range_ends
-from ...model.machine.mechanism import Mechanism, Tolerance
-from ...model.machine.strength import Strength
-from ...model.machine.two_turn_machine import cycle_turns
+from ...model.machine.mechanism import Mechanism, Strength, Tolerance
 from ...model.machine.varying_numbers import Varying
 from ...model.swing.end_angles import swing_start_column
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...objectives.motion_deviation import MotionDeviation
 from ...objectives.own.quantity import OwnQuantity
 from ...objectives.tables.design_input import column_of_variable, columns_of_numbers

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from ...model.linkage.dimensions import DIMENSIONS
-from ...objectives.column_keys import count_with_noun, metric_key
+from ...objectives.kinds import count_with_noun, metric_key
 from ..designs.columns import Column, choice_column_keys, find_column
 from ..designs.display_units import row_without_noise
 from ..designs.judged_requirements import front_violations_in_words, violations_in_words

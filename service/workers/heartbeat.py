@@ -14,7 +14,7 @@ from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import NoReturn
 
 from ...model.errors import LeaseLost, StoreError
-from ...objectives.column_keys import count_with_noun
+from ...objectives.kinds import count_with_noun
 from ...objectives.own.function_process_client import is_guard_command
 from ..resources.memory import Memory, size_text
 from ..runs.result import Result

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, Pin
-from slidercrank.model.machine.links import Bar, Counterweight, RigidLink
+from slidercrank.model.machine.clearance import Bar, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.drag import Drag
@@ -24,8 +23,7 @@ from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
 from slidercrank.model.machine.loads.viscous import Viscous
-from slidercrank.model.machine.mechanism import Branch, Mechanism, Tolerance, Tolerances, Window
-from slidercrank.model.machine.strength import Material, Strength
+from slidercrank.model.machine.mechanism import Branch, Material, Mechanism, Strength, Tolerance, Tolerances, Window
 from slidercrank.objectives.machine_needs import (
     A_BAR,
     COMPRESSOR,

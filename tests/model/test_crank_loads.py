@@ -10,13 +10,11 @@ import numpy as np
 import pytest
 
 from slidercrank.model.clearance.run import simulate as simulate_clearance
-from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import cycle, cycle_energies
 from slidercrank.model.errors import InputError, JobError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Clearance, Friction, Pin
+from slidercrank.model.machine.clearance import Clearance, Counterweight, Friction, Pin, RigidLink
 from slidercrank.model.machine.drive import ConstantTorque, Drive
-from slidercrank.model.machine.links import Counterweight, RigidLink
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.varying_numbers import Varying

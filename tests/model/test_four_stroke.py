@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.gas_work import gas_cycle_number
-from slidercrank.model.cycle.indicator_diagram import indicator_diagram
+from slidercrank.model.cycle.gas_work import gas_cycle_number, indicator_diagram
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import Cycle, breakpoints, cycle, cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction, Pin

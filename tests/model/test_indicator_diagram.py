@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator_diagram import indicator_diagram, valve_events
+from slidercrank.model.cycle.gas_work import indicator_diagram, valve_events
 from slidercrank.model.machine.loads.cylinder import Cylinder
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.test_cylinder import random_case, turning

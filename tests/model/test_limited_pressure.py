@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.indicator_diagram import burning_end_angle, indicator_diagram
+from slidercrank.model.cycle.gas_work import burning_end_angle, indicator_diagram
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.loads.engine import Engine, FourStroke, LimitedPressure

@@ -8,8 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.cycle import cycle
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import cycle, cycle_energies
 from slidercrank.model.cycle.locked_angles import locking_states, locking_verdict
 from slidercrank.model.cycle.self_locking import locking_margin
 from slidercrank.model.errors import InputError

@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from slidercrank.model.cycle.cycle import breakpoints, cycle
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import breakpoints, cycle, cycle_energies
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.linkage.loaded_stroke import loaded_stroke
 from slidercrank.model.machine.arrangement import Arrangement
+from slidercrank.model.machine.cylinder_machines import machines_of_turns
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.two_turn_machine import machines_of_turns
 from slidercrank.model.machine.varying_numbers import Varying
 from slidercrank.model.signals.averages import torque_averages
 from slidercrank.model.signals.peaks import find_peaks

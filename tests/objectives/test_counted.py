@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from slidercrank.objectives.column_keys import count_with_noun
+from slidercrank.objectives.kinds import count_with_noun
 
 
 def test_only_one_of_something_is_in_the_singular() -> None:

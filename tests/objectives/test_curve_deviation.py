@@ -10,9 +10,9 @@ import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction
+from slidercrank.model.machine.cylinder_machines import cycle_turns
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.two_turn_machine import cycle_turns
 from slidercrank.objectives.quantity import Array
 from slidercrank.objectives.tables.curve_deviation import Deviation, deviations
 from slidercrank.objectives.tables.curve_extremes import defined_curves

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from slidercrank.model.cycle.efficiency import Energies, cycle_energies
+from slidercrank.model.cycle.cycle import Energies, cycle_energies
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction, Pin
 from slidercrank.model.machine.loads.angle_table import AngleTable

@@ -16,7 +16,7 @@ import pytest
 from scipy.integrate import quad
 
 import slidercrank as sc
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import cycle_energies
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.clearance import Friction, Pin

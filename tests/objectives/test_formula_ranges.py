@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.formula.expression import ARGUMENTS, Call, Name, Node, Number
-from slidercrank.objectives.formula.linear import linear_of, linear_unknown
+from slidercrank.objectives.formula.expression import ARGUMENTS, Call, Name, Node, Number, linear_of, linear_unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 
 BOX = {"a": (0.5, 2.0), "b": (-1.5, 0.75), "c": (-3.0, -0.25), "d": (0.0, 1.0)}

@@ -19,7 +19,7 @@ from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.objectives.own import function_process_client as own_worker
 from slidercrank.objectives.own import guard_process
-from slidercrank.objectives.own.call_function import Refused
+from slidercrank.objectives.own.function_process import Refused
 from slidercrank.objectives.own.function_process_client import Worker
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere, only a group is ended")

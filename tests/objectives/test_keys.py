@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from slidercrank.objectives.column_keys import column_key_in_system, metric_key
+from slidercrank.objectives.kinds import column_key_in_system, metric_key
 
 LB, LBF, IN = 0.45359237, 4.4482216152605, 25.4
 

@@ -10,11 +10,10 @@ import pytest
 from scipy.linalg import eigh_tridiagonal
 
 from slidercrank.model.cycle.cycle import breakpoints
-from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.clearance import Bar, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.strength import Criterion
+from slidercrank.model.machine.mechanism import Criterion, Mechanism
 from slidercrank.objectives.link_strength import critical_stress
 from slidercrank.objectives.registry import QUANTITIES
 from tests.model.cases import STRENGTH, Array, random_designs

@@ -17,7 +17,7 @@ import pytest
 
 from slidercrank.model.kernel.batches import interrupted_by
 from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.objectives.own.call_function import Refused
+from slidercrank.objectives.own.function_process import Refused
 from slidercrank.objectives.own.function_process_client import Worker
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="groups of processes are those of POSIX")

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin
-from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.clearance import Bar, Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.crank_torque import CrankTorque, CrankTorqueTable
 from slidercrank.model.machine.loads.load import Load

@@ -13,10 +13,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slidercrank.model.machine.links import Bar, RigidLink
+from slidercrank.model.machine.clearance import Bar, RigidLink
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.strength import Criterion, Material, Strength
+from slidercrank.model.machine.mechanism import Criterion, Material, Mechanism, Strength
 from slidercrank.objectives.registry import QUANTITIES
 
 INCH, FOOT, POUND, MINUTE = 0.0254, 0.3048, 4.4482216152605, 60.0

@@ -10,8 +10,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.machine.drive import Drive
-from slidercrank.model.machine.mechanism import Mechanism
-from slidercrank.model.machine.strength import Material, Strength
+from slidercrank.model.machine.mechanism import Material, Mechanism, Strength
 from slidercrank.objectives.registry import FACTS
 from slidercrank.objectives.tables.evaluate_quantities import violations
 from slidercrank.optimise.job import parse_job

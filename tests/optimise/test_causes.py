@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError, JobError
-from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.clearance import Friction, RigidLink
 from slidercrank.model.machine.loads.viscous import Viscous
 from slidercrank.model.machine.mechanism import Mechanism, Tolerances
 from slidercrank.objectives.registry import QUANTITIES

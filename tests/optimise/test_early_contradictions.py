@@ -11,8 +11,7 @@ import pytest
 from slidercrank.model.errors import JobError
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.objectives.flow import VOLUMETRIC_EFFICIENCY
-from slidercrank.objectives.formula.expression import Call, Name
-from slidercrank.objectives.formula.linear import linear_unknown
+from slidercrank.objectives.formula.expression import Call, Name, linear_unknown
 from slidercrank.objectives.formula.ranges import FormulaBounds, Interval
 from slidercrank.optimise.job import parse_job
 from slidercrank.optimise.job.linear_contradictions import impossible_option_notes

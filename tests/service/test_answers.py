@@ -15,8 +15,7 @@ import pytest
 
 import slidercrank as sc
 from slidercrank.model.errors import AssemblyError, InputError
-from slidercrank.objectives.column_keys import kind_of_key, name_unit_and_factor_of_key
-from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, unit_text
+from slidercrank.objectives.kinds import DISPLAYED_KINDS, PRESSURE, kind_of_key, name_unit_and_factor_of_key, unit_text
 from slidercrank.objectives.tables.curve_extremes import defined_curves
 from slidercrank.service.api.app import create_app
 from slidercrank.service.designs.measured_curves_file import parse_measured_curves

@@ -11,10 +11,10 @@ import pytest
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_curves
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.clearance import RigidLink
 from slidercrank.model.machine.mechanism import Mechanism
 from slidercrank.model.machine.speed_profile import Harmonics
-from slidercrank.model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
+from slidercrank.model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
 from slidercrank.objectives.tables.all_quantities import analysis_columns
 from slidercrank.objectives.tables.curve_extremes import curve_extremes
 from slidercrank.service.figures.datasheet import cycle_curves

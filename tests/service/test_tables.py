@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from slidercrank.objectives.column_keys import name_unit_and_factor_of_key
+from slidercrank.objectives.kinds import name_unit_and_factor_of_key
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.display_units import row_without_noise
 from slidercrank.service.runs.result import Result, StoredObjective

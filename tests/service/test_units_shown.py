@@ -15,8 +15,15 @@ import numpy as np
 import pytest
 
 from slidercrank.model.errors import InputError
-from slidercrank.objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
-from slidercrank.objectives.kinds import DISPLAYED_KINDS, KINDS, RATIO, metric_unit_in
+from slidercrank.objectives.kinds import (
+    DISPLAYED_KINDS,
+    KINDS,
+    RATIO,
+    column_key_in_system,
+    metric_key,
+    metric_unit_in,
+    name_unit_and_factor_of_key,
+)
 from slidercrank.objectives.units import kind_of_any_unit, to_si, value_of_one_si_unit_in
 from slidercrank.service.designs.columns import find_column
 from slidercrank.service.designs.display_units import convert_record, convert_result, convert_row

@@ -7,9 +7,8 @@ import numpy as np
 
 from ....model.cycle.multi_cylinder import multi_cylinder_breakpoints, multi_cylinder_curves, multi_cylinder_cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.cylinder_machines import Member, member_machines, single_cylinder
+from ....model.machine.cylinder_machines import Member, cycle_turns, member_machines, single_cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....model.signals.panel_polynomials import Extreme
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, LENGTH, TORQUE

@@ -8,8 +8,8 @@ import numpy as np
 from ....model.cycle.self_locking import locking_reason
 from ....model.cycle.stroke_times import scaled_stroke_times
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....objectives.kinds import RATIO, SPEED, TIME
 from ....objectives.machine_needs import ONE_TIMING
 from ....objectives.tables.curve_extremes import (

@@ -6,14 +6,12 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from ....model.cycle.cycle import breakpoints, cycle
-from ....model.cycle.efficiency import cycle_energies
+from ....model.cycle.cycle import breakpoints, cycle, cycle_energies
 from ....model.cycle.locked_angles import locking_verdict
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Friction
-from ....model.machine.cylinder_machines import is_treated_as_shaft, single_cylinder
+from ....model.machine.cylinder_machines import cycle_turns, is_treated_as_shaft, single_cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....model.signals.averages import torque_averages
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, PERCENT, TORQUE, Kind

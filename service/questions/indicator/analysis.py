@@ -6,13 +6,12 @@ from typing import Annotated
 
 import numpy as np
 
-from ....model.cycle.gas_work import cylinder_loads
-from ....model.cycle.indicator_diagram import burning_end_angle, indicator_diagram, valve_events
+from ....model.cycle.gas_work import burning_end_angle, cylinder_loads, indicator_diagram, valve_events
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import cycle_turns
 from ....model.machine.loads.cylinder import Cylinder
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....objectives.kinds import PRESSURE, VOLUME, display_unit
 from ...figures.panel_figure import Line, Panel, PanelFigure, crank_angle_panel, sampled_turn
 from ...render.blocks import Block, NamedNumber, number_list, value_from_record

@@ -13,8 +13,7 @@ from ....model.linkage.inverse_kinematics import Solution as Stroke
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism
 from ....model.swing.swing import Swing, dead_point_angles, require_swing, swing_between_crank_angles
-from ....objectives.column_keys import kind_of_key
-from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED
+from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, kind_of_key
 from ...render.blocks import Block, Table, column, joined, sentence, value_from_record, words
 from ..record_types import Note, Record
 

@@ -7,12 +7,11 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 from ....model.linkage.linkage import Linkage
-from ....model.machine.links import RigidLink
+from ....model.machine.clearance import RigidLink
 from ....model.machine.mechanism import Mechanism
 from ....model.swing.swing_types import LeverLaw
 from ....model.turning_cylinder.swing_summary import LeverPoint, LeverSummary, summarise_swing
-from ....objectives.column_keys import kind_of_key
-from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind
+from ....objectives.kinds import ANGLE, FORCE, LENGTH, POWER, PRESSURE, RATIO, SPEED, VOLUME_FLOW, Kind, kind_of_key
 from ...designs.design_curves import lever_rows
 from ...designs.display_units import convert_rows
 from ...render.blocks import Block, NamedNumber, Text, named_number, number_list, sentence, value_from_record, words

@@ -8,10 +8,9 @@ import numpy as np
 
 from ....model.arrays import Array
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
-from ....objectives.column_keys import count_with_noun, kind_of_key
-from ....objectives.kinds import ANGLE
+from ....objectives.kinds import ANGLE, count_with_noun, kind_of_key
 from ....objectives.tables.curve_deviation import Deviation, deviations
 from ....objectives.tables.curve_extremes import crank_angles_of_cuts, defined_curves
 from ....objectives.tables.cycle_curves import KINDS

@@ -14,12 +14,11 @@ from ....model.cycle.multi_cylinder import multi_cylinder_curves, shaking_curves
 from ....model.cycle.self_locking import locking_margin
 from ....model.linkage.linkage import Linkage
 from ....model.machine.clearance import Friction
-from ....model.machine.cylinder_machines import cylinder_machines
+from ....model.machine.cylinder_machines import TURN, cycle_turns, cylinder_machines
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import TURN, cycle_turns
 from ....model.signals.averages import signal_averages, torque_averages
-from ....model.signals.first_of_equal_maxima import angle_in_cycle, index_of_first_maximum
 from ....model.signals.motor_curves import MotorCurve, motor_averages, motor_curve
+from ....model.signals.panel_polynomials import angle_in_cycle, index_of_first_maximum
 from ....model.signals.shaft_statistics import mean_speed_ratio
 from ....model.signals.signals import Signal
 from ....objectives.kinds import INERTIA, POWER, TORQUE

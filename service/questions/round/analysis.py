@@ -9,8 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.column_keys import column_key_in_system, metric_key, name_unit_and_factor_of_key
-from ....objectives.kinds import LENGTH, SMALL_LENGTH, Kind, System, metric_unit_in
+from ....objectives.kinds import (
+    LENGTH,
+    SMALL_LENGTH,
+    Kind,
+    System,
+    column_key_in_system,
+    metric_key,
+    metric_unit_in,
+    name_unit_and_factor_of_key,
+)
 from ....objectives.units import kind_of_symbol, quote
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded_design import Rounded, drop_conversion_rounding

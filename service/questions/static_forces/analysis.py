@@ -9,12 +9,11 @@ import numpy as np
 from ....model.classical.loop_equations import static_forces
 from ....model.cycle.cycle import cycle
 from ....model.linkage.linkage import Linkage
-from ....model.machine.clearance import Friction
-from ....model.machine.links import Counterweight, RigidLink
+from ....model.machine.clearance import Counterweight, Friction, RigidLink
+from ....model.machine.cylinder_machines import cycle_turns
 from ....model.machine.loads.load import Load
 from ....model.machine.loads.stroke_force import StrokeForce
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....model.signals.signals import Signal
 from ....objectives.kinds import ANGLE, FORCE, TORQUE
 from ...figures.panel_figure import Line, PanelFigure, crank_angle_panel

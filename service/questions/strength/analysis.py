@@ -7,10 +7,10 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
-from ....model.machine.links import Bar
+from ....model.machine.clearance import Bar
+from ....model.machine.cylinder_machines import TURN, cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import TURN, cycle_turns
-from ....model.signals.first_of_equal_maxima import angle_in_cycle
+from ....model.signals.panel_polynomials import angle_in_cycle
 from ....model.strength.bar_stress import bar_stress
 from ....model.strength.stress_cycle import stress_peaks
 from ....model.strength.stress_locations import LinkBody

@@ -10,8 +10,7 @@ import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
-from ....objectives.column_keys import kind_of_key
-from ....objectives.kinds import ANGULAR_SPEED, LENGTH
+from ....objectives.kinds import ANGULAR_SPEED, LENGTH, kind_of_key
 from ....objectives.registry import FACTS
 from ....objectives.tables.sensitivity import Axis, Parameter, sweep
 from ....objectives.units import closest_word

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, NotRequired
 from ....model.linkage.dimensions import DIMENSIONS
 from ....model.linkage.linkage import Linkage
 from ....model.machine.mechanism import Branch, Mechanism, Window
-from ....model.swing.summary import SwingSummary, summarise
+from ....model.swing.summary import SwingRequest, SwingSummary, resolve_swing, summarise
 from ....model.swing.swing import Swing
 from ....model.swing.swing_cycle import SwingCycle, SwingPoint
-from ....model.swing.swing_request import SwingRequest, resolve_swing
 from ....model.swing.swing_types import Driver, Law, Side
-from ....objectives.column_keys import kind_of_key
-from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE
+from ....objectives.kinds import ANGLE, ANGULAR_ACCELERATION, ANGULAR_SPEED, FORCE, LENGTH, POWER, TORQUE, kind_of_key
 from ....objectives.tables.cycle_curves import KINDS
 from ....objectives.tables.swing_curves import (
     drive_kind,

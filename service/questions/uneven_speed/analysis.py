@@ -10,8 +10,8 @@ from ....model.cycle.crank_speed import speed_knots
 from ....model.cycle.cycle import breakpoints
 from ....model.errors import InputError
 from ....model.linkage.linkage import Linkage
+from ....model.machine.cylinder_machines import cycle_turns
 from ....model.machine.mechanism import Mechanism
-from ....model.machine.two_turn_machine import cycle_turns
 from ....model.transient.speed_profile_cycle import speed_profile_curves, speed_profile_cycle
 from ....objectives.kinds import ACCELERATION, ANGULAR_SPEED, FORCE, POWER, SPEED, TIME, TORQUE, Kind
 from ...figures.panel_figure import DASHED, Line, Panel, PanelFigure, crank_angle_panel, sampled_turn

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints
-from slidercrank.model.machine.links import Counterweight
+from slidercrank.model.machine.clearance import Counterweight
 from slidercrank.model.machine.loads.angle_table import AngleDatum, AngleTable
 from slidercrank.model.machine.loads.engine import FourStroke
 from slidercrank.model.strength.section_forces import CRANK, ROD

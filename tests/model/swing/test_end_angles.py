@@ -14,8 +14,8 @@ from slidercrank.model.kinematics.position import motion
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.mechanism import Mechanism, Tolerance, Tolerances
 from slidercrank.model.machine.varying_numbers import Varying
+from slidercrank.model.swing.forces import pin_distance_from_crank_line
 from slidercrank.model.swing.law import law_spline_pieces, travel_speed_acceleration
-from slidercrank.model.swing.slider_pin_force import pin_distance_from_crank_line
 from slidercrank.model.swing.summary import summarise
 from slidercrank.model.swing.swing import Swing, swing_between_crank_angles
 from slidercrank.objectives.tables.swing_columns import swing_quantities

@@ -9,9 +9,8 @@ import pytest
 
 from slidercrank.model.errors import InputError
 from slidercrank.model.machine.mechanism import Mechanism, Start
-from slidercrank.model.swing.summary import summarise
+from slidercrank.model.swing.summary import SwingRequest, resolve_swing, summarise
 from slidercrank.model.swing.swing import Swing
-from slidercrank.model.swing.swing_request import SwingRequest, resolve_swing
 from slidercrank.optimise.job import load_job, parse_job
 from slidercrank.optimise.problem.problem import Problem
 from tests.model.swing.swings import random_swings

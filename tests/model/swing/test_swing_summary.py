@@ -12,8 +12,7 @@ import pytest
 
 from slidercrank.model.errors import AssemblyError, InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction, Pin
-from slidercrank.model.machine.links import RigidLink
+from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.position_table import PositionTable
 from slidercrank.model.machine.loads.spring import Spring

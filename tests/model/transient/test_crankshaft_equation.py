@@ -11,10 +11,9 @@ import pytest
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.linkage.linkage import Linkage
 from slidercrank.model.machine.arrangement import Arrangement
-from slidercrank.model.machine.clearance import Friction, Pin
+from slidercrank.model.machine.clearance import Friction, Pin, RigidLink
 from slidercrank.model.machine.cylinder_machines import member_machines
 from slidercrank.model.machine.drive import ConstantTorque, Drive, LinearMotor
-from slidercrank.model.machine.links import RigidLink
 from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.compressor import Compressor
 from slidercrank.model.machine.loads.crank_torque import CrankTorque

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from slidercrank.model.cycle.efficiency import cycle_energies
+from slidercrank.model.cycle.cycle import cycle_energies
 from slidercrank.model.cycle.multi_cylinder import multi_cylinder_cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage

@@ -15,11 +15,9 @@ from scipy.optimize import minimize
 from slidercrank.model.cycle.cycle import cycle
 from slidercrank.model.errors import InputError
 from slidercrank.model.linkage.linkage import Linkage
-from slidercrank.model.machine.clearance import Friction
-from slidercrank.model.machine.links import Bar
+from slidercrank.model.machine.clearance import Bar, Friction
 from slidercrank.model.machine.loads.stroke_force import StrokeForce
-from slidercrank.model.machine.mechanism import Branch, Mechanism
-from slidercrank.model.machine.strength import Material
+from slidercrank.model.machine.mechanism import Branch, Material, Mechanism
 from slidercrank.model.signals.peaks import find_peaks
 from slidercrank.model.signals.signals import Signal
 from slidercrank.optimise.problem.tolerance_costs import SectionLimits

@@ -184,7 +184,7 @@ def test_a_population_of_one_cannot_breed() -> None:
 
 
 def test_the_archive_has_what_no_other_design_dominates() -> None:
-    from slidercrank.optimise.methods.sampling import random
+    from slidercrank.optimise.methods.population import random
 
     given = asked("random")
     archive = random(given, [Evaluator(given, branch) for branch in elimination_branches(given)], Run(given, 1))

@@ -14,8 +14,7 @@ import pytest
 from slidercrank.model.errors import InputError
 from slidercrank.objectives.registry import QUANTITIES
 from slidercrank.optimise.front.progress import Progress
-from slidercrank.optimise.job.model import Job
-from slidercrank.optimise.job.schema import schema_of
+from slidercrank.optimise.job.model import Job, schema_of
 from slidercrank.optimise.methods.registry import FAMILIES, Method, evaluation_budget, methods_by_name
 from slidercrank.optimise.problem.problem import Problem, Settings
 from slidercrank.optimise.search.elimination import elimination_branches
