@@ -238,7 +238,7 @@ class RobustQuantity(Quantity):
         labels = point_values.labels[:, :1] + _LABEL_STEP * np.arange(len(signs))[:, None]
         turns_fully = _box_turns_fully(dimensions, limits)
         if mechanism.lever is not None:
-            turns_fully = evaluate_points(self.inner, mechanism, dimensions, signs).turns.all(axis=1)
+            turns_fully = np.asarray(evaluate_points(self.inner, mechanism, dimensions, signs).turns.all(axis=1))
         if self.side == "low":
             values, slopes, labels = values[:, :, :1], slopes[:, :, :1], labels[:, :, :1]  # the highest piece
         values = np.where(turns_fully[:, None, None], values, np.inf if self.side == "high" else -np.inf)

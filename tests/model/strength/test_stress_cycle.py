@@ -9,8 +9,9 @@ import pytest
 
 from slidercrank.model.cycle.cycle import breakpoints
 from slidercrank.model.machine.clearance import Counterweight
-from slidercrank.model.machine.loads.angle_table import AngleDatum, AngleTable
+from slidercrank.model.machine.loads.angle_table import AngleTable
 from slidercrank.model.machine.loads.engine import FourStroke
+from slidercrank.model.machine.loads.load import AngleDatum
 from slidercrank.model.strength.section_forces import CRANK, ROD
 from slidercrank.model.strength.stress_cycle import stress_peaks
 from slidercrank.model.strength.stress_locations import LinkBody
