@@ -30,11 +30,12 @@ from slidercrank.optimise.job.value_grids import SERIES
 from slidercrank.optimise.problem.requirements import Discrete
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.solve import solve
+from tests.case_count import case_count
 from tests.optimise.catalogues import brute_force, distance, random_job
 
 pytestmark = pytest.mark.usefixtures("little")
 
-JOBS = 40
+JOBS = case_count(16, 40)
 QUICK = {"method": "sobol", "evaluations": 64, "designs": 1000, "seed": 1}
 """Of the continuous front, which an exact answer does not follow from."""
 RANGES: dict[str, Any] = {

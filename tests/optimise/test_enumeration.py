@@ -18,12 +18,13 @@ from slidercrank.optimise.problem.problem import Problem, Variant
 from slidercrank.optimise.search.checkpoints import Record
 from slidercrank.optimise.search.sample_and_zoom import Archive
 from slidercrank.optimise.solve import solve
+from tests.case_count import case_count
 from tests.optimise.catalogues import brute_force, distance, pairs, random_job
 from tests.optimise.problems import MACHINE, problem
 
 pytestmark = pytest.mark.usefixtures("little")
 
-JOBS, AT_ONCE = 40, 10
+JOBS, AT_ONCE = case_count(20, 40), 10
 
 
 def listed(**changes: Any) -> dict[str, Any]:
