@@ -83,7 +83,7 @@ def test_the_objectives_at_a_glance_are_those_of_the_what_if_and_say_so(opened: 
     assert changed is not None
     assert float(changed) != before
     expect(tile).to_have_attribute("data-value", changed)
-    expect(tile).to_have_text(re.compile(rf"^{before:.4g} → {float(changed):.4g}"))
+    expect(tile).to_have_text(re.compile(rf"^{before:.4g}[.0]* → {float(changed):.4g}"))
     back = page.get_by_role("button", name="Back to design 1")
     back.press("Enter")
     expect(tile).to_have_text(re.compile(rf"^{before:.4g}"))

@@ -53,10 +53,15 @@ def systems_of(name: str) -> dict[str, str]:
     return SYSTEMS if ALL_CASES else dict([list(SYSTEMS.items())[turn]])
 
 
+SIGNS = {"\u00a0": " ", "−": "-", "°": " deg", "²": "^2", "³": "^3"}
+"""Signs of the page, and what the service writes."""
+
+
 def text_and_numbers(text: str) -> tuple[str, list[float]]:
     """Return a text without its numbers, and these; the page writes powers of ten as 2.3·10⁻⁵."""
     text = POWER.sub(lambda found: f"e{found[1].translate(RAISED)}", text)
-    text = text.replace("\u00a0", " ").replace("−", "-").strip()
+    for sign, written in SIGNS.items():
+        text = text.replace(sign, written)
     numbers = [float(one.replace(",", "")) for one in NUMBER.findall(text)]
     return " ".join(NUMBER.sub("#", text).split()), numbers
 

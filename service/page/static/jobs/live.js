@@ -348,11 +348,12 @@ export function showProgress(place, job, { signal, changed }) {
   });
   signal.addEventListener("abort", rest);
   noFront(job);
+  fill(curve, h("p", { class: "quiet" }, "The curve begins with the first round."));
   if (job.progress) {
     course.add(job.progress);
     showState(job.progress, job.state === "running");
     if (job.progress.front) drawFront(job.progress.front);
-  } else fill(curve, h("p", { class: "quiet" }, "The curve begins with the first round."));
+  }
   let drawnWidth = front.clientWidth;
   const sizes = new ResizeObserver(() => {
     if (front.clientWidth === drawnWidth) return;
