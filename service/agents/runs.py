@@ -1,18 +1,17 @@
 """Tools that create and read runs: search, front, and files of designs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, ExitStack
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from ...model.errors import InfeasibleError, InputError
 from ...model.file_name_encoding import path_text
 from ...objectives.kinds import System
+from ...optimise.problem.problem import Problem
 from ..designs.design_selection_options import require_single_choice
 from ..designs.display_units import convert_result
 from ..designs.selection import no_match_message, numbered_rows, result_part
@@ -22,15 +21,13 @@ from ..motion.design_file import ENDINGS, design_file
 from ..questions.discovery import ALL
 from ..runs.result import Result, csv_text, infeasible_result, json_text
 from ..runs.run_folder import write_file
+from ..store import Limits, Store
 from ..text.options import Pick, Run, Selection, SettingOptions, Units
 from ..text.tables import marked_and_evenly_spread_rows, show_design, show_front, show_result, usual_keys
+from ..workers.direct_search import Opened, new_run, renewing_claim, resumed_run, save_result, with_settings
+from ..workers.direct_search import search as front_of_run
 from .call import Call, ToolResult, printed_text, tables_with_files
 from .inputs import Files, FrontPart, Number, OptionalJob
-
-if TYPE_CHECKING:
-    from ...optimise.problem.problem import Problem
-    from ..store import Store
-    from ..workers.direct_search import Opened
 
 Written = Literal["csv", "json", "figures", "report", "pdf", "dxf", "svg", "motion", "gif", "cycle"]
 _OF_RUN = {"csv", "json", "figures"}
@@ -62,8 +59,6 @@ class Search:
 
     def open_run(self, call: Call, store: Store, settings: SettingOptions) -> AbstractContextManager[Opened]:
         """Return the context of the run. Raises `InputError` unless exactly one of job and run is given."""
-        from ..workers.direct_search import new_run, resumed_run, with_settings
-
         if (self.job is None) == (self.resume is None):
             received = "both" if self.job else "neither"
             raise InputError(f"a search needs a job, or a run to continue; got {received}; give one of them")
@@ -83,9 +78,6 @@ def optimise(call: Call, *, search: Search, settings: SettingOptions, part: Fron
     ends with the same front as an uninterrupted search. The answer contains some designs on the front; `front` selects
     others. numbers: their design numbers; knee and extremes: positions in the answer.
     """
-    from ..store import Limits
-    from ..workers.direct_search import renewing_claim, save_result
-    from ..workers.direct_search import search as front_of_run
     from ..workers.engines import EngineOptions, engine_of
     from ..workers.heartbeat import Budget
 

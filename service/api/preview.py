@@ -1,10 +1,8 @@
 """Preview of a job during editing: mistakes, possible values, and an example linkage."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from fastapi import APIRouter
@@ -19,16 +17,14 @@ from ...objectives.machine_needs import ONE_TIMING
 from ...objectives.tables.curve_extremes import curve_extremes
 from ...optimise.problem.question_registry import changes_of
 from ..designs.design_curves import cycle_table
+from ..preview.possible_swing import PossibleSwing
+from ..preview.preview import JobPreview, job_preview
 from .computing import QuickRoute
 from .cycle import OutlinesModel, outlines_model
 from .job_files import ChangeModel, Understood, describe_problem
 from .job_requests import Submission, problem_of_tables
 from .problem_documents import validation_message
 from .settings import SettingsDep
-
-if TYPE_CHECKING:
-    from ..preview.possible_swing import PossibleSwing
-    from ..preview.preview import JobPreview
 
 router = APIRouter(route_class=QuickRoute, tags=["jobs"])
 
@@ -219,8 +215,6 @@ class PreviewModel(BaseModel):
 @router.post("/preview")
 def preview_job(draft: Draft, settings: SettingsDep) -> PreviewModel:
     """Preview a job that may be incomplete: mistakes and their places, values that its ranges allow, and an example."""
-    from ..preview.preview import job_preview
-
     look = job_preview(draft.job, lambda tables: problem_of_tables(tables, settings.allowed_quantities))
     return PreviewModel(
         wrong=[

@@ -3,26 +3,27 @@
 Fronts are cached in memory: they never change, and reading 10,000 designs takes a while.
 """
 
-from __future__ import annotations
-
 import math
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from fastapi import Depends, Path, Query
 from pydantic import Field
 
 from ...model.arrays import Array
 from ...model.errors import InputError, NotFound
+from ...optimise.decisions.wish import Wishes
+from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem
 from ..designs.changed_design import Variation, design_with_numbers, judged_variation
 from ..designs.columns import Column, all_columns
 from ..designs.design_selection_options import minimised_values
 from ..designs.stored_designs import StoredDesign, front_of, stored_design
+from ..drawings.lever_parts import Extent, extent_of_front
 from ..jobs.submission import LONGEST_WAIT, parse_with_allowed_functions, with_time_limit_per_call
 from ..runs.result import Result, Row
 from ..runs.run_folder import slug
@@ -30,11 +31,6 @@ from ..store import Job, Store
 from ..store.bookmark import Bookmark
 from ..store.bookmarks_and_wishes import bookmarks_of
 from .settings import PLAIN_DIGITS, JobNumber, StoreDep, state_dependency
-
-if TYPE_CHECKING:
-    from ...optimise.decisions.wish import Wishes
-    from ...optimise.front.front import ParetoFront
-    from ..drawings.lever_parts import Extent
 
 MOST_DESIGNS = 40_000
 """Maximum number of cached designs, over all fronts; 140 MB."""
@@ -74,15 +70,11 @@ class StoredFront:
     @cached_property
     def extent_of_levers(self) -> Extent | None:
         """Left, bottom, right and top of all levers over their swings, mm; None for other mechanisms."""
-        from ..drawings.lever_parts import extent_of_front
-
         return extent_of_front(self.front)
 
     @cached_property
     def wish_starts(self) -> Wishes:
         """Starting points for wishes on the front. Raises `InputError` if no wish is possible."""
-        from ...optimise.decisions.wish import Wishes
-
         return Wishes(self.front)
 
     @cached_property

@@ -11,7 +11,7 @@ import typer
 
 from ...model.errors import InputError
 from ...objectives.kinds import System
-from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design
+from ..questions.design_analysis import analysis_of, judge_design, quantities_of_design, show_analysis
 from ..questions.design_question import BoundQuestion
 from ..questions.discovery import ALL, INPUTS, TOPIC_OF_INPUT, TOPICS, chosen_topics
 from ..runs.result import Row, json_text
@@ -120,8 +120,6 @@ def analyse(
     if json:
         print_output(json_text(analysis.record(units, judgement)))
     else:
-        from ..questions.design_analysis import show_analysis
-
         screen = console()
         hint = f"\nMore about this design with --show: {', '.join(TOPICS)}, or {ALL}."
         hint = "" if problem is None or topics else hint

@@ -1,17 +1,17 @@
 """Curves of a design that rotates fully or swings: as CSV, and at evenly spaced points over its cycle."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ...model.arrays import Array
 from ...model.cycle.crank_speed import turn_time
+from ...model.linkage.linkage import Linkage
 from ...model.machine.cylinder_machines import cycle_turns
-from ...model.swing.swing import require_swing, swing_between_crank_angles
+from ...model.machine.mechanism import Mechanism
+from ...model.swing.swing import Swing, require_swing, swing_between_crank_angles
 from ...model.turning_cylinder.cylinder_and_pin_forces import LeverCurves, LeverMachine, LeverSwing, lever_curves
 from ...model.turning_cylinder.lever_of_design import (
     lever_machine,
@@ -32,12 +32,6 @@ from ...objectives.tables.swing_curves import (
 from ..runs.result import curves_csv, json_ready, rows_of_columns
 from .display_units import convert_rows
 from .stored_designs import StoredDesign
-
-if TYPE_CHECKING:
-    from ...model.linkage.linkage import Linkage
-    from ...model.machine.mechanism import Mechanism
-    from ...model.swing.swing import Swing
-
 
 LEAST, MOST = 4, 3600
 _ANGLES = 360
@@ -79,7 +73,6 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 
     machine: whether masses, loads and tolerances are known; otherwise only the motion is returned.
     """
-    from ...model.machine.cylinder_machines import cycle_turns
     from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     turns = cycle_turns(mechanism)

@@ -1,19 +1,14 @@
 """Comparison of several fronts in words: which extends furthest, which dominates which, and where."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ...model.arrays import Array
 from ...objectives.kinds import System, count_with_noun, metric_unit_in
 from ..runs.result import Result, StoredObjective
 from .design_selection_options import minimised_values
-
-if TYPE_CHECKING:
-    from ...model.arrays import Array
 
 _SAME = 1e-6
 """Fraction of an objective's range that counts as equal: about the accuracy of designs."""

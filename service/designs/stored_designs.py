@@ -1,12 +1,9 @@
 """Designs of a stored front as machines and linkages."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,13 +12,11 @@ from ...model.linkage.linkage import Linkage
 from ...model.machine.mechanism import Mechanism
 from ...model.machine.varying_numbers import Varying
 from ...objectives.tables.design_input import column_of_variable
+from ...optimise.front.front import ParetoFront
 from ...optimise.problem.problem import Problem, Variant
 from ...optimise.problem.requirements import Range
 from ...optimise.problem.table_columns import choice_field
 from ..runs.result import Cell, ExactDesigns, Result, Row
-
-if TYPE_CHECKING:
-    from ...optimise.front.front import ParetoFront
 
 _MILLIMETRES = {"crank_mm": 1e3, "rod_mm": 1e3, "offset_mm": 1e3}
 
@@ -70,7 +65,6 @@ def stored_design(problem: Problem, result: Result, number: int) -> StoredDesign
 
 def front_of(problem: Problem, result: Result) -> ParetoFront:
     """Return a stored front with its problem; without `Result.exact`, the derivatives at the designs are unknown."""
-    from ...optimise.front.front import ParetoFront
     from .design_selection_options import minimised_values
 
     rows = [{name: math.nan if cell is None else cell for name, cell in row.items()} for row in result.designs]

@@ -1,20 +1,15 @@
 """Trade-off rates at any design of a stored front, from its derivatives, recomputed if not stored."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...model.arrays import Array
 from ...model.errors import InputError
-
-if TYPE_CHECKING:
-    from ...model.arrays import Array
-    from ...objectives.kinds import System
-    from ...optimise.front.front import ParetoFront
-    from ...optimise.search.elimination import EliminationBranch
-    from .stored_designs import StoredDesign
+from ...objectives.kinds import System
+from ...optimise.front.front import ParetoFront
+from ...optimise.search.elimination import EliminationBranch, elimination_branches
+from .stored_designs import StoredDesign
 
 _NEAR = 1e-9  # relative accuracy to which a point of the unit box must reproduce the design
 
@@ -29,7 +24,6 @@ def trade_offs_of(front: ParetoFront, row: int, design: StoredDesign, system: Sy
     does not meet its constraints.
     """
     from ...optimise.front.hypervolume import ideal_and_range
-    from ...optimise.search.elimination import elimination_branches
     from ...optimise.search.evaluation import Evaluator
     from ...optimise.search.polish import polish_designs
 

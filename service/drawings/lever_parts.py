@@ -1,21 +1,16 @@
 """Shapes of a lever, its pivoting cylinder and their bearings, mm: pins and pivots exact, widths schematic."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...model.turning_cylinder.cylinder_and_pin_forces import LeverMachine, LeverSwing, numbers_of_machine
 from ...model.turning_cylinder.lever_state import LeverNumbers
 from ...model.turning_cylinder.levers_of_designs import lever_batch
+from ...optimise.front.front import ParetoFront
 from . import layers as on
 from .linkage_shapes import bar, pivot_bearing
 from .shapes import Arc, Circle, Layer, Line, Outline, Point, Shape
-
-if TYPE_CHECKING:
-    from ...optimise.front.front import ParetoFront
 
 Extent = tuple[float, float, float, float]
 _MM = 1e3

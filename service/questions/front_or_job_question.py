@@ -1,19 +1,15 @@
 """Questions about a front or a job."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 from ...model.errors import InputError
+from ...objectives.kinds import System
+from ..render.blocks import Block
 from ..runs.result import json_ready
 from .inputs import Input, read_inputs
-
-if TYPE_CHECKING:
-    from ...objectives.kinds import System
-    from ..render.blocks import Block
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,16 +1,12 @@
 """Inputs of questions: declared once, parsed identically in every interface."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
+from typing import Annotated, Any, get_args, get_origin
 
 from ...model.errors import InputError, reading_in_both_units, warn_user
 from ...objectives.kinds import DisplayUnit, Kind
-
-if TYPE_CHECKING:
-    from ...objectives.units import Sign
+from ...objectives.units import Sign, quote
 
 
 @dataclass(frozen=True)
@@ -78,7 +74,6 @@ class Input:
         number that is only plausible in another unit.
         """
         from ...model.machine.loads.load import require_word
-        from ...objectives.units import quote
         from ..designs.selection import parse_value
 
         if self.kind is None:
@@ -173,7 +168,6 @@ class PlainInput(Input):
         """
         from pydantic import ValidationError
 
-        from ...objectives.units import quote
         from ...optimise.job.mistake_messages import broken_rule
 
         form = get_origin(self.type)
@@ -193,8 +187,6 @@ def texts_by_name(texts: Sequence[object], word: str, form: str, example: str) -
 
     Raises `InputError` for a text in any other form, and for a repeated name.
     """
-    from ...objectives.units import quote
-
     text_of_name: dict[str, str] = {}
     for text in texts:
         name, equals, value = (piece.strip() for piece in str(text).rpartition("="))

@@ -1,18 +1,20 @@
 """Search in this process: its job is claimed in the store, and its run folder written at the same time."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import socket
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.errors import InputError, LeaseLost, StoreError
 from ...model.file_name_encoding import path_text
 from ...model.optional_packages import is_installed
+from ...optimise.engine.engine import Engine
+from ...optimise.front.front import ParetoFront
+from ...optimise.front.progress import Progress
+from ...optimise.problem.problem import Problem
 from ..jobs.stores import find_folder
 from ..runs.result import Result, result_of
 from ..runs.run_folder import RunFolder
@@ -20,13 +22,7 @@ from ..store import RESUMABLE, Artefact, Claim, Job, Store
 from .heartbeat import Budget, Heartbeat
 from .worker import versions_file
 
-if TYPE_CHECKING:
-    from ...optimise.engine.engine import Engine
-    from ...optimise.front.front import ParetoFront
-    from ...optimise.front.progress import Progress
-    from ...optimise.problem.problem import Problem
-
-Opened = tuple[RunFolder, "Problem", Claim]
+Opened = tuple[RunFolder, Problem, Claim]
 LEASE = 3600.0
 """s. A run suspended by Ctrl-Z for less time continues; a killed run becomes free after this time, or when resumed."""
 _PATIENCE = 2.0  # s to wait for disk space for the store: a user is waiting

@@ -1,7 +1,5 @@
 """Worker: claims jobs in a store, solves them, and writes the results."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import os
@@ -12,9 +10,13 @@ import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from ...model.arrays import Array
 from ...model.errors import ForeignRecords, InfeasibleError, InputError, LeaseLost, StoreError
+from ...optimise.engine.engine import Engine
+from ...optimise.front.progress import LOADING, Progress
+from ...optimise.problem.problem import Problem
 from ..jobs.submission import (
     LONGEST_CALL,
     end_custom_processes_on_exit,
@@ -29,12 +31,6 @@ from ..store.database import Full
 from .engines import EngineOptions, engine_of
 from .heartbeat import PULSE, Budget, Heartbeat, Stop
 from .logs import log_subject
-
-if TYPE_CHECKING:
-    from ...model.arrays import Array
-    from ...optimise.engine.engine import Engine
-    from ...optimise.front.progress import Progress
-    from ...optimise.problem.problem import Problem
 
 _log = logging.getLogger(__name__)
 _AWAY = 1.0  # s between two attempts while the database is unreachable
@@ -276,8 +272,6 @@ def front_progress(problem: Problem, values: Array) -> dict[str, Any]:
 
 def _report_loading(claim: Claim, parts: int) -> None:
     """Report how much of a search is loaded, with the earlier numbers and front of the job."""
-    from ...optimise.front.progress import LOADING, Progress
-
     earlier = {name: value for name, value in (claim.job.progress or {}).items() if value is not None}
     front = earlier.pop("front", None)
     last = Progress(**{**asdict(Progress(LOADING, 0, 0, 0, 0, 0.0, 0.0)), **earlier})

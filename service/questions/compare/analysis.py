@@ -1,20 +1,18 @@
 """Fronts of several runs compared: measures, which run is better where, and differences between the jobs."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import TIME, System
-from ....optimise.decisions.price_of_robustness import compare_fronts
+from ....optimise.decisions.price_of_robustness import Comparison, compare_fronts
 from ...designs.design_selection_options import minimised_values
 from ...designs.display_units import convert_objective
 from ...designs.front_comparison import comparison_sentences
@@ -22,11 +20,7 @@ from ...preview.partial_job import ranges_of
 from ...render.blocks import Block, Phrase, Sentence, Table, Text, Value, column, heading, note, sentence
 from ...runs.result import Result, StoredObjective, objective_record
 from ..front_or_job_question import Answer
-
-if TYPE_CHECKING:
-    from ....optimise.decisions.price_of_robustness import Comparison
-    from .runs import ComparedRun
-
+from .runs import ComparedRun
 
 _SYSTEMS: tuple[System, ...] = ("metric", "inch")
 _LEFT_OUT = ("name", "description")

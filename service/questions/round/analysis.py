@@ -1,11 +1,9 @@
 """Rounded neighbours of a design on a front: their losses and missed requirements, and the parsing of steps."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from copy import deepcopy
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
@@ -20,8 +18,11 @@ from ....objectives.kinds import (
     name_unit_and_factor_of_key,
 )
 from ....objectives.units import kind_of_symbol, quote
+from ....optimise.front.front import ParetoFront
 from ....optimise.front.progress import stage_text
 from ....optimise.front.rounded_design import Rounded, drop_conversion_rounding
+from ....optimise.front.rounding_search import Stage
+from ....optimise.problem.problem import Problem
 from ...designs.columns import find_column
 from ...designs.display_units import convert_record
 from ...designs.selection import parse_value
@@ -42,11 +43,6 @@ from ..design_table import title_and_unit
 from ..front_or_job_question import Answer, SearchListener
 from ..inputs import PlainInput, texts_by_name
 from . import QUESTION
-
-if TYPE_CHECKING:
-    from ....optimise.front.front import ParetoFront
-    from ....optimise.front.rounding_search import Stage
-    from ....optimise.problem.problem import Problem
 
 _TO, _ALLOW = (one for one in QUESTION.inputs if isinstance(one, PlainInput) and one.example)
 

@@ -1,19 +1,19 @@
 """Quantities of a job over one or two of crank, rod, offset and speed: a row for each point."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, get_args
 
 import numpy as np
 
 from ....model.errors import InputError
 from ....model.linkage.dimensions import DIMENSIONS
 from ....objectives.kinds import ANGULAR_SPEED, LENGTH, kind_of_key
+from ....objectives.quantity import Quantity
 from ....objectives.registry import FACTS
 from ....objectives.tables.sensitivity import Axis, Parameter, sweep
 from ....objectives.units import closest_word
+from ....optimise.problem.problem import Problem
 from ...designs.display_units import convert_rows
 from ...designs.rotating_crank import require_rotating_crank
 from ...designs.selection import parse_value
@@ -21,10 +21,6 @@ from ...render.blocks import Table, Value, column, value_from_record
 from ...runs.result import Row, rows_of_columns
 from ...text.options import length_option
 from ..front_or_job_question import Answer
-
-if TYPE_CHECKING:
-    from ....objectives.quantity import Quantity
-    from ....optimise.problem.problem import Problem
 
 _FORM = re.compile(r"\s*(\w+)\s*=\s*(\S.*?)\s*\.\.\s*(\S.*?)\s*:\s*(\d+)\s*", re.ASCII | re.DOTALL)
 _LIST = re.compile(r"\s*(\w+)\s*=\s*([^.:]*(?:\.\d[^.:]*)*)", re.ASCII | re.DOTALL)
