@@ -11,6 +11,7 @@ from fastapi import APIRouter, Depends, Response
 from pydantic import BaseModel, Field
 
 from ...model.linkage.linkage import Linkage
+from ...optimise.job import job_schema, parse_job
 from ...optimise.problem.problem import Problem
 from ..presets.jobs import DESIGNS, Design, shipped_jobs
 from .computing import QuickRoute
@@ -139,8 +140,6 @@ def list_presets() -> PresetList:
 
 def _preset_design(job: dict[str, Any], design: Design) -> PresetDesign:
     """Return the example design of an included job with its outlines for a drawing."""
-    from ...optimise.job import parse_job
-
     problem = parse_job(job)
     machine = problem.mechanism.nominal
     linkage = Linkage(1e-3 * design.crank_mm, 1e-3 * design.rod_mm, 1e-3 * design.offset_mm, machine.branch)
@@ -179,8 +178,6 @@ def write_file(tables: Tables) -> Response:
 @router.get("/schema")
 def show_schema() -> dict[str, Any]:
     """Return the JSON Schema (draft 2020-12) of a job, with a description and examples for every key."""
-    from ...optimise.job import job_schema
-
     return job_schema()
 
 

@@ -20,6 +20,7 @@ from ...model.turning_cylinder.lever_of_design import (
     state_at_crank_angles,
 )
 from ...objectives.kinds import System
+from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 from ...objectives.tables.swing_curves import (
     POINTS,
     curves_at_even_times,
@@ -58,7 +59,6 @@ def cycle_table(mechanism: Mechanism, linkage: Linkage, *, angles: int = 360, tu
     turns: number of crank revolutions that the angles span. The curves are those of `objectives.tables.cycle_curves`;
     raises `InputError` for too few or too many angles.
     """
-    from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     curves = cycle_curves(mechanism, linkage, turns * even_angles(angles, MOST))
     return [
@@ -73,7 +73,6 @@ def cycle_csv(mechanism: Mechanism, linkage: Linkage, system: System = "metric",
 
     machine: whether masses, loads and tolerances are known; otherwise only the motion is returned.
     """
-    from ...objectives.tables.cycle_curves import cycle_curves, even_angles
 
     turns = cycle_turns(mechanism)
     curves = cycle_curves(mechanism, linkage, turns * even_angles(turns * _ANGLES))

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import InputError
 from ...objectives.kinds import Kind, count_with_noun
+from ...objectives.units import is_value, quote, to_si
 from ..runs.result import Cell, Result, Row
 from .columns import Column, find_column
 
@@ -94,7 +95,6 @@ def parse_condition(text: str, keys: Collection[str], example: Row) -> Condition
 
 def _require_name_first(text: str, name: str, comparison: str, value: str) -> None:
     """Raise an error for a condition that begins with its value, or has two comparisons."""
-    from ...objectives.units import is_value
 
     if re.search("[<>=]", value):
         if value[0] in "<>=":
@@ -132,7 +132,6 @@ def parse_value(key: str, value: object, kind: Kind, *, sign: Any = "any") -> fl
 
     Raises `InputError`, whose message begins with the key.
     """
-    from ...objectives.units import quote, to_si
 
     text = isinstance(value, str)
     if text and kind.unit and plain_number(str(value)) is not None:
@@ -147,7 +146,6 @@ def _number_in_unit(match: re.Match[str], column: Column) -> float:
     """Return the value in the column's unit; the unit may be omitted only if the column's name has it."""
     from ...objectives.catalogue_amount import kind_of_amount
     from ...objectives.formula.formulas import is_formula
-    from ...objectives.units import to_si
 
     name, comparison, value = match.groups()
     if is_formula(value):

@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Unpack
 
 from ...model.errors import JobError
+from ...objectives.units import quote
 from ..runs.result import json_text
 from ..store import NO_LIMITS, Artefact, Job, Limits, Queueing, Store
 
@@ -56,7 +57,6 @@ def require_allowed_functions(tables: Mapping[str, Any], allowed: Collection[str
 def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
     """Return the functions that a job names, by quantity name. Raises `JobError` for an invalid function name."""
     from ...objectives.own.quantity import FUNCTION
-    from ...objectives.units import quote
 
     parts, functions = tables.get("quantity", {}), {}
     write = 'write it like { function = "mymodule:myfunction" }'
@@ -78,7 +78,6 @@ def functions_of(tables: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _function_not_allowed_error(name: str, function: str, allowed: Collection[str]) -> JobError:
-    from ...objectives.units import quote
 
     remedy = f"choose from {', '.join(sorted(allowed))}, have it allowed" if allowed else "have it allowed"
     return JobError(

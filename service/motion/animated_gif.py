@@ -1,12 +1,13 @@
 """Animated GIF of a linkage: one revolution, two for a 720 deg cycle, or a swing."""
 
+from __future__ import annotations
+
 import io
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PIL.Image import Image as Picture
 
 from ...model.cycle.gas_work import cylinder_loads, indicator_diagram
 from ...model.linkage.linkage import Linkage
@@ -23,6 +24,9 @@ from ..drawings.shapes import Shape
 from ..drawings.swing_parts import fixed_swing_shapes, moving_swing_shapes, swing_sizes
 from ..figures.shape_painting import paint_shapes, show_rectangle
 from ..figures.style import MUTED, SMALL, TEXT, add_axes, new_figure, write_text
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as Picture
 
 FRAMES, MILLISECONDS = 60, 60
 """Frames per revolution or swing, and the duration of each: 3.6 s per revolution at any machine speed."""

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
 from ...model.file_name_encoding import path_text
+from ...optimise.front.progress import Progress
+from ...optimise.front.progress import progress_bar as bar
 from ..runs.result import json_text
 from ..runs.run_folder import translate_disk_errors
 
@@ -18,7 +20,6 @@ if TYPE_CHECKING:
     from rich.status import Status
 
     from ...objectives.kinds import System
-    from ...optimise.front.progress import Progress
     from ..figures.panel_drawing import FigureSource
 
 
@@ -77,6 +78,4 @@ def write_figure(file: Path, draw: Callable[[], FigureSource], units: System = "
 
 def progress_bar() -> contextlib.AbstractContextManager[Callable[[Progress], None]]:
     """Return a context with a progress bar on a terminal, and the callback for each round."""
-    from ...optimise.front.progress import progress_bar as bar
-
     return bar() if sys.stderr.isatty() else contextlib.nullcontext(lambda _: None)
