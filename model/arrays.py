@@ -1,7 +1,5 @@
 """Array types by content: real numbers, truth values, integers."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

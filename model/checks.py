@@ -1,7 +1,5 @@
 """Checks of a machine's fields, and of other single values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from types import NoneType, UnionType

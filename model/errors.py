@@ -20,8 +20,6 @@ Every message states the rule, the value and the remedy. `InputWarning` warns of
 mistake, attributed to the user's line.
 """
 
-from __future__ import annotations
-
 import inspect
 import warnings
 

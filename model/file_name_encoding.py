@@ -4,8 +4,6 @@ Python turns each byte in a path that the locale's encoding cannot decode into a
 encode. In an ASCII locale it does not find a file with an umlaut in its name.
 """
 
-from __future__ import annotations
-
 import os
 from os import PathLike
 from pathlib import Path

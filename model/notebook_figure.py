@@ -1,7 +1,5 @@
 """A matplotlib figure that a notebook displays even if pyplot was never imported."""
 
-from __future__ import annotations
-
 import io
 
 from .optional_packages import NamingExtra

@@ -3,8 +3,6 @@
 The installed metadata, derived from pyproject.toml, says which extra installs a package.
 """
 
-from __future__ import annotations
-
 import re
 from importlib import import_module
 from importlib.util import find_spec

@@ -5,8 +5,6 @@ curve defines. Owners weight the nodes: equally for means over the crank angle, 
 time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any

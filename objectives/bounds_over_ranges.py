@@ -10,8 +10,6 @@ that rotates fully. Otherwise it is on the edge of rotation l = r + a, where S =
 mu = 0.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

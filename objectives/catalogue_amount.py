@@ -1,7 +1,5 @@
 """Amounts that come with a catalogue option, such as the price or the mass of a gearmotor."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Quantities with a closed form: a formula, or the maximum of smooth formulas in a machine's numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial

@@ -1,7 +1,5 @@
 """Quantities of a curve over the cycle: its maximum, its mean, or its root mean square."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal

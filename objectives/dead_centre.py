@@ -1,7 +1,5 @@
 """Slider near a dead centre: its speed when it meets the workpiece, and the crank angle of its dwell."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial

@@ -1,7 +1,5 @@
 """Loads on the motor of a drive train, upstream of its gear: torque, speed, power, energy and heating."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Energy per cycle of one or two turns: work of the drive, friction heat, and efficiency."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Gas cycle in a machine's cylinders, and flow that pumps and compressors deliver, with its ripple over the cycle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field

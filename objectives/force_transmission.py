@@ -4,8 +4,6 @@ The transmission angle lies between the rod and the normal of the slider line. T
 friction angles. The force transmission is the maximum force that moves the slider divided by that of the rod on it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..model.cycle.self_locking import locking_margin_with_variables

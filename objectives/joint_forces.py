@@ -4,8 +4,6 @@ Shaking is how the moving masses act on the frame, without gravity and load; see
 cylinders, the totals are used; see `model.signals.shaft_statistics`.
 """
 
-from __future__ import annotations
-
 from functools import partial
 
 from ..model.signals.signals import Signal

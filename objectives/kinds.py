@@ -8,8 +8,6 @@ CGPM, 1901), and horsepower is 550 foot-pounds-force per second.
 Keys of table columns and JSON end with a unit: `peak_torque_Nm`, `crank_in`.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass, replace
 from typing import Literal

@@ -1,7 +1,5 @@
 """Quantities of a lever and a cylinder that turns, over its swing, or over a full turn as a crank."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any

@@ -1,7 +1,5 @@
 """Masses of the crank, the rod and all moving parts; inertia ratio of a motor: driven over rotor inertia."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial

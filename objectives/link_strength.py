@@ -1,7 +1,5 @@
 """Stresses in crank and rod, along the bars and in their eyes, and safety against yield, fatigue and buckling."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

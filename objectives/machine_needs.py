@@ -1,7 +1,5 @@
 """Needs of quantities: the properties that a machine must have for a quantity to be defined or nonzero."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

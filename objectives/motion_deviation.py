@@ -4,8 +4,6 @@ The position error is the slider's displacement, maximum over the cycle or over 
 only for a target motion; a `Problem` lists them among its own quantities.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import ClassVar

@@ -5,8 +5,6 @@ root mean square deviation from the mean, over the crank angle. Other
 loads on a motor are its maximum and mean power, and the maximum reflected inertia.
 """
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loads on the pins: bearing pressure and shear at the maximum force, rubbing and wear over a cycle."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

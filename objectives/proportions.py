@@ -13,8 +13,6 @@ since x_out > r, x_in > 0. Slider, guide, pins and counterweight are ignored her
 Time ratio and crank angle ratio are slower stroke to faster stroke, in time and in crank angle.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

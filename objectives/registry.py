@@ -1,7 +1,5 @@
 """All quantities by name, found in the modules of this folder; their `place` gives their order in tables."""
 
-from __future__ import annotations
-
 import copyreg
 import difflib
 import pkgutil

@@ -1,7 +1,5 @@
 """Times of the outward and the inward stroke and their ratios, at constant speed or with a speed profile."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 They exist if the motion in a job is a swing; a `Problem` lists them among its own quantities.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 

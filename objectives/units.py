@@ -9,8 +9,6 @@ Conversion is exact rational arithmetic, rounded once:
 "80 mm" is the double 0.08, and 360 deg is the double nearest 2 pi.
 """
 
-from __future__ import annotations
-
 import difflib
 import functools
 import json

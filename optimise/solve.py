@@ -1,7 +1,5 @@
 """From a problem to its front: eliminate, search by the selected method, assemble the front."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field

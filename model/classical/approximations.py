@@ -28,8 +28,6 @@ mass centre, unless it happens to match.
 Comparison of the approximate models with the exact one, over the crank angle and over the offset.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

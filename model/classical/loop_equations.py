@@ -36,8 +36,6 @@ Mechanical advantage: load on the slider divided by the tangential crank pin for
 without bound towards the dead centres, where no crank torque is needed and the advantage is infinite.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar

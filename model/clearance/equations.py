@@ -23,8 +23,6 @@ of x. Three integrals are included: the work of the drive, the work of the loads
 dissipated in the contact.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -7,8 +7,6 @@ that no short contact is missed. The phase ends where the interpolant crosses th
 `build_system` takes the parameters from the mechanism and rejects machines that cannot be simulated.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field

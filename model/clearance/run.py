@@ -1,7 +1,5 @@
 """Motion of a linkage with a loose joint over many crank turns, in time."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

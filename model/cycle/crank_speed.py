@@ -1,7 +1,5 @@
 """Crank speed and acceleration over the crank angle: constant, or along the machine's speed profile."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -14,8 +14,6 @@ at constant speed:
 Loads that do net work on the machine drive it; the crank then delivers that work less friction.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Crank angles at which friction locks a linkage, and whether its loads can move it there (`self_locking`)."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any

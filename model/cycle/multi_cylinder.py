@@ -8,8 +8,6 @@ F_x) about the plane z = 0.
 Effects of the moving masses alone: shaking force, shaking moment, reflected inertia (`torque`).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -19,8 +19,6 @@ The margin is therefore exactly
     minimum transmission angle - arctan(mu) - asin((rho_A + rho_B) / l).
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -5,8 +5,6 @@ angle divided by the speed; with omega = speed p(theta), it is the integral of 1
 speed all cylinders have the same stroke times; with a profile, each cylinder has its own.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

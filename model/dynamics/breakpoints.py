@@ -1,7 +1,5 @@
 """Breakpoints for many designs: crank angles that cut each cycle into segments on which every curve is smooth."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -14,8 +14,6 @@ Gas that burns at limited pressure stays at p_h from the top to z_b, where burni
 + z_b) / (h + z))^n_e. It has no valve events.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..kernel.arithmetic import analytic, inverse, power

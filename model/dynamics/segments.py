@@ -6,8 +6,6 @@ Within a segment the stroke and the piece of every table and cylinder are fixed,
 function of crank angle and design.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Crank speed over its angle, for kernels: a fraction of the mean, with its derivatives."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -25,8 +25,6 @@ frame). Gravity and loads, including added masses, are left out: gravity is cons
 rest, and loads usually have their reaction within the machine. Friction is internal and affects neither of them.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic

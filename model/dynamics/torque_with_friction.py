@@ -34,8 +34,6 @@ drive torque by -M and leaves all joint forces unchanged: T = T_linkage - M(thet
 couple of weight and inertia in the crank's moments about the pivot.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

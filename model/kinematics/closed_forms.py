@@ -1,7 +1,5 @@
 """Quantities with closed-form formulas, for many designs together, with exact gradients."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 from typing import Any
 

@@ -7,8 +7,6 @@ and signs: `kinematics`.
 Offsets that are only rounding errors: such a linkage is in-line.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

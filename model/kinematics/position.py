@@ -19,8 +19,6 @@ The open branch has cos(phi) > 0 (slider to the right), the crossed branch cos(p
 Primes are derivatives with respect to the crank angle: velocity = x' w, acceleration = x'' w^2 + x' alpha.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, inverse, root

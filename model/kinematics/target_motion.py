@@ -10,8 +10,6 @@ The best shift has a closed form (mid-range or mean). The best phase is searched
 minimises the maximum deviation; the smooth root mean square is minimised from the best intervals of a grid.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

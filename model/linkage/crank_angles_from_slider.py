@@ -1,7 +1,5 @@
 """All crank angles of one linkage for a slider position, with crank speeds and accelerations; range of the slider."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Context

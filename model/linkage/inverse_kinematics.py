@@ -10,8 +10,6 @@ the two *solutions*. The law of cosines is used in tangent form, because an arc 
 dead centres.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal, Protocol

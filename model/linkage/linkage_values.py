@@ -1,7 +1,5 @@
 """Real or complex values of linkages: motion, angles, and dimensions in messages."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ they absorb in the other. Viscous resistance is also left out, as it is always g
 force counts: a weight loads the stroke in which it is lifted.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

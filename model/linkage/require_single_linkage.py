@@ -1,7 +1,5 @@
 """Validation of the single linkage that an analysis of a mechanism covers."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..errors import InputError

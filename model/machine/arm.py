@@ -1,7 +1,5 @@
 """Arm that a rotating crank drives about a second pivot: slotted, with a ram, or an oscillating cylinder."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ..checks import require_numbers

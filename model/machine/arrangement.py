@@ -5,8 +5,6 @@ counter-clockwise. Its position is that of a single machine at the crank angle t
 bank_k. All cylinders have the same crank, counterweight, rod, slider, loads and friction.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

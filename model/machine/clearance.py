@@ -19,8 +19,6 @@ Crank and rod are described along their own axis: the origin is at the crank piv
 and the length is that between pin centres. The properties of a `Bar` follow from its length: a longer crank is heavier.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

@@ -10,8 +10,6 @@ turn. So the maximum over the cycle is the larger of the maxima in the two halve
 and both are exact. If a half does not close, it jumps at the cut; the other half has the opposite jump.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Designs derived from raw numbers in advance, for kernels that follow one design at a time; compiled only once."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

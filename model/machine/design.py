@@ -4,8 +4,6 @@ Because `derive_design` is also compiled for complex numbers, any raw number (`r
 exact derivative.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

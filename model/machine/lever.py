@@ -1,7 +1,5 @@
 """A lever and a cylinder that turns, as a machine: the slider-crank with its rod fixed as the frame."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

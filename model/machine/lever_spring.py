@@ -1,7 +1,5 @@
 """A gas or coil spring between the frame and a lever."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

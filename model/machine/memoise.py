@@ -1,7 +1,5 @@
 """Results cached for a machine, and for its designs, while the same ones are requested."""
 
-from __future__ import annotations
-
 from collections import OrderedDict
 from collections.abc import Callable
 from functools import wraps

@@ -4,8 +4,6 @@ A kernel takes the vector (`Raw` names its entries; loads follow, `LOAD_SLOTS` e
 vary from design to design. It then derives the numbers for the equations of motion (`design`).
 """
 
-from __future__ import annotations
-
 import math
 from enum import IntEnum
 from typing import NamedTuple

@@ -7,8 +7,6 @@ radius and angle, but its raw numbers are components. Kernels differentiate by t
 the identity and costs nothing.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Numbers of a machine that vary from design to design, besides crank, rod and offset."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -4,8 +4,6 @@ At constant crank speed the kinetic energy repeats after a turn. So does the ene
 whose force depends only on the slider position. The mean drive torque is then zero for every linkage.
 """
 
-from __future__ import annotations
-
 import math
 from collections import defaultdict
 from collections.abc import Hashable

@@ -3,8 +3,6 @@
 Here the speed is constant, so the crank angle is proportional to time; with a profile see `shaft_averages`.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

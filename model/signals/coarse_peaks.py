@@ -16,8 +16,6 @@ across the crank,
 where F = m_s (x'' w^2 + x' alpha - G_x) minus the load along x.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 If loads or friction are piecewise, the real crank angle of the real design selects the piece, as in `cycle`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

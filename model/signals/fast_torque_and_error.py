@@ -8,8 +8,6 @@ suffices for choosing designs; `peaks` evaluates the results. Tables, loads with
 are not supported here.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, NamedTuple

@@ -1,7 +1,5 @@
 """Maxima of a signal over the cycle, and the crank angles reported for them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Array

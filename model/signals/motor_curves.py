@@ -10,8 +10,6 @@ w per crank angle, where c is the copper loss divided by the square of the torqu
 returned energy. Where T_g or the supply power changes sign, the curves have kinks, which are breakpoints.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import IntEnum, auto
 from functools import partial

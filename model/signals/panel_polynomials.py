@@ -9,8 +9,6 @@ their maximum more than once. These values differ by rounding, so that different
 angles.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

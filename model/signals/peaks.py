@@ -1,7 +1,5 @@
 """Peaks of a curve over the cycle for many designs, with exact gradients: one turn, two turns, a crankshaft."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -17,8 +17,6 @@ force presses to either side scatters more widely, with a standard deviation of 
 Carlo simulation shows the effect.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from ..kernel.arithmetic import analytic, magnitude, root

@@ -1,7 +1,5 @@
 """Roots of many functions in brackets, by secants with Illinois weights (Dowell and Jarratt, BIT 11, 1971)."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

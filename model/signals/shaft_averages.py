@@ -6,8 +6,6 @@ In means over time, every crank angle has the weight 1 / p, where p is the speed
 curve T is and, for the mean square over time, if T / sqrt(p) is, too.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

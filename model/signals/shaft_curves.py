@@ -7,8 +7,6 @@ the cylinders. All numbers are complex, so one compiled formula gives values, sl
 derivatives with respect to the design.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Breakpoints of many crankshafts as flat lists, and the segments between them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -6,8 +6,6 @@ Without a profile, cylinders with equal gravity have equal values. Geometry depe
 profile.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Curves whose sum over the cylinders of a crankshaft does not vanish for all dimensions."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from collections.abc import Callable

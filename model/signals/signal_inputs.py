@@ -1,7 +1,5 @@
 """Inputs for following a signal over the cycle: loads, and the angles at which its curve is piecewise."""
 
-from __future__ import annotations
-
 from ..arrays import Array
 from ..dynamics.segments import CycleWindow
 from ..machine.cylinder_machines import machine_of_first_turn

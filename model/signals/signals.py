@@ -1,7 +1,5 @@
 """The curves over the cycle whose peaks matter, each as one nonnegative formula."""
 
-from __future__ import annotations
-
 from enum import IntEnum, auto
 from typing import Any
 

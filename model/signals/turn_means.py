@@ -13,8 +13,6 @@ to the torque. There, panels are halved until the last Legendre coefficients of 
 are rounding errors from a load that changes over a tiny distance.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -7,8 +7,6 @@ with respect to a design variable is the partial derivative at the peak angle (e
 moves with it, and the complex step includes this.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -12,8 +12,6 @@ curve and its derivatives have died out for the mean. Forces jump with the load,
 the jump times their own motion.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from ..arrays import Array

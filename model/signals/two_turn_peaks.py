@@ -1,7 +1,5 @@
 """Peaks and averages over a two-turn cycle, from those of its two halves."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Stress in the crank or rod of one design over the cycle and along the bar, for a figure."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -17,8 +17,6 @@ The moment causes linear elastic bending (Shigley, "Mechanical Engineering Desig
 the faces is N / (w t) +- 6 M / (t w^2), two cubics along the bar.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -11,8 +11,6 @@ bore (W. D. Pilkey, "Peterson's Stress Concentration Factors", 3rd ed., sec. 4.6
 both, is left out here, so that a pin as wide as its bar needs no special case: stress times w - D, N/m.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple

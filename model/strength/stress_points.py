@@ -3,8 +3,6 @@
 The search for the maximum stress (`stress_cycle`) then needs no forces.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import NamedTuple

@@ -5,8 +5,6 @@ The maximum of p sigma(xi, theta) - q sigma(xi, phi) is found in closed form for
 the bar. Its error falls with the fourth power of the distance between samples.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Remedy for the two angles of a swing of half a turn or more."""
 
-from __future__ import annotations
-
 import math
 
 _TURN = 2.0 * math.pi

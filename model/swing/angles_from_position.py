@@ -1,7 +1,5 @@
 """Crank angles that put the slider at a position, with the crank pin on a given side."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -8,8 +8,6 @@ sin(mu) = sin(theta
   where the rod turns as fast as the crank, x = 0.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -20,8 +20,6 @@ If the slider is pushed and the crank is free, equilibrium gives the force in th
 `torque`, written for numbers of one design, for arrays, and for kernels.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Laws of motion between two positions at rest: fraction of the travel over fraction of the time."""
 
-from __future__ import annotations
-
 from typing import Any, get_args
 
 import numpy as np

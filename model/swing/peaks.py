@@ -4,8 +4,6 @@
 with respect to the design's numbers.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial

@@ -5,8 +5,6 @@ Sources of the error at the driven side for a crank angle in a swing.
 A request may leave out values, which are taken from the machine's job.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any

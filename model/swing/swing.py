@@ -4,8 +4,6 @@ The linkage need not rotate fully: it only has to close over the whole swing, l 
 drives, it must also pass no dead point, sin(theta - phi) = 0, at which no force on the slider turns the crank.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -5,8 +5,6 @@ changes sides. Between two cuts every curve is smooth. A cut moves with the desi
 fraction t of the time changes by -dg/dp / (dg/dt) (implicit function theorem).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One linkage over both strokes of a swing: extremes of curves, energies between kinks, where friction locks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """States of many swinging designs at many fractions of the time: one kernel, complex throughout for derivatives."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

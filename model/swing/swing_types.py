@@ -1,7 +1,5 @@
 """Types of a swing's options: driven link, law of motion, and statement of its ends."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 Driver = Literal["crank", "slider"]

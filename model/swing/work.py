@@ -5,8 +5,6 @@ inverse square root of the distance from it. The nodes move with the cuts, so th
 quadrature.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -25,8 +25,6 @@ among them.
 First-order position errors: worst case, root-sum-square, contributions, and a bound on their inaccuracy.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import product
 

@@ -4,8 +4,6 @@ Nothing is linearised: every machine's own slider position is compared with that
 its errors over the whole cycle, including those of the crank angle and the contact points in its pins.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Each cylinder is a separate machine at its crank angle, and a two-turn cycle is 
 moving inertias, and every term of the torque, add up.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -12,8 +12,6 @@ may have any value above 1. The search uses 1 / delta, which is nearly linear in
 the turn.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from functools import cache

@@ -14,8 +14,6 @@ and loads leave an accelerating torque. Otherwise it stays at rest, because moto
 speed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

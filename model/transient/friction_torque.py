@@ -18,8 +18,6 @@ a gives a bracket for the root. Newton's method, with bisection whenever it woul
 across the kinks where the guide force changes sides.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

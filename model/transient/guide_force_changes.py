@@ -3,8 +3,6 @@
 They depend on the motion. Two changes within one spacing of the points, where the force is almost zero, are ignored.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

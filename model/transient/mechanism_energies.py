@@ -4,8 +4,6 @@ Nothing here is used to move the mechanism. The energy balance of a simulation c
 done, so it checks the equation of motion as well as its integration.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from ..kernel.arithmetic import analytic

@@ -1,7 +1,5 @@
 """Result of a forward simulation: the motion over time, and the energy balance that checks it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 

@@ -8,8 +8,6 @@ Over a turn the kinetic energy J w^2 / 2 returns to its initial value, so the to
 friction.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

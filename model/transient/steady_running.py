@@ -1,7 +1,5 @@
 """Steady running: the speed repeats after a turn. It is solved directly rather than by simulating until it settles."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -3,8 +3,6 @@
 c: numbers of levers, see `states`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

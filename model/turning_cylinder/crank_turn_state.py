@@ -12,8 +12,6 @@ the crank at B follows from AB x F = N + (moment of the bodies) and from its par
 cylinder. The torque on the crank is T = J w' - S x G - OB x F; T w is the rate of all energies and works.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -3,8 +3,6 @@
 Complex throughout, for derivatives by complex steps.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """One design of a machine as a lever with its cylinder: the input to the analysis of a single swing."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Array

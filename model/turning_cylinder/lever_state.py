@@ -3,8 +3,6 @@
 The formulas take real numbers, or complex ones whose imaginary part is a step. Vectors have two components.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

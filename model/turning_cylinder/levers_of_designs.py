@@ -1,7 +1,5 @@
 """Many levers with their turning cylinders from the designs of a machine, and which of them can make a motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Root mean square of the torque on a crank that turns a line, for many machines, with exact derivatives."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ..arrays import Array, IntArray

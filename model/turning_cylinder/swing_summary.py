@@ -1,7 +1,5 @@
 """A lever and its turning cylinder over a swing, in numbers."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Dimensional analysis of formulas: checks sums, comparisons and function arguments by the units of the names."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction

@@ -1,7 +1,5 @@
 """Formulas in a job: parsed, checked against the meaning of their names, and converted to quantities."""
 
-from __future__ import annotations
-
 import difflib
 import re
 from collections.abc import Iterable, Mapping

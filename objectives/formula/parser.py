@@ -1,7 +1,5 @@
 """Parser for formulas: converts text to a tree; nothing in the text is ever executed."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import NoReturn, Protocol

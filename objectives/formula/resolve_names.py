@@ -1,7 +1,5 @@
 """Names of quantities, or formulas, as accepted by Python functions and commands."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping, Sequence
 
 from ...model.linkage.dimensions import DIMENSIONS

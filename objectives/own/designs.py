@@ -1,7 +1,5 @@
 """Arguments for a custom function: designs, with their motion and forces over the cycle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, cast

@@ -6,8 +6,6 @@ is ever unpickled. Output printed by the function goes to standard error.
 `call_function` calls it with designs and checks its return value.
 """
 
-from __future__ import annotations
-
 import faulthandler
 import importlib
 import os

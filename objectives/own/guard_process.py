@@ -7,8 +7,6 @@ On Linux, an orphaned descendant becomes a child of the guard, so neither `setsi
 systems with fork, the process group of the function is ended. On Windows there is no guard.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

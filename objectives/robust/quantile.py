@@ -14,8 +14,6 @@ the shift of the quantile due to the quadratic part (P. Glasserman, "Monte Carlo
 2003, ch. 4.1).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 

@@ -3,8 +3,6 @@
 These are at offset zero, or at an extreme of the quantity. Pieces are kept separate.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
 from typing import Any

@@ -6,8 +6,6 @@ sections around the lowest points. For this search alone, a large number of samp
 neighbouring crank angles.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -7,8 +7,6 @@ count. Golden-section search needs no derivative, and so also finds the cusps of
 Algorithms for Minimization without Derivatives (1973), chapter 5.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

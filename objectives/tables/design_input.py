@@ -1,7 +1,5 @@
 """Designs as callers pass them: arrays, lists, or pandas tables with a column for each number in a design."""
 
-from __future__ import annotations
-
 import re
 import sys
 import warnings

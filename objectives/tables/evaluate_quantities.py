@@ -1,7 +1,5 @@
 """Quantities of many designs by name as one array, with their derivatives with respect to the numbers in a design."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Literal, overload
 

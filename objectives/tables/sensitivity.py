@@ -3,8 +3,6 @@
 Sweeps give quantities over a grid of one, two or more of crank, rod, offset and speed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Quantities of a swing, and their columns for designs that need not rotate fully."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Error for an optional framework that is not installed."""
 
-from __future__ import annotations
-
 from ...model.errors import InputError
 
 

@@ -1,7 +1,5 @@
 """Bounds for all designs in a box: whether none is feasible, and lower bounds on the objectives."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 Some quantities cannot be bounded over boxes; `boundable_quantities` says why.
 """
 
-from __future__ import annotations
-
 from typing import TypeGuard
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Certificate for a front: the result and steps of a search for a proof."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal
 

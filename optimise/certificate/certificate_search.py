@@ -1,7 +1,5 @@
 """Search for a proof: open boxes, the covering set of designs, and the bounds found so far."""
 
-from __future__ import annotations
-
 import itertools
 import time
 from collections.abc import Callable

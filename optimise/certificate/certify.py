@@ -15,8 +15,6 @@ The proof relies on the bounds from `box_bounds`, which account for rounding, an
 in the set. Requirements count as met to a relative 1e-9, as everywhere else.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np

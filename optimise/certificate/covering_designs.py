@@ -5,8 +5,6 @@ of z over a set of designs is the least e to within which one of them covers it:
 et al., "Performance assessment of multiobjective optimizers", IEEE Trans. Evol. Comput. 7(2), 2003, sec. III).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.arrays import Array, IntArray

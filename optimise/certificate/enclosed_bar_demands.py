@@ -6,8 +6,6 @@ point is a fraction of the bar's length, so it moves with the design. Where the 
 factor uses max(section, 0): a design without a section has no positive safety factor.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import reduce
 from itertools import product

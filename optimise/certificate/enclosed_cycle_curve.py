@@ -9,8 +9,6 @@ stroke. This module does not bound peaks from above.
 The cylinders of a crankshaft add up at the same shaft angle. With a speed profile, that angle determines the speed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

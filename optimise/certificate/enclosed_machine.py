@@ -3,8 +3,6 @@
 Also crank angles that depend on the design: for a slider position, and at a dead centre.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, cast

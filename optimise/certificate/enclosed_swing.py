@@ -4,8 +4,6 @@ A curve's greatest value over the swing is at least its value at any one point; 
 Slider travel and crank angle have closed forms with bounds on both sides.
 """
 
-from __future__ import annotations
-
 from functools import reduce
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Proof that no design meets all requirements of a job, because every box of designs violates one."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

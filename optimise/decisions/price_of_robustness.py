@@ -5,8 +5,6 @@ range of the union front, which holds the non-dominated designs among all. If th
 objective, the range over all designs is used.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Table of the quantities that objectives and constraints may name."""
 
-from __future__ import annotations
-
 import pandas as pd
 
 from ...objectives.registry import FACTS

@@ -10,8 +10,6 @@ followed by points around the nearest results, closer in every round. Every resu
 on its constraints to rounding. How near it is depends on the sampling, which the tests check against dense fronts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -18,8 +18,6 @@ different optima, more designs are tried. The answer is never worse than the bes
 its valley; only more starts can show that no other valley is deeper.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 

@@ -8,8 +8,6 @@ is free. Objectives that are not named are free.
 The answer has the design, and the desired and reached value of each objective in words.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

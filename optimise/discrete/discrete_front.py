@@ -6,8 +6,6 @@ searched and polished for each combination. If there are too many combinations, 
 judged, then those around the best of these.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Messages about a search among discrete values: its result, and requirements that no combination of them meets."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Evaluation on a Dask cluster; work lost with a worker or the scheduler is repeated."""
 
-from __future__ import annotations
-
 import contextlib
 import logging
 import time

@@ -3,8 +3,6 @@
 Chunks of a batch are large enough to send; light batches stay in this process.
 """
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Evaluation in several processes on this machine; if one ends abruptly, it is replaced and its chunks are repeated."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

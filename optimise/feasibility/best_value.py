@@ -1,7 +1,5 @@
 """Best value of one quantity subject to all requirements."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import partial
 

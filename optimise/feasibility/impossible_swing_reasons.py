@@ -1,7 +1,5 @@
 """Reasons why no design within the ranges makes the required swing."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -3,8 +3,6 @@
 A quantity may also have no value for any design, such as the root of a negative number.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

@@ -3,8 +3,6 @@
 Rounded to nearest, every other limit would be unreachable: if 42.80776 deg is the limit, no design has 42.8078 deg.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ size: (m,), scale for rounding an objective's values besides their own magnitude
 one.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

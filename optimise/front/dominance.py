@@ -1,7 +1,5 @@
 """Dominance between designs: no worse in every objective, better in one; all objectives are minimised."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

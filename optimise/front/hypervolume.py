@@ -1,7 +1,5 @@
 """Hypervolume, and the selection of a few designs that preserve most of it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -4,8 +4,6 @@ Solves min |A x - b| with x >= 0 (C. L. Lawson and R. J. Hanson, "Solving Least 
 23.10). Every polishing step, multiplier and trade-off rate is such a problem, with a few dozen rows and columns.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.arrays import Array

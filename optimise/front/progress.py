@@ -1,7 +1,5 @@
 """Progress of a running search: as numbers, as text, and as a live bar; summary of a search among discrete values."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

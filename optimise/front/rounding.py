@@ -5,8 +5,6 @@ Combinations that meet all requirements, ranges and full rotation are ranked by 
 relative to its range over the front. Dominated ones are omitted.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Search among combinations of round numbers around a design, with progress reports and cancellation."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass

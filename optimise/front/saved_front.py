@@ -1,7 +1,5 @@
 """A front as a JSON file, written and read without losing a bit; the file does not contain its problem."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping

@@ -10,8 +10,6 @@ with sum lambda = 1 as one more weighted row. The minimiser is the same up to it
 homogeneous.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.arrays import Array, IntArray, row_norms

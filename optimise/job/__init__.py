@@ -3,8 +3,6 @@
 `load_job` reads a file (TOML or JSON), `parse_job` reads the same content as a dict, `job_schema` describes it.
 """
 
-from __future__ import annotations
-
 import contextlib
 import re
 import warnings

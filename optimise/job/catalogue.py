@@ -4,8 +4,6 @@ Each row has a name, numbers of the job, limits, and amounts and text that are s
 not searched. Those that may be the smallest sufficient option for a design, see `catalogue_screening`, are only named.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace

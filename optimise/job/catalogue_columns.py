@@ -1,7 +1,5 @@
 """The header line of a catalogue: meaning and unit of each column."""
 
-from __future__ import annotations
-
 import difflib
 import re
 import unicodedata

@@ -8,8 +8,6 @@ compared only if equal. The same applies to maxima of quantities whose floor dep
 `constraint_violation.constraints_with_floors`), and to amounts in a formula.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Only certain contradictions raise an error: each test holds for every design wit
 and reports subtler ones.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import replace

@@ -5,8 +5,6 @@ heading begins with # are ignored. Rows may descend, begin at any angle, wrap fr
 first one at the end.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The tables [quantity.NAME] in a job file: custom functions and formulas, and functions from installed packages."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass

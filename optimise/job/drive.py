@@ -1,7 +1,5 @@
 """Drive and joints in a job file, converted to the model: [drive], [friction], and the pin with [clearance]."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import Annotated, Any, ClassVar

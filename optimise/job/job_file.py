@@ -1,7 +1,5 @@
 """Reading of job files: from bytes to tables. Rejects everything that is not a job file."""
 
-from __future__ import annotations
-
 import json
 import re
 import stat

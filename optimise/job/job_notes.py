@@ -1,7 +1,5 @@
 """Notes on valid content in a job that is often a mistake: reported without an error."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

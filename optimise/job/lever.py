@@ -1,7 +1,5 @@
 """The turning-cylinder inversion in a job file: [cylinder], [arm], its keys in [mechanism] and [motion]."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from ...model.errors import JobError

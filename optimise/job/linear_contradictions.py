@@ -6,8 +6,6 @@ meets them all. Full rotation, rod >= crank + |offset|, is one of its rows.
 Options of choices are excluded if no design can have them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -3,8 +3,6 @@
 They avoid the validator's jargon.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -3,8 +3,6 @@
 Its JSON Schema is of draft 2020-12.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Annotated, Any
 

@@ -3,8 +3,6 @@
 In the tables of a job before validation, missing tables, and values of another type, count as empty.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path, PurePath
 from typing import Any

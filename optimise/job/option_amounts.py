@@ -1,7 +1,5 @@
 """Amounts of options: catalogue columns that are neither limits nor numbers of the job."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Annotated, Any
 

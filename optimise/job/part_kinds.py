@@ -1,7 +1,5 @@
 """Parts of a job with several kinds, such as loads and motors. A key that no other kind has identifies each."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

@@ -3,8 +3,6 @@
 Numbers in the tables of a job have paths: `mechanism.slider.mass`, `load.1.force`.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator, Mapping

@@ -1,7 +1,5 @@
 """Problems stated in Python: the tables of a job file as a dict, with custom functions as objects."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from os import PathLike

@@ -1,7 +1,5 @@
 """The problem that a job states."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 

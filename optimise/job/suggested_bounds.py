@@ -1,7 +1,5 @@
 """Bounds that people probably mean by a value alone, such as `stroke = 180` or `stroke = ">= 60 mm"`."""
 
-from __future__ import annotations
-
 import re
 from typing import Any
 

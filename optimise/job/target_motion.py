@@ -1,7 +1,5 @@
 """The table [target_motion] of a job file: the desired slider motion as points, stated there or in a file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Annotated, Any
 

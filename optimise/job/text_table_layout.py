@@ -1,7 +1,5 @@
 """Layout of a table in a text file: separators, comments, title lines, names and units of columns."""
 
-from __future__ import annotations
-
 import csv
 import io
 import itertools

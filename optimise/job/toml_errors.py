@@ -5,8 +5,6 @@ read furthest is kept, and the next one is tried, until the parser reads the who
 line that the parser accepts.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import tomllib

@@ -4,8 +4,6 @@ Preferred numbers are those of ISO 3:1973, the rounded values of its basic serie
 ten in the unit of `min`.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import re

@@ -3,8 +3,6 @@
 Each type states in the JSON Schema what it accepts, and can read what it writes: SI numbers are also valid in a job.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Callable, Mapping, Sequence

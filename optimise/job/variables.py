@@ -5,8 +5,6 @@ A variable other than the three dimensions is named by the path of its number in
 the value for analyses of single designs.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
 from typing import Annotated, Any, Self

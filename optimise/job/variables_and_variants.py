@@ -5,8 +5,6 @@ range. Every number of the machine that differs must be proportional to it. So e
 rules of its own key, and any number in a job may vary.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Mapping

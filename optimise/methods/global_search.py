@@ -1,7 +1,5 @@
 """SciPy's global methods for one objective."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """SciPy's gradient methods for one objective, from many starts; and its local solvers on a scalar programme."""
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Callable
 from functools import partial

@@ -13,8 +13,6 @@ Selection and crossover need only the last generation and its parents. So each g
 memory with these designs and a new sampler: its cost is constant, and it depends only on them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

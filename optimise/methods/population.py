@@ -7,8 +7,6 @@ again.
 Random and Sobol points, the baseline for all other methods, are broods without parents.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial

@@ -11,8 +11,6 @@ at another law, which lies below every law's time (the convex-concave procedure:
 Computation 15, 2003).
 """
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass, field
 from typing import Any, Literal

@@ -8,8 +8,6 @@ Among the laws with the least peak torque, the one with the least RMS torque is 
 of the peak.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace

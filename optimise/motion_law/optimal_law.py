@@ -20,8 +20,6 @@ discretised; they may be any functions, here those of the programme, linear in e
 time), the bound is that of the convex relaxation, and the law may be optimal despite a gap.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """Constraints of a problem with their floors, and violations by designs."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

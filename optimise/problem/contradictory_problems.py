@@ -1,7 +1,5 @@
 """Contradictory problems that a search would not notice, such as objectives that are zero for every design."""
 
-from __future__ import annotations
-
 from ...model.errors import InfeasibleError, InputError
 from ...objectives.proportions import TIME_RATIO
 from ...objectives.stroke_times import STROKE_TIME_RATIOS

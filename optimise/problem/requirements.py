@@ -3,8 +3,6 @@
 SI, immutable.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence

@@ -7,8 +7,6 @@ rounding at many random designs within the job's ranges are the same; formulas w
 abs) are left unchanged.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Robust problems: objectives and constraints within tolerances, and the nominal problem of a robust one."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Columns in the table of designs, and names that custom quantities must not take."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 

@@ -1,7 +1,5 @@
 """Requests for sizing: costs of making parts to tolerances; safety factors, pins and available sizes of sections."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields
 

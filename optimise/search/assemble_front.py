@@ -1,7 +1,5 @@
 """Assembly of the front from polished designs: the best of them, each with all its quantities."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Quantities of many designs for an evaluator, row by row, so that any process can judge rows."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Protocol

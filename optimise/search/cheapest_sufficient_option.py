@@ -1,7 +1,5 @@
 """The least sufficient option of a catalogue for a design: the cheapest gearmotor that meets its demands."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask, sorted_unique

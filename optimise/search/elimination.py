@@ -5,8 +5,6 @@ free unknowns is chosen from which the rules, applied in turn, give the rest. Re
 equality constraints for the solver. Extra variables are free, because no rule computes them.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterator

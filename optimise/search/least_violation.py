@@ -1,7 +1,5 @@
 """Designs closest to meeting all requirements: minimisation of the greatest violation."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from ...model.arrays import Array, IntArray, Mask

@@ -4,8 +4,6 @@ With the angles psi at both ends, L^2 + e^2 = r^2 + f^2 - 2 r f cos(psi) is quad
 The least length is at the end with the greater cosine. Two requirements give both lengths, hence r f and r^2 + f^2.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace

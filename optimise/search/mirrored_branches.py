@@ -6,8 +6,6 @@ So the two are equal unless one of these distinguishes them: gravity across the 
 depends on the motion, several cylinders, a speed profile, or a requested quantity.
 """
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 
 import numpy as np

@@ -13,8 +13,6 @@ constraints first moves onto them by the shortest step. Tied peaks enter as sepa
 problem, not noise. Designs advance together, so that every evaluation is a batch.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Protocol
 

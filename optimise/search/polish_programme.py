@@ -13,8 +13,6 @@ solution. Without objectives, the step is the shortest one that meets the constr
 omitted.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cache
 from itertools import accumulate

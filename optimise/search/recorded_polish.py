@@ -1,7 +1,5 @@
 """Polish and projection as recorded steps of a search, on its engine where worthwhile."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

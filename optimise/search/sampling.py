@@ -6,8 +6,6 @@ F. Y. Kuo, SIAM J. Sci. Comput. 30(5), 2008; scrambled by a random lower triangu
 J. Matousek, J. Complexity 14, 1998.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -21,8 +21,6 @@ Engineering for Industry 91, 1969); for a long rod without offset, c is the rota
 one.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass

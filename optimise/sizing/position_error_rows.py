@@ -1,7 +1,5 @@
 """The position error as linear rows in scaled tolerances, and its exact peaks: the constraints of an allocation."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -10,8 +10,6 @@ length is linear, and the moment of the bar on two supports at the fraction x of
 (a uniform and a triangular load on a simple beam, superposed).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

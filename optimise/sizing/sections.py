@@ -9,8 +9,6 @@ geometric programming", Optimization and Engineering 8, 2007, sec. 9). Each prog
 variables and solved to its global optimum; the coupled problem is not convex, and its optimum is in general local.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass, replace

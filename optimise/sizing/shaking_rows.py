@@ -15,8 +15,6 @@ Those of the counterweight matter only if the crank accelerates, so its mass fol
 the rod are separate variables (`counterweight`).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from typing import Any

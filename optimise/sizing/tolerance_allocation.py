@@ -23,8 +23,6 @@ are then solved for t and lambda to rounding. In a convex programme they are suf
 lambda >= 0 and no peak above the limit, is the optimum.
 """
 
-from __future__ import annotations
-
 import math
 import warnings
 from dataclasses import dataclass, replace

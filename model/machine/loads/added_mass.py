@@ -1,7 +1,5 @@
 """A mass that moves with the slider: fluid in a pipe, rollers, or a flywheel driven by the slider."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

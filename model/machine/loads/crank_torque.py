@@ -1,7 +1,5 @@
 """A torque on the crank besides the drive's: constant, opposing every motion, from a spring, or tabulated."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass

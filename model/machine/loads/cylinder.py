@@ -1,7 +1,5 @@
 """A cylinder whose piston is the slider: gas on one side, back pressure on the other."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal

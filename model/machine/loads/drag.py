@@ -1,7 +1,5 @@
 """A resistance that grows with the square of the slider speed."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """A load in words: magnitudes, signs, effects and ranges, which `Load.text` combines."""
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterable, Sequence

@@ -1,7 +1,5 @@
 """Every kind of load declared by a module in this package, and the compiled choice among their formulas."""
 
-from __future__ import annotations
-
 import pkgutil
 from functools import cache
 from importlib import import_module

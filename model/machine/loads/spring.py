@@ -1,7 +1,5 @@
 """A linear spring between the slider and the frame."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

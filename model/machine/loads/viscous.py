@@ -1,7 +1,5 @@
 """A resistance proportional to the slider speed."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar

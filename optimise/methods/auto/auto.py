@@ -3,8 +3,6 @@
 The delivery polishes candidates, fills the gaps between them and selects among them.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

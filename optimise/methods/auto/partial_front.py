@@ -1,7 +1,5 @@
 """The front found so far by a cancelled search, delivered within a moment."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 

@@ -22,8 +22,6 @@ to within the residual (Karush-Kuhn-Tucker). The proof is local; only more start
 deeper.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

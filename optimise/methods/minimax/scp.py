@@ -1,7 +1,5 @@
 """Sequential convex programming for the greatest of smooth pieces, from one start; see `minimax`."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

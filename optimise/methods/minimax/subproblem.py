@@ -10,8 +10,6 @@ where t is the epigraph of the greatest piece, s the greatest violation with its
 of the Lagrangian. Its multipliers for the pieces are a convex combination by construction, because t has slope one.
 """
 
-from __future__ import annotations
-
 import warnings
 from dataclasses import dataclass, replace
 from typing import Any
