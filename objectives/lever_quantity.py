@@ -9,9 +9,10 @@ import numpy as np
 from ..model.kernel.arithmetic import STEP
 from ..model.kernel.batches import in_chunks
 from ..model.machine.mechanism import Mechanism
+from ..model.machine.memoise import memoise_by_batch
 from ..model.swing.swing import Swing
 from ..model.swing.swing_types import SwingDriver
-from ..model.turning_cylinder.curve_peaks import lever_peaks
+from ..model.turning_cylinder.curve_peaks import LeverPeaks, lever_peaks
 from ..model.turning_cylinder.lever_state import LeverNumbers
 from ..model.turning_cylinder.levers_of_designs import can_make_motion, lever_batch
 from ..model.turning_cylinder.rms_crank_torque import rms_torque
@@ -89,11 +90,13 @@ class LeverQuantity(SwingQuantity):
 class LeverPeak(LeverQuantity):
     """The greatest value of some curves of `turning_cylinder.peaks` over the swing.
 
-    curves: their names. least_value: value where it would be less. inverse: whether the quantity is the inverse of that
-    value: a margin, which is infinite where nothing loads the cylinder.
+    curves: their names. divisors: positive number of a lever for each, by which it is divided; none by default.
+    least_value: value where it would be less. inverse: whether the quantity is the inverse of that value: a margin,
+    which is infinite where nothing loads the cylinder.
     """
 
     curves: tuple[str, ...]
+    divisors: tuple[Callable[[LeverNumbers], Any], ...] = ()
     least_value: float | None = None
     inverse: bool = False
 
@@ -110,8 +113,10 @@ class LeverPeak(LeverQuantity):
 
     def _pieces(self, mechanism: Mechanism, dimensions: Array, gradients: bool, limit: int) -> Pieces:
         designs, rows = self._passing(mechanism, dimensions)
-        at_rest = 0 if self._required_swing.law == "slow" else 2
-        width = len(self.curves) * (limit + at_rest)
+        arguments = self._required_swing, self.curves, limit
+        peaks = _peaks_of_designs(mechanism, np.ascontiguousarray(designs[rows]), *arguments, gradients=gradients)
+        found, slope = self._divided(mechanism, designs[rows], peaks)
+        width = found.shape[1]
         absent = np.inf if self.inverse else -np.inf
         floor = [] if self.least_value is None else [self.least_value]
         values = np.full((len(designs), width + len(floor)), absent)
@@ -119,27 +124,49 @@ class LeverPeak(LeverQuantity):
         labels = np.full(values.shape, -_LABEL_STEP)
         slopes = np.zeros((*values.shape, designs.shape[1] if gradients else 0))
         values[np.setdiff1d(np.arange(len(designs)), rows), 0] = np.nan
-
-        batch, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=gradients)
-        by_number = np.zeros((len(rows), width, len(numbers.columns) if gradients else 0))
-        curve_labels = np.repeat(_LABEL_STEP * np.arange(len(self.curves)), limit + at_rest)
-
-        def work(begin: int, end: int) -> None:
-            chunk = rows[begin:end]
-            peaks = lever_peaks(batch.levers_between(begin, end), self.curves, gradients=gradients, limit=limit)
-            labels[chunk, :width] = np.nan_to_num(peaks.places) + curve_labels
-            found, slope = peaks.values, peaks.gradients
-            if self.inverse:
-                is_loaded = found > 0.0
-                found = np.where(is_loaded, 1.0 / np.where(is_loaded, found, 1.0), np.inf)
-                slope = np.where(is_loaded[..., None], -slope * np.where(is_loaded, found, 0.0)[..., None] ** 2, 0.0)
-            values[chunk, :width] = found
-            by_number[begin:end] = slope
-
-        in_chunks(len(rows), work, size=_CHUNK)
+        curve_labels = np.repeat(_LABEL_STEP * np.arange(len(self.curves)), width // len(self.curves))
+        labels[rows, :width] = np.nan_to_num(peaks.places) + curve_labels
+        if self.inverse:
+            is_loaded = found > 0.0
+            found = np.where(is_loaded, 1.0 / np.where(is_loaded, found, 1.0), np.inf)
+            slope = np.where(is_loaded[..., None], -slope * np.where(is_loaded, found, 0.0)[..., None] ** 2, 0.0)
+        values[rows, :width] = found
         if gradients:
-            slopes[rows, :width] = numbers.chain_to_designs(by_number)
+            _, numbers = lever_batch(mechanism, designs[rows], self._required_swing, gradients=True)
+            slopes[rows, :width] = numbers.chain_to_designs(slope)
         return Pieces(values, slopes, labels, least=self.inverse)
+
+    def _divided(self, mechanism: Mechanism, designs: Array, peaks: LeverPeaks) -> tuple[Array, Array]:
+        """Return the peaks (n, k) over the divisors of their curves, and gradients (n, k, v) by the raw numbers."""
+        if not self.divisors:
+            return peaks.values, peaks.gradients
+        has_gradients = peaks.gradients.shape[2] > 0
+        batch, _ = lever_batch(mechanism, designs, self._required_swing, gradients=has_gradients)
+        each = peaks.values.shape[1] // len(self.curves)
+        divisor = np.repeat(np.stack([of(batch.plain) for of in self.divisors], axis=1), each, axis=1)
+        found, slope = peaks.values / divisor, peaks.gradients / divisor[:, :, None]
+        for place, numbers in enumerate(batch.stepped if has_gradients else ()):
+            rate = np.repeat(np.stack([of(numbers).imag / STEP for of in self.divisors], axis=1), each, axis=1)
+            slope[:, :, place] -= np.where(np.isfinite(found), found, 0.0) * rate / divisor
+        return found, slope
+
+
+@memoise_by_batch
+def _peaks_of_designs(
+    mechanism: Mechanism, designs: Array, /, swing: Swing, curves: tuple[str, ...], limit: int, *, gradients: bool
+) -> LeverPeaks:
+    """Return the peaks of curves of designs (n, 3 + k), with gradients (n, k, v) by the raw numbers."""
+    batch, numbers = lever_batch(mechanism, designs, swing, gradients=gradients)
+    shape = len(designs), len(curves) * (limit + (0 if swing.law == "slow" else 2))
+    values, places = np.empty(shape), np.empty(shape)
+    slopes = np.empty((*shape, len(numbers.columns) if gradients else 0))
+
+    def work(begin: int, end: int) -> None:
+        part = lever_peaks(batch.levers_between(begin, end), curves, gradients=gradients, limit=limit)
+        values[begin:end], places[begin:end], slopes[begin:end] = part.values, part.places, part.gradients
+
+    in_chunks(len(designs), work, size=_CHUNK)
+    return LeverPeaks(values, places, slopes)
 
 
 @dataclass(frozen=True, kw_only=True)

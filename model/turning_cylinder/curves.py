@@ -16,8 +16,8 @@ from .lever_state import LeverNumbers, LeverState, state_in_swing, vector_length
 Complexes = NDArray[np.complex128]
 
 CURVES_OF_SWING = (
-    *("push", "pull", "push_pressure", "pull_pressure", "push_share", "pull_share", "buckling_share"),
-    *("push_power", "pull_power", "speed", "pin", "pivot", "cylinder_pivot", "angle_error"),
+    *("push", "pull", "buckling_share", "push_power", "pull_power", "speed"),
+    *("pin", "pivot", "cylinder_pivot", "angle_error"),
 )
 """Curves of a swing by their codes, with the friction of the seal: both ways together."""
 CURVES_OF_TURN = (
@@ -35,26 +35,18 @@ def curve_of_swing(code: int, c: LeverNumbers, s: LeverState) -> Any:
     if code == 1:
         return c.rub - s.push
     if code == 2:
-        return (c.rub + s.push) * inverse(c.full_area)
-    if code == 3:
-        return (c.rub - s.push) * inverse(c.annular_area)
-    if code == 4:
-        return (c.rub + s.push) * inverse(c.full_area * c.supply)
-    if code == 5:
-        return (c.rub - s.push) * inverse(c.annular_area * c.supply)
-    if code == 6:
         return (c.rub + s.push) * s.length * s.length * inverse(c.buckling)
-    if code == 7:
+    if code == 3:
         return (c.rub + s.push) * magnitude(s.speed)
-    if code == 8:
+    if code == 4:
         return (c.rub - s.push) * magnitude(s.speed)
-    if code == 9:
+    if code == 5:
         return magnitude(s.speed)
-    if code == 10:
+    if code == 6:
         return vector_length(s.pin)
-    if code == 11:
+    if code == 7:
         return vector_length(s.pivot)
-    if code == 12:
+    if code == 8:
         return vector_length(s.cylinder_pivot)
     return 1.0 * s.angle_error
 
